@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a relay and its participant meet: the file with place and token, the greeting, the sockets.
+// Connection of a relay and its participant: the file with address and token, the greeting, the sockets.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <ifaddrs.h>
@@ -35,8 +35,8 @@ bool whole(const std::string& word, T& value) {
   return code == std::errc() && end == word.data() + word.size();
 }
 
-/// The first address of a family of an interface, as bytes for bind(). Link-local ones mean another thing on each machine and
-/// are left out.
+/// First address of a family on an interface, as bytes for bind(). Link-local ones are omitted, because their
+/// meaning depends on the machine.
 socklen_t address_of(const std::string& name, int family, int port, sockaddr_storage& result) {
   ifaddrs* all = nullptr;
   if (::getifaddrs(&all) != 0) refuse("The network interfaces cannot be read.");
@@ -86,7 +86,7 @@ int listen_on_tcp(const std::string& where, int family, std::string& place) {
 int listen_on_unix(std::string& place, std::string& folder) {
   const char* top = std::getenv("TMPDIR");
   folder = std::string(top != nullptr && std::strlen(top) < 60 ? top : "/tmp") + "/couplet-relay-XXXXXX";
-  if (::mkdtemp(folder.data()) == nullptr)  // for its owner alone
+  if (::mkdtemp(folder.data()) == nullptr)  // only for its owner
     refuse("Cannot make a folder '" + folder + "' for the socket (" + std::strerror(errno) + ").");
   const std::string path = folder + "/socket";
   sockaddr_un at{};
@@ -109,7 +109,7 @@ int listen_at(const std::string& how, std::string& place, std::string& folder) {
   refuse("--listen " + how + ": expected unix, or tcp:INTERFACE[:PORT], or tcp6:INTERFACE[:PORT].");
 }
 
-/// Of either family; 0: it is none.
+/// Parses a numeric address of either family. Returns 0 if it is not one.
 static socklen_t numeric_address(const std::string& host, const std::string& port, sockaddr_storage& result) {
   addrinfo wanted{}, *found = nullptr;
   wanted.ai_family = AF_UNSPEC;
@@ -162,7 +162,7 @@ void Address::write(const std::string& file) const {
 
 Address Address::read(const std::string& file) {
   std::ifstream opened(file);
-  std::string text(1 << 20, '\0');  // far more than ten thousand places
+  std::string text(1 << 20, '\0');  // far more than ten thousand addresses
   if (opened) opened.read(text.data(), std::streamsize(text.size()));
   text.resize(std::size_t(std::max<std::streamsize>(0, opened.gcount())));
   std::istringstream in(text);

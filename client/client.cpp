@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows docs/protocol.md and needs nothing but MPI.
+// Follows docs/protocol.md and depends only on MPI.
 #include <sched.h>
 #include <unistd.h>
 
@@ -22,7 +22,7 @@
 
 using namespace couplet::wire;
 
-static Link* way = nullptr;  // of the client that joined last
+static Link* way = nullptr;  // of the last client that joined
 
 [[noreturn]] void couplet::wire::end_the_job(const std::string& text) {
   std::fprintf(stderr, "couplet client: %s\n", text.c_str());
@@ -44,7 +44,7 @@ std::vector<std::int64_t> cut(MPI_Comm comm, std::size_t n) {
   return starts;
 }
 
-/// What peer `p` has of a datum, if anything, onto `parts`.
+/// Appends peer `p`'s segment of a datum, if any, to `parts`.
 void part_of(const couplet_client& c, const Peer& p, const Datum& d, std::vector<double>& values,
              std::vector<Stretch>& parts) {
   const auto n = std::size_t(d.size(c.surface.dim));
@@ -53,7 +53,7 @@ void part_of(const couplet_client& c, const Peer& p, const Datum& d, std::vector
   if (count > 0) parts.push_back({values.data() + first, count});
 }
 
-/// The reply to initialise: the head, then the places to those coupler ranks that get a part of them.
+/// Replies to initialise: the head, then vertices and faces to the coupler ranks that receive some of them.
 void describe(couplet_client& c) {
   MPI_Bcast(&c.surface.dim, 1, MPI_INT, 0, c.comm);
   c.vertex_cut = cut(c.comm, c.surface.vertices());
@@ -76,7 +76,7 @@ void send_reply(couplet_client& c) {
     head.real(c.error);
     head.real(c.energy);
     head.names(c.output);
-    head.integers({c.surface.dim, 0, 0});  // dimension, an answer like those before, no named parts
+    head.integers({c.surface.dim, 0, 0});  // dimension, comparable to earlier answers, no named parts
     head.data(first ? c.takes : std::vector<Datum>{});
     head.data(first ? c.gives : std::vector<Datum>{});
     head.list(first ? c.vertex_cut : std::vector<std::int64_t>{0});
@@ -91,7 +91,7 @@ void send_reply(couplet_client& c) {
       for (auto& [name, values] : c.output) part_of(c, p, *find(c.gives, name), values, parts);  // by name
       if (!parts.empty()) c.coupler->send(p.rank, output_tag, parts);
     }
-  if (c.spare.size() > c.gives.size() + c.output.size()) c.spare.clear();  // of other times within the step
+  if (c.spare.size() > c.gives.size() + c.output.size()) c.spare.clear();  // for other times within the step
   for (auto& [name, values] : c.output) c.spare[name].swap(values);
   c.output.clear();
   c.status = 0;
@@ -106,7 +106,7 @@ void receive_input(couplet_client& c) {
       end_the_job("the coupler sent '" + name + "', which '" + c.participant + "' does not take.");
     if (entries(c, *d) > 0) present[name] = d;
   }
-  // Arrays of the pass before are written over; what nobody has given this time is not there.
+  // Reuses the arrays of the previous pass. Data that nobody has given this time are absent.
   auto before = std::exchange(c.input, {});
   for (const auto& [name, d] : present) {
     std::vector<double>& values = c.input[name];
@@ -138,7 +138,7 @@ void receive_command(couplet_client& c) {
   c.pending = true;
 }
 
-/// What was announced must be given, whole.
+/// Checks that all announced data were given completely.
 void check_output(couplet_client& c) {
   if (c.command.op != solve || c.status != 0) return;
   for (const Datum& d : c.gives)
@@ -235,7 +235,7 @@ enum couplet_event couplet_next(couplet_client* c) try {
               "own program.");
         continue;
       case finalise:
-        continue;  // answered by this library
+        continue;  // handled by this library
       default:
         return couplet_event(c->command.op);
     }

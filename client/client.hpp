@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What couplet_client is; private to the client library.
+// Definition of couplet_client, private to the client library.
 #pragma once
 
 #include <cmath>
@@ -20,13 +20,13 @@ struct couplet_client {
   std::vector<couplet::wire::Datum> takes, gives;
   std::vector<std::int64_t> vertex_cut, face_cut;
   std::vector<couplet::wire::Peer> peers;
-  // of the command under way
+  // State of the current command.
   couplet::wire::Command command;
   bool pending = false;
   std::map<std::string, std::vector<double>> input, output, spare;  // spare: arrays of outputs that were sent
   std::int64_t status = 0;
   std::string text, checkpoint, introduction;
-  double time = 0, dt = 0;  // of the step that began last
+  double time = 0, dt = 0;  // of the last step that began
   double advised = std::numeric_limits<double>::infinity();
   std::int64_t iterations = 0;
   double error = NAN, energy = NAN, started = 0;
@@ -36,12 +36,12 @@ struct couplet_client {
 
 namespace couplet::wire {
 
-/// Ends the whole job with a sentence.
+/// Ends the whole job with a message.
 [[noreturn]] void end_the_job(const std::string& text);
 std::size_t entries(const couplet_client& c, const Datum& d);
-/// By its own name or, of a value within the step ("datum@share"), by that of the datum; null: there is none.
+/// Finds a datum by its name or that of a value within the step ("datum@share"). nullptr if there is none.
 const Datum* find(const std::vector<Datum>& list, const std::string& name);
-/// What is given with the next reply.
+/// Stores a value for the next reply.
 void take_over(couplet_client& c, const std::string& name, const double* values, std::size_t count);
 /// Name of the value of a datum at a share in (0, 1) of the step.
 std::string within_name(const std::string& datum, double share);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A program of any kind as a participant of a Couplet job, over MPI alone. The protocol is docs/protocol.md.
+/* Makes any program a participant of a Couplet job, using only MPI. docs/protocol.md defines the protocol.
  *
  *   couplet_client* c = couplet_join("solid", "my_solver");     all processes of the participant
- *   couplet_vertices(c, ...); couplet_faces(c, ...);             each process what it owns, or process 0 all
+ *   couplet_vertices(c, ...); couplet_faces(c, ...);             each process its part, or process 0 everything
  *   couplet_takes(c, "pressure-force", "N", COUPLET_FACES, 0); couplet_gives(c, ...);
  *   while ((event = couplet_next(c)) != COUPLET_END) switch (event) ...
  *   couplet_leave(c);
  *
- * Between two calls of couplet_next the program does what the event asks for; the next call answers for it. Units
- * are SI. An error that is no failed step ends the whole job with a sentence (MPI_Abort). */
+ * Between two calls of couplet_next the program handles the event, and the next call sends its reply. All units are
+ * SI. Any error except a failed step ends the whole job with a message (MPI_Abort). */
 #ifndef COUPLET_H
 #define COUPLET_H
 
@@ -21,80 +21,79 @@ extern "C" {
 
 typedef struct couplet_client couplet_client;
 
-/* COUPLET_SURFACE + s: the vertices of surface s alone (couplet_surfaces). */
+/* COUPLET_SURFACE + s means only the vertices of surface s (couplet_surfaces). */
 enum couplet_place { COUPLET_VERTICES = 0, COUPLET_FACES = 1, COUPLET_SURFACE = 2 };
 
 enum couplet_event {
   COUPLET_END = 0,    /* the job is over */
   COUPLET_BEGIN = 2,  /* a step from state n begins (again, perhaps shorter): couplet_time, couplet_dt */
-  COUPLET_SOLVE = 3,  /* solve it from state n for couplet_read, then couplet_write */
-  COUPLET_ACCEPT = 4, /* what was solved last is state n now */
+  COUPLET_SOLVE = 3,  /* solve it from state n with the input of couplet_read, then couplet_write */
+  COUPLET_ACCEPT = 4, /* the last solution becomes state n */
   COUPLET_OUTPUT = 5, /* write fields for couplet_time, number couplet_output */
-  COUPLET_SAVE = 6,   /* save state n in the file couplet_checkpoint */
-  COUPLET_LOAD = 7,   /* load it from there */
-  COUPLET_START = 9   /* only after initial values of its own: couplet_read has those of the others */
+  COUPLET_SAVE = 6,   /* save state n to the file couplet_checkpoint */
+  COUPLET_LOAD = 7,   /* load state n from that file */
+  COUPLET_START = 9   /* only if it wrote initial values: couplet_read returns those of the others */
 };
 
-/* Takes part in the start of the job, collective over all its processes; calls MPI_Init if the program has not, with the
- * transports that the other programs choose on one machine (a program that calls it itself probes all networks, and on
- * a machine with some of them may choose one that the others do not have). `participant`: its name under
- * `participants:` of the case; `program`: of that entry. */
+/* Takes part in the start of the job. Collective over all its processes. Calls MPI_Init unless the program has done so,
+ * with the transports of the other programs on one machine. (A program that calls it itself probes all networks and may
+ * choose one that the others do not use.) `participant` is the name under `participants:` of the case, `program` that of
+ * the entry. */
 couplet_client* couplet_join(const char* participant, const char* program);
-/* The same for a program that is launched separately from the job: where the environment has COUPLET_JOIN=FILE, both functions
- * join through the relay that wrote FILE (docs/protocol.md, "Launched separately"), collective over `processes`, which are all
- * of the participant (couplet_join: MPI_COMM_WORLD). Without COUPLET_JOIN `processes` is not looked at. */
+/* Joins also if the program was launched separately. If the environment has COUPLET_JOIN=FILE, both functions join through
+ * the relay that wrote FILE (docs/protocol.md, "Launched separately"). This is collective over `processes`, all those of the
+ * participant (couplet_join: MPI_COMM_WORLD). Without COUPLET_JOIN, `processes` is ignored. */
 couplet_client* couplet_join_with(const char* participant, const char* program, MPI_Comm processes);
-/* The processes of this participant. */
+/* Communicator of this participant's processes. */
 MPI_Comm couplet_comm(const couplet_client* c);
 
-/* The interface, before the first couplet_next: what this process owns. `xyz`: 3 n coordinates [m], reference
- * configuration. `dimension`: 2 (z = 0, areas per metre of depth) or 3. */
+/* Declares the vertices that this process owns, before the first couplet_next. `xyz` holds 3 n coordinates [m] in the
+ * reference configuration. `dimension` is 2 (z = 0, areas per meter of depth) or 3. */
 void couplet_vertices(couplet_client* c, int dimension, int n, const double* xyz);
-/* Vertices may belong to several surfaces, each with data of its own, which are carried between that surface's vertices
- * alone: of each vertex the number of its surface, from 0. Values are given and taken for all vertices all the same. */
+/* Assigns each vertex to a surface, numbered from 0. Data of a surface are mapped only between its own vertices, but values
+ * are still exchanged for all vertices. */
 void couplet_surfaces(couplet_client* c, const int* surface_of_vertex);
-/* `areas`: vectors out of this participant [m^2]. `first` (n + 1) and `vertices` (first[n]): the vertices of face f
- * are vertices[first[f]] up to vertices[first[f + 1]], positions in the list of all processes' vertices, process by
- * process; both may be NULL, there is no work in the coupler's balance then. */
+/* Declares faces. `areas` are vectors out of this participant [m^2]. Face f has the vertices vertices[first[f]] to
+ * vertices[first[f + 1] - 1], positions in the concatenated list of all processes' vertices. `first` (n + 1 values) and
+ * `vertices` may be NULL; the coupler then computes no work balance. */
 void couplet_faces(couplet_client* c, int n, const double* centres, const double* areas, const int64_t* first,
                    const int64_t* vertices);
-/* `components`: values a place; 0: one a dimension (a vector). */
+/* Declare a datum. `components` is the number of values per location; 0 means one per dimension (a vector). */
 void couplet_takes(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
 void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
 
-/* What the program was configured by, for the coupler to compare (docs/protocol.md, initialise); before the first couplet_next. */
+/* Sends the program's configuration to the coupler for comparison (docs/protocol.md, initialise), before couplet_next. */
 void couplet_introduce(couplet_client* c, const char* text);
 
-/* Answers for the last event and waits, without burning a core, for the next. Collective over couplet_comm. */
+/* Replies to the last event and waits for the next one without busy polling. Collective over couplet_comm. */
 enum couplet_event couplet_next(couplet_client* c);
 
 double couplet_time(const couplet_client* c); /* BEGIN, SOLVE: t^n; ACCEPT, OUTPUT: the accepted time [s] */
 double couplet_dt(const couplet_client* c);
 int couplet_output(const couplet_client* c);            /* ACCEPT, OUTPUT: number of the output that is due, or -1 */
 const char* couplet_checkpoint(const couplet_client* c); /* SAVE, LOAD: folder of the checkpoint + /<participant> */
-/* SOLVE: values of a datum that is taken, place by place, this process's; NULL if nobody has given it yet or this
- * process owns no such place. Valid until the next couplet_next. */
+/* SOLVE: this process's values of a received datum, location by location. NULL if no participant has given it yet or this
+ * process owns no such location. Valid until the next couplet_next. */
 const double* couplet_read(const couplet_client* c, const char* datum);
-/* SOLVE: values of a datum that is given. Before the first couplet_next: its value before the first step; all data or
- * none, by all processes. */
+/* SOLVE: sets the values of a datum to send. Before the first couplet_next: its initial values. All processes must then
+ * write all data or none. */
 void couplet_write(couplet_client* c, const char* datum, const double* values);
-/* Values within a step, of programs that subdivide it. They go to those that ask for them, before the first couplet_next and
- * after couplet_takes. */
+/* Requests values within a step from programs with sub-steps, after couplet_takes and before the first couplet_next. */
 void couplet_takes_within(couplet_client* c, const char* datum);
-/* SOLVE, besides couplet_write, which has the end of the step; `share`: of the step, between 0 and 1. */
+/* SOLVE: sets values at a fraction `share` of the step, between 0 and 1. couplet_write sets those at its end. */
 void couplet_write_within(couplet_client* c, const char* datum, double share, const double* values);
-/* SOLVE: how many there are of a datum that is taken; the values of one of them, by ascending share, counted from 0. Valid until
- * the next couplet_next. */
+/* SOLVE: number of values within the step of a received datum, and one of them by its index from 0, in order of ascending
+ * share. Valid until the next couplet_next. */
 int couplet_within(const couplet_client* c, const char* datum);
 const double* couplet_read_within(const couplet_client* c, const char* datum, int number, double* share);
-/* SOLVE: instead of writing: the step could not be solved; `halving_helps`: a shorter one may be. */
+/* SOLVE: reports a failed step instead of writing. `halving_helps` if a shorter step may succeed. */
 void couplet_fail(couplet_client* c, const char* why, int halving_helps);
-/* The largest step that is advised from now on [s]. */
+/* Recommends a largest time step from now on [s]. */
 void couplet_advise(couplet_client* c, double dt);
-/* ACCEPT: what the accepted step was like: iterations of solvers, estimated time error, energy [J]; NAN: unknown. */
+/* ACCEPT: reports solver iterations, estimated time error and energy [J] of the step, NAN if unknown. */
 void couplet_report(couplet_client* c, int64_t iterations, double error, double energy);
 
-/* After COUPLET_END. Calls MPI_Finalize if couplet_join has called MPI_Init. */
+/* Must be called after COUPLET_END. Calls MPI_Finalize if couplet_join called MPI_Init. */
 void couplet_leave(couplet_client* c);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same as couplet.h with vectors.
+// C++ interface to couplet.h with vectors.
 #pragma once
 
 #include <stdexcept>
@@ -43,7 +43,7 @@ class Client {
   double dt() const { return couplet_dt(client_); }
   int output() const { return couplet_output(client_); }
   std::string checkpoint() const { return couplet_checkpoint(client_); }
-  /// Zeros if nobody has given it yet.
+  /// Returns zeros if no participant has given the datum yet.
   std::vector<double> read(const std::string& datum) const {
     const std::size_t n = size_of(datum);
     const double* values = couplet_read(client_, datum.c_str());

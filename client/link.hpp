@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way from one process of a participant to the ranks of the coupler; private to the client library.
+// Connection from one process of a participant to the ranks of the coupler, private to the client library.
 #pragma once
 
 #include <mpi.h>
@@ -11,31 +11,30 @@
 
 namespace couplet::wire {
 
-/// Part of an array. Several travel as one message, one after the other, without being copied together.
+/// Part of an array. Several are sent as one message without being copied together.
 struct Stretch {
   double* first;
   std::size_t count;
 };
 
-/// Messages with a tag; those of one sender and one tag arrive in their order. Throws std::runtime_error where the
-/// way is lost.
+/// Tagged messages, ordered for each sender and tag. Throws std::runtime_error if the connection is lost.
 class Link {
  public:
   virtual ~Link() = default;
-  /// Of the coupler.
+  /// Number of ranks of the coupler.
   virtual int ranks() const = 0;
   virtual void send(int to, int tag, const std::vector<char>& bytes) = 0;
   virtual void send(int to, int tag, const std::vector<Stretch>& parts) = 0;
   virtual std::vector<char> receive(int from, int tag) = 0;
-  /// False if a message of another length came.
+  /// Returns false if a message of another length arrived.
   virtual bool receive(int from, int tag, const std::vector<Stretch>& parts) = 0;
-  /// The job is over for this process.
+  /// Tells the other side that the job is over for this process.
   virtual void leave() {}
-  /// The other side learns why this process ends.
+  /// Tells the other side why this process ends.
   virtual void fail(const std::string& why) { static_cast<void>(why); }
 };
 
-/// Over an intercommunicator: all programs were started by one mpirun.
+/// Link over an intercommunicator, if one mpirun started all programs.
 std::unique_ptr<Link> link_by_mpi(MPI_Comm coupler);
 
 }  // namespace couplet::wire

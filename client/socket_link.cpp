@@ -80,7 +80,7 @@ class SocketLink : public Link {
     return true;
   }
 
-  /// Length of the next message of this sender and tag; the others that come before it are kept.
+  /// Length of the next message with this sender and tag. Earlier messages are stored.
   std::int64_t read_until(int from, int tag) {
     for (;;) {
       const Frame head = stream_.read_head();
@@ -136,7 +136,7 @@ std::unique_ptr<Link> link_by_socket(const std::string& file, const std::string&
   greeting.participant = participant;
   Stream stream = connect_to(address.places[std::size_t(greeting.rank)]);
   stream.write_line(greeting.line());
-  // "welcome N": so many ranks has the coupler; anything else says why not.
+  // "welcome N" states the number of coupler ranks. Any other answer is the reason of a rejection.
   const std::string answer = stream.read_line(400, seconds_to_wait());
   if (answer.rfind("welcome ", 0) != 0)
     throw std::runtime_error("the relay of '" + participant + "' refused the connection" +

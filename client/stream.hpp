@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connected stream socket between a participant that was started by itself and its relay in the job.
+// Stream socket between a separately launched participant and its relay in the job.
 #pragma once
 
 #include <sys/types.h>
@@ -12,12 +12,12 @@
 
 namespace couplet::wire {
 
-/// Before each message: a rank of the coupler (to or from which it travels), its tag, its length in bytes.
+/// Header of a message: rank of the coupler (sender or receiver), tag and length in bytes.
 struct Frame {
   std::int32_t rank = 0, tag = 0;
   std::int64_t size = 0;
 };
-/// Frames without a rank: the participant leaves in good order; it ends, and the message says why.
+/// Tags of frames without a rank: the participant leaves regularly, or it ends with a reason in the message.
 constexpr std::int32_t leave_tag = 1, fail_tag = 2;
 constexpr std::int64_t longest_frame = std::int64_t(1) << 40;
 
@@ -25,7 +25,7 @@ struct ConnectionLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Owns the descriptor. All calls throw ConnectionLost when the other side is gone.
+/// Owns the descriptor. All calls throw ConnectionLost if the other side is gone.
 class Stream {
  public:
   Stream() = default;
@@ -41,12 +41,12 @@ class Stream {
   void write(const Frame& head, const void* data) {
     write(head, {{const_cast<void*>(data), std::size_t(head.size)}});
   }
-  /// Throws ConnectionLost for a length that cannot be, too.
+  /// Also throws ConnectionLost for an invalid length.
   Frame read_head();
   void read(void* data, std::size_t size);
-  /// Whether something has come within these seconds.
+  /// Returns true if data arrived within `seconds`.
   bool readable(double seconds) const;
-  /// At most `most` bytes up to a line's end, which is taken away; an empty string if there is none within `seconds`.
+  /// Reads a line of at most `most` bytes without its end. Empty if there is none within `seconds`.
   std::string read_line(std::size_t most, double seconds);
   void write_line(const std::string& text);
 
@@ -54,33 +54,33 @@ class Stream {
   int descriptor_ = -1;
 };
 
-/// Where a relay waits for its participant: a file that the relay writes, readable by its owner alone.
+/// Address of a relay for its participant, in a file that only its owner can read.
 struct Address {
   std::string participant, token;
   std::vector<std::string> places;  ///< by rank: "unix PATH" or "tcp HOST PORT"
   void write(const std::string& file) const;
-  /// Throws std::runtime_error naming the file and what is wrong.
+  /// Throws std::runtime_error with the file and its problem.
   static Address read(const std::string& file);
 };
 
-/// The line that a participant sends first.
+/// First line that a participant sends.
 struct Greeting {
   std::string token, participant;
   int rank = 0, size = 1;
   std::string line() const;
-  /// False if the text is no greeting of this version.
+  /// Returns false if the text is not a greeting of this version.
   static bool parse(const std::string& line, Greeting& result);
 };
 
-/// Room for a whole message on its way, as far as the system allows: both sides write without waiting for each other.
-/// Before connect() or listen().
+/// Enlarges the buffers for a whole message as far as the system allows, so that both sides can write without
+/// waiting. Call it before connect() or listen().
 void widen(int socket);
-/// Detects a network or a machine that is gone within 5 s (RFC 1122 4.2.3.6, RFC 5482); sends at once.
+/// Disables delayed sending and detects a lost network or machine within 5 s (RFC 1122 4.2.3.6, RFC 5482).
 void watch(int tcp_socket);
 
-/// Listens where `how` says: "unix" or "tcp:INTERFACE[:PORT]". `place`: what participants need to find it.
+/// Listens at `how`: "unix" or "tcp:INTERFACE[:PORT]". Sets `place`, the address for participants.
 int listen_at(const std::string& how, std::string& place, std::string& folder);
-/// Throws std::runtime_error.
+/// Connects to an address. Throws std::runtime_error.
 Stream connect_to(const std::string& place);
 
 }  // namespace couplet::wire

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Open MPI's transports within one machine, chosen as the programs of the job choose them: other choices of two
-// processes do not fit each other, and looking at all networks takes its time. The twin of
-// common/parallel/mpi_start.cpp: a client shares nothing with the rest, so change both (tests/coupling/client starts them
-// together).
+// Selects the same Open MPI transports on one machine as the programs of the job. Different choices are
+// incompatible, and probing all networks is slow. common/parallel/mpi_start.cpp does the same; a client
+// shares no code with the rest, so change both (tests/coupling/client starts them together).
 #include "transports.hpp"
 
 #include <cstdlib>
@@ -12,7 +11,8 @@
 namespace couplet::wire {
 namespace {
 
-/// Whether a line "pml = ...", "btl = ..." or "mtl = ..." of the user's parameters chooses (a "^" only leaves out).
+/// Returns true if a user parameter "pml = ...", "btl = ..." or "mtl = ..." selects transports ("^" only
+/// excludes).
 bool chooses(const std::string& file) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {

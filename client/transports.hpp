@@ -3,7 +3,7 @@
 
 namespace couplet::wire {
 
-/// Before MPI_Init: shared memory alone where all processes of the job sit on one machine and the user has not chosen.
+/// Selects shared memory for a job on one machine if the user made no choice. Call it before MPI_Init.
 void choose_transports();
 
 }  // namespace couplet::wire

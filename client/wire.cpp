@@ -7,7 +7,7 @@
 namespace couplet::wire {
 namespace {
 
-/// My entries [low, high) of n, of which coupler rank r of R has [n r / R, n (r + 1) / R).
+/// Splits own entries [low, high) of n by coupler rank: rank r of R has [n r / R, n (r + 1) / R).
 template <class Take>
 void for_overlaps(std::int64_t low, std::int64_t high, std::int64_t n, int ranks, Take take) {
   for (int r = 0; r < ranks; ++r) {
@@ -43,7 +43,7 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-/// The fields of one process at the roll call: each ends with 0x1f, all of them with 0x1e.
+/// Fields of one process at the roll call. Each ends with 0x1f, all of them with 0x1e.
 std::string introduction(const std::string& participant, const std::string& program, int application,
                          int rank) {
   std::string text;
@@ -121,7 +121,7 @@ std::vector<char> Surface::cut_out(const Peer& p) const {
 
 namespace {
 
-/// Stretches as one MPI datatype, taken from MPI_BOTTOM.
+/// Segments as one MPI datatype relative to MPI_BOTTOM.
 class Layout {
  public:
   explicit Layout(const std::vector<Stretch>& parts) {
@@ -252,7 +252,7 @@ Place join(const std::string& participant, const std::string& program) {
                                std::to_string(all[4 * r + 1]) + " of the protocol, this client version " +
                                std::to_string(version) +
                                ": use the client library and the programs of one version of Couplet.");
-  // 2. Guests have no part in the programs' own communicator.
+  // 2. Guests are not part of the programs' own communicator.
   MPI_Comm nobody;
   MPI_Comm_split(MPI_COMM_WORLD, MPI_UNDEFINED, rank, &nobody);
   // 3. Roll call.
@@ -263,7 +263,7 @@ Place join(const std::string& participant, const std::string& program) {
   std::int64_t problem = 0;
   MPI_Allreduce(MPI_IN_PLACE, &problem, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
   if (problem != 0) return place;
-  // 5. One communicator a participant, numbered by first appearance.
+  // 5. One communicator per participant, numbered by first appearance.
   std::vector<std::string> order;
   int color = 0, leader = 0;
   for (std::size_t r = 0; r < participants.size(); ++r) {
@@ -273,7 +273,7 @@ Place join(const std::string& participant, const std::string& program) {
     order.push_back(participants[r]);
   }
   MPI_Comm_split(MPI_COMM_WORLD, color, rank, &place.comm);
-  // 6. To the coupler.
+  // 6. Connection to the coupler.
   MPI_Intercomm_create(place.comm, 0, MPI_COMM_WORLD, leader, join_tag, &place.coupler);
   place.starts = true;
   return place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes and messages of docs/protocol.md; private to the client library.
+// Bytes and messages of docs/protocol.md, private to the client library.
 #pragma once
 
 #include <mpi.h>
@@ -32,7 +32,7 @@ struct Datum {
   int size(int dim) const { return components > 0 ? components : dim; }
 };
 
-/// A rank of the coupler and the part of this rank's places that it has.
+/// Rank of the coupler and its part of this rank's vertices and faces.
 struct Peer {
   int rank = 0;
   std::size_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;
@@ -44,7 +44,7 @@ struct Surface {
   int dim = 3;
   std::vector<double> xyz, centres, areas;
   std::vector<std::int64_t> first{0}, corners;
-  std::vector<int> surface;  // of each vertex; empty: all are of one
+  std::vector<int> surface;  // of each vertex; empty if there is only one
   std::size_t vertices() const { return xyz.size() / 3; }
   std::size_t faces() const { return centres.size() / 3; }
   std::vector<char> cut_out(const Peer& p) const;
@@ -90,17 +90,17 @@ struct Command {
   std::string folder;
   std::vector<std::string> data;
 };
-/// Throws std::runtime_error if the bytes are no command of this version.
+/// Parses a command. Throws std::runtime_error if the bytes are not a command of this version.
 Command unpack(const std::vector<char>& head);
 
-/// Handshake, roll call and connection, collective over the whole job.
+/// Result of handshake, roll call and connection. join() is collective over the whole job.
 struct Place {
   bool starts = false;
   MPI_Comm comm = MPI_COMM_NULL, coupler = MPI_COMM_NULL;
 };
 Place join(const std::string& participant, const std::string& program);
 
-/// Between two looks at what is awaited: the core belongs to the others.
+/// Yields the core between two polls.
 inline void pause(std::chrono::steady_clock::time_point since) {
   const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - since;
   if (waited < std::chrono::microseconds(80))
@@ -147,7 +147,7 @@ std::vector<T> receive(MPI_Comm peers, int from, int tag, MPI_Datatype type) {
   return values;
 }
 
-/// The next message of any sender and tag, if there is one.
+/// Receives the next message of any sender and tag, if there is one.
 bool receive_any(MPI_Comm peers, int& from, int& tag, std::vector<char>& bytes);
 
 inline void broadcast(MPI_Comm comm, void* data, std::size_t size) {

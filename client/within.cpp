@@ -36,14 +36,14 @@ std::string within_name(const std::string& datum, double share) {
 
 namespace {
 
-/// Of a name as within_name() makes it; 0 if it is none.
+/// Share in a name made by within_name(), or 0.
 double share_in(const std::string& name) {
   double share = 0;
   std::from_chars(name.data() + name.rfind('@') + 1, name.data() + name.size(), share);
   return share;
 }
 
-/// Shares and values of a datum within the step, ascending.
+/// Shares and values of a datum within the step, in ascending order.
 std::vector<std::pair<double, const double*>> within(const couplet_client& c, const std::string& datum) {
   std::vector<std::pair<double, const double*>> list;
   const std::string begins = datum + '@';
@@ -73,7 +73,7 @@ void couplet_write_within(couplet_client* c, const char* datum, double share, co
   const Datum* d = find(c->gives, datum);
   if (d == nullptr) end_the_job(std::string("'") + datum + "' was not announced by couplet_gives.");
   const std::string name = within_name(datum, share);
-  // As it is written: what rounds to an end is at that end.
+  // Checks the share as written, because it may be rounded to an end of the step.
   if (const double written = share_in(name); !(written > 0 && written < 1))
     end_the_job(std::string("'") + datum + "' was given at " + std::to_string(share) +
                 " of the step; values within it lie between 0 and 1.");

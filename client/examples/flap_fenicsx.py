@@ -12,7 +12,7 @@ from mpi4py import MPI
 name, along, across = sys.argv[1], *(int(n) for n in (sys.argv[2:4] or (80, 8)))
 rho, young, nu, half, height = 3000.0, 4e6, 0.3, 0.05, 1.0
 job = couplet.Client(name, "flap_fenicsx")
-petsc4py.init(comm=job.comm)  # before DOLFINx: otherwise PETSc takes all processes of the job and waits for them
+petsc4py.init(comm=job.comm)  # before DOLFINx; otherwise PETSc uses all processes of the job and waits for them
 from dolfinx import fem, mesh  # noqa: E402
 from dolfinx.fem.petsc import assemble_matrix  # noqa: E402
 from petsc4py import PETSc  # noqa: E402
@@ -26,7 +26,7 @@ root = fem.locate_dofs_geometrical(space, lambda x: np.isclose(x[1], 0))
 K, M = (assemble_matrix(fem.form(f * ufl.dx)) for f in (ufl.inner(stress, ufl.grad(w)), rho * ufl.inner(u, w)))
 K.assemble(), M.assemble()
 
-# The wet side: facets with their nodes (the ends, the middle); the ends are the vertices of the interface.
+# The wetted side: facets with their nodes (ends and middle). The ends are the vertices of the interface.
 wet = mesh.locate_entities_boundary(body, 1, lambda x: (abs(abs(x[0]) - half) < 1e-9) | (x[1] > height - 1e-9))
 at = space.tabulate_dof_coordinates()
 sides = []

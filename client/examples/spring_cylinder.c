@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A rigid cylinder on a spring, m y'' + c y' + k y = F_y (trapezoidal rule), as a participant of a job.
- * Usage: spring_cylinder_c PARTICIPANT MASS DAMPING STIFFNESS START   (a metre of depth; START: y at rest at t = 0) */
+/* Rigid cylinder on a spring, m y'' + c y' + k y = F_y (trapezoidal rule), as a participant of a job.
+ * Usage: spring_cylinder_c PARTICIPANT MASS DAMPING STIFFNESS START (per meter of depth; START is y at rest at t = 0) */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

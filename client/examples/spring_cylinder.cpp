@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rigid cylinder on a spring, m y'' + c y' + k y = F_y (trapezoidal rule), as a participant of a job.
-// Usage: spring_cylinder PARTICIPANT MASS DAMPING STIFFNESS START   (a metre of depth; START: y at rest at t
-// = 0)
+// Rigid cylinder on a spring, m y'' + c y' + k y = F_y (trapezoidal rule), as a participant of a job. Usage:
+// spring_cylinder PARTICIPANT MASS DAMPING STIFFNESS START (per meter of depth; START is y at rest at t = 0)
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -48,7 +47,7 @@ int main(int argc, char** argv) {
           const std::vector<double> f = job.read(part);
           for (std::size_t i = 1; i < f.size(); i += 2) force += f[i];
         }
-        // The displacement is measured from the mesh as it is: the spring pulls at y0 from the start.
+        // The displacement is relative to the initial mesh, so the spring acts with y0 from the start.
         const double dt = job.dt();
         next.v = ((m / dt - c / 2) * now.v - k * (now.y + y0 + dt / 4 * now.v) + force) /
                  (m / dt + c / 2 + k * dt / 4);

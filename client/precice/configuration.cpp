@@ -29,7 +29,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-/// A datum from where it is written to where it is read.
+/// Datum on its way from the writing to the reading participant.
 struct Connection {
   std::string data, giver, from, taker, to;
   bool conservative = false, initialised = false, implicit = false, taker_is_early = false, sub_steps = true;
@@ -63,7 +63,7 @@ class Reader {
   }
 
  private:
-  /// Of the interpolation in time.
+  /// Degree of the interpolation in time.
   int degree(const Element& datum) const {
     const std::string word = datum.attribute("waveform-degree");
     if (word.empty()) return 1;
@@ -108,7 +108,7 @@ class Reader {
     }
   }
 
-  /// Somebody carries values consistently from it or conservatively to it by projection.
+  /// Returns true if a projection maps values consistently from this mesh or conservatively to it.
   bool projected(const std::string& mesh) const {
     for (const Element* p : root_.all("participant"))
       for (const Element* m : p->all("mapping:nearest-projection"))
@@ -157,7 +157,7 @@ class Reader {
     }
   }
 
-  /// Meshes of `who` on which it writes (reads) what is exchanged on `mesh`, each with whether the way is conservative.
+  /// Meshes of `who` on which it writes (reads) a datum exchanged on `mesh`; true if mapped conservatively.
   std::map<std::string, bool> ends(const Element& who, const std::string& datum, const std::string& mesh,
                                    bool writes) const {
     std::map<std::string, bool> reached, found;
@@ -265,7 +265,7 @@ bool Configuration::writes_initial_data() const {
   return std::any_of(wires.begin(), wires.end(), [](const Wire& w) { return w.given && w.initialised; });
 }
 
-/// The XML that a case was made of stands in its first lines, relative to it.
+/// Finds the XML of an imported case, whose first lines contain its relative path.
 static std::string configuration_of_case(const std::string& file) {
   const std::string mark = "# precice-config: ";
   std::ifstream in(file);

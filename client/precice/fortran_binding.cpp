@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// preCICE's interface for Fortran: each argument by its address, lengths of texts as hidden ones at the end, blanks at
-// the end of texts left out. Over the C interface.
+// preCICE's Fortran interface on top of the C interface. Each argument is an address, lengths of texts are
+// hidden arguments at the end, and trailing blanks of texts are ignored.
 #include <algorithm>
 #include <cstring>
 #include <string>
@@ -80,7 +80,7 @@ void precicef_set_mesh_tetrahedra_(const char* mesh, const int* size, const int*
   precicec_setMeshTetrahedra(trimmed(mesh, n).c_str(), *size, ids);
 }
 
-// The same under the names of preCICE's later releases.
+// Aliases with the names of preCICE's later releases.
 void precicef_set_mesh_vertex_(const char* mesh, const double* position, int* id, int n) {
   precicef_set_vertex_(mesh, position, id, n);
 }

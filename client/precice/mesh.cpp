@@ -20,7 +20,7 @@ std::array<double, 3> Mesh::area(std::size_t face) const {
   const auto point = [&](std::size_t k) { return &xyz[3 * std::size_t(corners[k])]; };
   if (corners.size() == 2) return {point(1)[1] - point(0)[1], point(0)[0] - point(1)[0], 0};
   std::array<double, 3> sum{};
-  for (std::size_t k = 1; k + 1 < corners.size(); ++k) {  // a fan of triangles
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) {  // fan of triangles
     double a[3], b[3];
     for (int d = 0; d < 3; ++d) a[d] = point(k)[d] - point(0)[d], b[d] = point(k + 1)[d] - point(0)[d];
     sum[0] += (a[1] * b[2] - a[2] * b[1]) / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one participant of a process, for the languages without classes.
+// Single participant of a process, for languages without classes.
 #pragma once
 
 #include <utility>
@@ -8,14 +8,14 @@
 
 namespace couplet::dropin {
 
-/// Throws precice::Error before it is created.
+/// Throws precice::Error before the participant is created.
 ::precice::Participant& only_participant();
 void create_only_participant(::precice::string_view name, ::precice::string_view file, int rank, int size,
                              void* communicator);
-/// What a caller without exceptions gets: the end of the job, unless errors are kept.
+/// Reports an error to a caller without exceptions: ends the job, unless errors are kept.
 void told(const std::string& error);
 
-/// Calls, and turns an error into its text.
+/// Calls a function and converts an exception to its text.
 template <class Call>
 auto guarded(Call call) -> decltype(call()) {
   told("");
@@ -27,7 +27,7 @@ auto guarded(Call call) -> decltype(call()) {
   }
 }
 
-/// A call of the participant; nothing if an error is kept.
+/// Calls the participant. Does nothing if an error is kept.
 template <class Call>
 auto with_participant(Call call) {
   return guarded([&] { return call(only_participant()); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The calls of precice::Participant: each checks what it is given, with the sentence that names it.
+// Calls of precice::Participant. Each checks its arguments and reports errors by its name.
 #include <cmath>
 
 #include "checks.hpp"
@@ -163,7 +163,7 @@ void Participant::readData(string_view mesh, string_view data, span<const Vertex
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0;
     return;
   }
-  bool one = true;  // the first takes the place of what was there
+  bool one = true;  // the first one replaces the previous values
   for (const auto& [weight, from] : s.at_time(*sample, s.at + time)) {
     for (std::size_t i = 0; i < ids.size(); ++i)
       for (std::size_t k = 0; k < n; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The calls of precice::Participant about meshes, and those that are refused.
+// Calls of precice::Participant about meshes, and unsupported ones.
 #include "checks.hpp"
 
 namespace precice {
@@ -8,7 +8,7 @@ using namespace couplet::dropin;
 
 namespace {
 
-/// Elements of `n` vertices each.
+/// Adds elements of `n` vertices each.
 template <class Add>
 void elements(Session& s, string_view name, const char* call, span<const VertexID> ids, std::size_t n,
               Add add) {
@@ -25,12 +25,12 @@ void elements(Session& s, string_view name, const char* call, span<const VertexI
 
 void add_face(Mesh& mesh, span<const VertexID> ids) { mesh.faces.emplace_back(ids.begin(), ids.end()); }
 
-/// Lines are faces of a surface in two dimensions; in three they bound nothing that values are carried by.
+/// Adds a line, which is a face of the surface in 2-D. In 3-D it is ignored.
 void add_edge(Mesh& mesh, span<const VertexID> ids) {
   if (mesh.dimensions == 2) add_face(mesh, ids);
 }
 
-/// Areas in two dimensions and volumes have no part in the surface: their values are carried by their vertices.
+/// Adds a face in 3-D. Areas in 2-D and volumes are ignored; values are mapped by their vertices.
 void add_surface(Mesh& mesh, span<const VertexID> ids) {
   if (mesh.dimensions == 3) add_face(mesh, ids);
 }

@@ -101,12 +101,12 @@ const Sample* Session::sample(const Configuration::Data& d) const {
   return nullptr;
 }
 
-/// Whether sums are kept is the unit's affair on the way: an amount is a force or a heat.
+/// Unit of a datum for the mapping. Only sums of forces and heats are conserved.
 static const char* unit_of(const Configuration::Wire& w, const Configuration::Data& d) {
   return !w.conservative ? "1" : d.vector ? "N" : "W";
 }
 
-/// All meshes one after the other as one surface.
+/// Describes all meshes, concatenated, as one surface.
 void Session::describe() {
   std::vector<double> xyz, centres, areas;
   std::vector<std::int64_t> first{0}, corners;
@@ -152,7 +152,7 @@ std::vector<double> Session::surface_of(std::size_t datum, const std::vector<dou
   return surface;
 }
 
-/// What was written, zero where nothing was; `initial`: before the first step, only what the configuration asks for.
+/// Sends written values, or zeros. With `initial` (before the first step), only initialized ones.
 void Session::hand_over(bool initial) {
   for (const Configuration::Wire& w : configuration.wires) {
     if (!w.given) continue;
@@ -221,7 +221,7 @@ bool Session::wait_for_window(bool& accepted) {
             "The participant \"" + configuration.participant +
             "\" cannot continue from a checkpoint: a program on preCICE's interface has no file of its state.");
       default:
-        break;  // a step begins; outputs and checkpoints are the program's own affair
+        break;  // a step begins; the program handles outputs and checkpoints by itself
     }
 }
 
@@ -236,7 +236,7 @@ void Session::take(bool new_window) {
       std::fill(s.end.begin(), s.end.end(), 0.);
     else
       std::copy_n(values, s.end.size(), s.end.begin());
-    // What is iterated on is guessed, in the first pass, by its value at the start of the window.
+    // In the first pass, iterated data are extrapolated as constant from the start of the window.
     const bool constant = wire.held || (wire.iterated && new_window);
     if (constant) s.start = s.end;
     if (wire.within) take_within(wire, s, constant);

@@ -14,24 +14,24 @@
 
 namespace couplet::dropin {
 
-/// Ends the whole job with a sentence.
+/// Ends the whole job with a message.
 [[noreturn]] void end_the_job(const std::string& text);
-/// The client of this participant, which takes part in the start of the job on the first call.
+/// Client of this participant. The first call takes part in the start of the job.
 couplet_client* joined(const std::string& participant, const MPI_Comm* processes);
 
-/// What comes over one wire, at the start of the time window, at its end, and in between where the giver takes sub-steps;
-/// the whole surface's values.
+/// Values of one wire over the whole surface, at the start and end of the time window and at the giver's
+/// sub-steps.
 struct Sample {
   std::vector<double> start, end;
-  std::vector<const double*> within;  ///< the client's
-  std::vector<double> shares;         ///< of the window, of start, within and end
-  std::optional<Waveform> waveform;   ///< through the shares
+  std::vector<const double*> within;  ///< owned by the client
+  std::vector<double> shares;         ///< of the window, at start, within and end
+  std::optional<Waveform> waveform;   ///< through all shares
 };
 
-/// A value in time: the sum of weights times values.
+/// Value in time as a sum of weights times values.
 using Blend = std::vector<std::pair<double, const double*>>;
 
-/// A participant between its construction and its end: the windows of its job as the coupler's client sees them.
+/// Participant between construction and end. Maps its time windows to events of the Couplet client.
 class Session {
  public:
   Session(Configuration configuration, int rank, int size, void* communicator);
@@ -40,23 +40,23 @@ class Session {
 
   /// Describes the surface and waits for the first window.
   void begin();
-  /// Goes on by dt; at the end of a window hands over what was written and waits for what comes next.
+  /// Advances by dt. At the end of a window sends the written data and waits for the next event.
   void go_on(double dt);
   void leave();
 
   Mesh* mesh(const std::string& name);
   double remaining() const { return ongoing ? window - at : 0; }
   std::size_t components(const Configuration::Data& d) const;
-  /// Values of what is read on a mesh; null: nobody gives it.
+  /// Values of a read datum on a mesh. nullptr if no participant gives it.
   const Sample* sample(const Configuration::Data& d) const;
-  /// The value at a time within the window, from its start [s]; ends are taken as they came.
+  /// Interpolates at a time since the start of the window [s]. Ends are returned unchanged.
   Blend at_time(const Sample& s, double reached) const;
   std::size_t first_vertex(const std::string& mesh) const;
 
   Configuration configuration;
   couplet_client* job = nullptr;
   std::vector<Mesh> meshes;                  ///< provided
-  std::vector<std::vector<double>> written;  ///< by datum: on its mesh
+  std::vector<std::vector<double>> written;  ///< by datum, on its mesh
   mutable std::string last_error;
   bool initialised = false, finalised = false, ongoing = false, window_complete = false;
   bool initial_data_due = false, writing_due = false, reading_due = false;
@@ -64,19 +64,19 @@ class Session {
 
  private:
   void describe();
-  /// Answers all that is not the program's affair; false: the job is over. `accepted`: a new window has begun.
+  /// Handles other events of the job. Returns false if it is over. Sets `accepted` if a new window begins.
   bool wait_for_window(bool& accepted);
   void take(bool new_window);
   void hand_over(bool initial);
-  /// What a datum's whole surface has of what was written.
+  /// Expands written values of a datum to its whole surface.
   std::vector<double> surface_of(std::size_t datum, const std::vector<double>& values) const;
-  /// Keeps what was written at a sub-step of the window.
+  /// Keeps the values written at a sub-step of the window.
   void keep_sub_step();
   void take_within(const Configuration::Wire& wire, Sample& s, bool constant);
 
   std::vector<Sample> samples_;  // by wire
-  std::vector<std::pair<double, std::vector<std::vector<double>>>>
-      sub_steps_;  // share of the window; as `written`
+  // Share of the window; as `written`.
+  std::vector<std::pair<double, std::vector<std::vector<double>>>> sub_steps_;
 };
 
 }  // namespace couplet::dropin

@@ -21,7 +21,7 @@ Waveform::Waveform(std::vector<double> times, int degree)
   factor();
 }
 
-// The recurrence of Cox and de Boor over the knots around t.
+// Recurrence of Cox and de Boor over the knots around t.
 std::size_t Waveform::splines(double t, std::vector<double>& values) const {
   const auto p = std::size_t(degree_);
   std::size_t span = p;  // knots_[span] <= t < knots_[span + 1], the last one closed
@@ -41,7 +41,7 @@ std::size_t Waveform::splines(double t, std::vector<double>& values) const {
   return span - p;
 }
 
-/// L U without exchanges of rows: the matrix is totally positive (de Boor, ch. XIII).
+/// LU factorization without pivoting, because the matrix is totally positive (de Boor, ch. XIII).
 void Waveform::factor() {
   const std::size_t p = std::size_t(degree_), n = times_.size();
   band_.assign(n * (2 * p + 1), 0);
@@ -67,7 +67,7 @@ std::vector<double> Waveform::weights(double t) const {
       w[i] = 1;
       return w;
     }
-  // Values at the times are A c for coefficients c, so the weights solve A^T w = splines at t.
+  // Values at the times are A c with coefficients c, so the weights solve A^T w = splines at t.
   const auto p = std::size_t(degree_);
   std::vector<double> values;
   const std::size_t first = splines(t, values);

@@ -5,20 +5,20 @@
 
 namespace couplet::dropin {
 
-/// Interpolation in time within a window: the spline of a degree through values at given times, whose knots are averages
-/// of these times (C. de Boor, A Practical Guide to Splines, 1978, ch. XIII). Polynomials up to the degree are
-/// reproduced; degree 1 is the line from time to time, degree 0 the value at the next time.
+/// Spline interpolation in time within a window. Knots are averages of the given times (C. de Boor, A
+/// Practical Guide to Splines, 1978, ch. XIII). Polynomials up to the degree are reproduced. Degree 1 is
+/// piecewise linear, degree 0 takes the value at the next time.
 class Waveform {
  public:
-  /// `times`: two or more, ascending. A degree that they are too few for is lowered.
+  /// `times` has at least two ascending entries. The degree is lowered if they are too few.
   Waveform(std::vector<double> times, int degree);
 
-  /// Weights of the values at the times for the value at t within them; at one of the times 1 and zeros.
+  /// Weights of the values at the times for the value at t. At one of the times they are 1 and zeros.
   std::vector<double> weights(double t) const;
   int degree() const { return degree_; }
 
  private:
-  /// The first of the degree + 1 splines that differ from zero at t, and their values.
+  /// Values of the degree + 1 splines that are nonzero at t. Returns the first one's index.
   std::size_t splines(double t, std::vector<double>& values) const;
   void factor();
   double& entry(std::size_t row, std::size_t column) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// As much of XML as configurations use: elements, attributes, comments; no entities of their own.
+// Subset of XML used by configurations: elements, attributes and comments, but no custom entities.
 #include "xml.hpp"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class Parser {
   void blanks() {
     while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
   }
-  /// Past texts, comments, declarations.
+  /// Skips texts, comments and declarations.
   void skip_to_element() {
     for (;;) {
       at_ = std::min(text_.find('<', at_), text_.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in the job for a participant that is launched separately: passes on messages between the coupler (MPI) and that
-// program (a socket), unread. docs/protocol.md, "Launched separately".
+// Represents a separately launched participant in the job. Forwards messages between the coupler (MPI) and
+// that program (a socket) without reading them (docs/protocol.md, "Launched separately").
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/random.h>
@@ -27,7 +27,7 @@ struct Options {
 };
 
 std::string name = "relay";               // for messages
-std::string socket_folder, address_file;  // to be taken away
+std::string socket_folder, address_file;  // removed at the end
 
 void tidy() {
   if (!socket_folder.empty()) {
@@ -109,7 +109,7 @@ std::string new_token() {
   return text;
 }
 
-/// In a time that does not tell how much of it is right.
+/// Compares in a time that does not reveal how much of the token is correct.
 bool same(const std::string& a, const std::string& b) {
   unsigned char different = a.size() != b.size();
   for (std::size_t i = 0; i < b.size(); ++i)
@@ -117,7 +117,7 @@ bool same(const std::string& a, const std::string& b) {
   return !different;
 }
 
-/// Why this greeting is refused; empty: it is not.
+/// Reason why a greeting is rejected, or empty.
 std::string refusal(const std::string& line, const Address& address, int rank) {
   Greeting g;
   if (!Greeting::parse(line, g))
@@ -129,7 +129,7 @@ std::string refusal(const std::string& line, const Address& address, int rank) {
   return "";
 }
 
-/// The connection of the participant; strangers are refused and waited past. Keeps the coupler's messages waiting.
+/// Accepts the connection of the participant and rejects others. The coupler's messages wait meanwhile.
 Stream accept_participant(int listener, const Address& address, int rank, int coupler_ranks, double wait) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(wait);
   for (;;) {
@@ -149,12 +149,12 @@ Stream accept_participant(int listener, const Address& address, int rank, int co
       }
       std::fprintf(stderr, "relay of '%s': a connection was refused: %s\n", name.c_str(), why.c_str());
       stream.write_line(why);
-    } catch (const ConnectionLost&) {  // a stranger who did not wait for the answer
+    } catch (const ConnectionLost&) {  // it did not wait for the answer
     }
   }
 }
 
-/// Writes the file once all ranks listen. Collective.
+/// Writes the file when all ranks listen. Collective.
 Address publish(const Options& o, const std::string& place, MPI_Comm comm, int rank, int size) {
   Address address;
   address.participant = o.participant;
@@ -175,7 +175,7 @@ Address publish(const Options& o, const std::string& place, MPI_Comm comm, int r
   return address;
 }
 
-/// One message from the coupler to the participant, if there is one.
+/// Forwards one message from the coupler to the participant, if there is one.
 bool pass_down(MPI_Comm coupler, Stream& stream, std::vector<char>& buffer) {
   Frame head;
   if (!receive_any(coupler, head.rank, head.tag, buffer)) return false;
@@ -184,7 +184,7 @@ bool pass_down(MPI_Comm coupler, Stream& stream, std::vector<char>& buffer) {
   return true;
 }
 
-/// One message from the participant to the coupler; false: it has left.
+/// Forwards one message from the participant to the coupler. Returns false if the participant has left.
 bool pass_up(MPI_Comm coupler, Stream& stream, std::vector<char>& buffer, int coupler_ranks) {
   const Frame head = stream.read_head();
   if (head.tag == leave_tag) return false;
@@ -202,7 +202,7 @@ void pass_on(MPI_Comm coupler, Stream& stream, int coupler_ranks) {
   std::vector<char> buffer;
   for (auto since = std::chrono::steady_clock::now();;) {
     bool busy = pass_down(coupler, stream, buffer);
-    // Waiting for both at once: on the socket, for the pauses of a client that waits for MPI.
+    // Waits for both at once: on the socket, for the polling interval of a client that waits for MPI.
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - since;
     const double nap = busy || waited.count() < 8e-5 ? 0 : std::min(waited.count() / 16, 2.5e-4);
     if (stream.readable(nap)) {
@@ -232,7 +232,7 @@ int relay(const Options& o) {
   Stream stream = accept_participant(listener, address, rank, coupler_ranks, o.wait);
   ::close(listener);
   MPI_Request all;
-  MPI_Ibarrier(place.comm, &all);  // the file is there until everybody has come
+  MPI_Ibarrier(place.comm, &all);  // the file exists until all participants are connected
   wait(all);
   tidy();
   pass_on(place.coupler, stream, coupler_ranks);

@@ -54,16 +54,16 @@ Attendant introduce(const CommandLine& command_line, const Program& program, con
   return self;
 }
 
-/// Two jobs in one folder would spoil each other's files. The lock ends with the process, whatever becomes of
-/// it.
+/// Locks the output folder, since two jobs in one would corrupt each other's files. The lock ends with the
+/// process.
 bool lock(const std::filesystem::path& name) {
   const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  // File systems without locks: no protection, but no refusal either.
+  // On file systems without locks there is no protection, but no refusal either.
   return file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
-/// The checkpoint to continue from, and what has changed in the case since. `is_driver`: the program that makes the
-/// steps, which compares for all.
+/// Finds the checkpoint to continue from and the changes of the case since. `is_driver` is true for the
+/// program that drives the steps, which compares for all.
 void find_restart(Job& job, const CommandLine& command_line, bool is_driver) {
   job.restart_folder = find_checkpoint(command_line.restart_folder, is_driver && job.rank == 0);
   job.restart_time = read_run_state(job.restart_folder).time;
@@ -77,7 +77,7 @@ void find_restart(Job& job, const CommandLine& command_line, bool is_driver) {
         command_line.restart_folder.string(), job.restart_time, end);
 }
 
-/// Folders, log and the checkpoint to continue from. Collective over job.comm.
+/// Prepares folders, log and restart. Collective over job.comm.
 void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
   job.case_folder = command_line.case_file.parent_path();
   const std::filesystem::path output = job.case_folder / job.simulation.output_folder;
@@ -111,21 +111,21 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
 /// Ends all programs of the job.
 [[noreturn]] void leave(int code) {
   std::fflush(nullptr);
-  // MPI_Abort would add a page of its own to the sentence. Open MPI's launcher ends a job as well when one of its
-  // processes leaves with such a code, and a process alone has nobody to end.
+  // MPI_Abort would print a page of its own. Open MPI's launcher also ends a job if a process exits with such
+  // a code, and a single process has no others to end.
   if (parallel::has_open_mpi_launcher() || parallel::comm_size(MPI_COMM_WORLD) == 1) ::_exit(code);
   MPI_Abort(MPI_COMM_WORLD, code);
   std::abort();
 }
 
-/// Reports what was thrown, once a participant, and ends all programs of the job.
+/// Reports an exception once per participant and ends all programs of the job.
 [[noreturn]] void end_the_job(Watch& watch, const char* what, bool configuring) {
   if (watch.claim_report()) log::error("{}", what);
   watch.ending();
   leave(configuring ? exit_configuration : exit_failed);
 }
 
-/// The handshake; what is wrong with it is said once and ends the job. Nobody watches yet.
+/// Performs the handshake. A failure is reported once and ends the job, since no watch exists yet.
 MPI_Comm join_the_job() {
   try {
     return shake_hands(MPI_COMM_WORLD);
@@ -136,7 +136,7 @@ MPI_Comm join_the_job() {
   }
 }
 
-/// The first process that has read the case (a guest may not have) speaks for all.
+/// Rank of the first process that has read the case (a guest may not have), which reports for all.
 int speaker(const std::vector<Attendant>& attendants) {
   for (const Attendant& a : attendants)
     if (a.case_hash != 0) return a.world_rank;
@@ -152,7 +152,7 @@ std::string ids_of(base::Severity least, bool with_neglected) {
   return base::join(ids);
 }
 
-/// Of a run that has reached its end.
+/// Exit code of a completed run.
 int code_of_findings(const Job& job, CommandLine::Strict strict) {
   using enum CommandLine::Strict;
   if (const int n = diagnostics::count(base::Severity::wrong, true); n > 0) {
@@ -171,15 +171,15 @@ int code_of_findings(const Job& job, CommandLine::Strict strict) {
   return exit_failed;
 }
 
-/// The exit code of all programs where the findings of one decide: 4 where none of them has failed or was stopped.
+/// Exit code that all programs share: 4 if a finding requires it and no program failed or was stopped.
 int agreed(const std::array<int, 2>& worst, int code) {
   const auto [failed, found_wrong] = worst;
   return code == 0 && !failed && found_wrong ? exit_wrong : code;
 }
 
-/// MPI_Finalize once all programs of the job have come so far. A process that dies while others wait inside
-/// MPI_Finalize can leave Open MPI's launcher (4.1 with PMIx 4.2) in a lock of its own for ever, after all
-/// processes of the job have ended; one that dies while they wait here cannot. Gives the exit code that the findings of all programs ask for.
+/// Calls MPI_Finalize after all programs of the job have arrived. If a process dies while others wait in
+/// MPI_Finalize, Open MPI's launcher (4.1 with PMIx 4.2) may deadlock forever; while they wait here it does
+/// not. Returns the exit code required by the findings of all programs.
 int leave_together(MPI_Comm programs, int code) {
   std::array<int, 2> worst{code != 0 && code != exit_wrong, code == exit_wrong};
   MPI_Request all_here;
@@ -213,7 +213,7 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
     if (!verdict.problem.empty()) {
       if (world_rank == speaker(attendants)) fmt::print(stderr, "couplet: {}\n", verdict.problem);
       all_agree_to_start(MPI_COMM_WORLD, true);
-      watch.ending();  // the launcher ends the others as soon as one has left with this code
+      watch.ending();  // the launcher ends the others after the first exit with this code
       return exit_configuration;
     }
     if (!all_agree_to_start(MPI_COMM_WORLD, false)) {
@@ -274,7 +274,7 @@ int run_job(int argc, char** argv, const Program& program, const std::function<i
   const CommandLine& command_line = parsed.command_line;
   if (command_line.task != CommandLine::Task::run) return answer(command_line, program);
 
-  // Read where the geometry is meshed, far from here.
+  // Read by the mesh generation (gmsh) through the environment.
   if (command_line.allow_commands) ::setenv("COUPLET_ALLOW_COMMANDS", "1", 1);
   parallel::prepare_mpi_start();
   const CaseFile file = read_case(command_line, program);
@@ -283,7 +283,7 @@ int run_job(int argc, char** argv, const Program& program, const std::function<i
   const double patience = file.simulation.hang_timeout > 0 ? std::max(file.simulation.hang_timeout, 4.0) : 0;
   std::optional<StartGuard> start_guard(std::in_place, patience, label);
   MPI_Init(&argc, &argv);
-  // Short sleeps while waiting for other programs shall be short (Linux adds 50 us to each by default).
+  // Reduces the timer slack, because Linux adds 50 us to each short sleep by default.
   prctl(PR_SET_TIMERSLACK, 2000UL);
   const MPI_Comm programs = join_the_job();
   const int code = attend(command_line, program, file, label, programs, start_guard, run);

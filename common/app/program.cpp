@@ -18,13 +18,13 @@ coupling::Scheme scheme_of(const Job& job) {
   if (job.alone) return coupling::Scheme::standalone;
   const bool moves_alone = !config::text_of(*job.document, "coupling.structure.participant") &&
                            config::texts_of(*job.document, "coupling.exchange.participants").empty();
-  if (moves_alone) return coupling::Scheme::explicit_;  // a fluid and its mesh: there is nothing to iterate
+  if (moves_alone) return coupling::Scheme::explicit_;  // only a fluid and its mesh: no iteration is needed
   const std::string word = config::text_of(*job.document, "coupling.scheme").value_or("auto");
   if (word == "explicit") return coupling::Scheme::explicit_;
   return word == "implicit" ? coupling::Scheme::implicit : coupling::Scheme::semi_implicit;
 }
 
-/// The rank-to-rank link between fluid and mesh mover, if this participant is one of them.
+/// Rank-to-rank link between fluid and mesh mover, if this participant is one of them.
 MPI_Comm connect_mesh_peer(const Job& job) {
   const auto fluid = config::text_of(*job.document, "coupling.fluid.participant");
   const auto mover = config::text_of(*job.document, "coupling.mesh.participant");
@@ -34,7 +34,7 @@ MPI_Comm connect_mesh_peer(const Job& job) {
   return MPI_COMM_NULL;
 }
 
-/// What is in force, defaults included, beside the results.
+/// Writes the effective parameters, defaults included, beside the results.
 void write_effective(const Job& job, const Program& program) {
   if (job.rank != 0) return;
   std::ofstream file(base::own_file(job.output_folder / "effective.yaml"));

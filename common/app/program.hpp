@@ -18,57 +18,56 @@
 
 namespace couplet::app {
 
-/// What a program gets to build its participant from, after configuration was validated and MPI set up.
+/// Data for building a participant, after the configuration was validated and MPI set up.
 struct ParticipantContext {
   MPI_Comm comm = MPI_COMM_SELF;        ///< the ranks of this participant
   std::string name;                     ///< its key under `participants:`
-  std::filesystem::path case_folder;    ///< folder of the YAML: relative paths start here
-  std::filesystem::path output_folder;  ///< <output>/<name>, made already
+  std::filesystem::path case_folder;    ///< folder of the YAML; relative paths refer to it
+  std::filesystem::path output_folder;  ///< <output>/<name>, exists
   SimulationParameters simulation;
-  bool coupled = false;  ///< false: standalone run
+  bool coupled = false;  ///< false in a standalone run
   coupling::Scheme scheme = coupling::Scheme::standalone;
-  /// Intercommunicator to the mesh mover (for a fluid) or to the fluid (for a mover); MPI_COMM_NULL without
-  /// one.
+  /// Intercommunicator to the mesh mover (for a fluid) or to the fluid (for a mover), or MPI_COMM_NULL.
   MPI_Comm mesh_peer = MPI_COMM_NULL;
-  double restart_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN: fresh start
+  double restart_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN for a fresh start
 };
 
-/// A fault of the file that a key of a participant names.
+/// Problem with a file that a participant's key names.
 struct ProblemOfKey {
   std::string key;   ///< path below the participant: "ambient.file"
-  std::string what;  ///< a sentence, with file:line where it can be said
+  std::string what;  ///< a sentence, with file:line if available
 };
 
-/// One program = its name, the declaration of its parameters, and how to make its participant from them.
+/// Program: its name, the declaration of its parameters and a factory of its participant.
 struct Program {
   std::string name;         ///< "solid_solver"
   std::string description;  ///< one line for --help
-  /// Declares the parameters of `participants.<name>`; called for checking, documentation and reading.
+  /// Declares the parameters of `participants.<name>`. Called for checking, documentation and reading.
   config::Section::Declare declare;
-  /// Called once after reading; the parameters are those that `declare` filled.
+  /// Creates the participant. Called once after reading with the parameters that `declare` filled.
   std::function<std::unique_ptr<coupling::Participant>(const ParticipantContext&)> make = {};
-  /// Adds the diagnostics of the participant, once that is initialised; empty: it has none.
+  /// Adds the diagnostics of an initialized participant. Empty if there are none.
   std::function<void(coupling::Participant&, diagnostics::Diagnostics&)> diagnose = {};
-  /// What the program's libraries need from before the participant is made until after it is gone (petsc_environment());
-  /// empty: nothing. A program without one links no PETSc, whose libraries take 60 ms to load.
+  /// Holds libraries while the participant exists (petsc_environment()), or is empty. Programs without it do
+  /// not link PETSc, which takes 60 ms to load.
   std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};
-  /// What the program can simulate, looked at with the parameters that `declare` filled; empty: not told.
+  /// Lists the effects for the parameters that `declare` filled. Empty if not available.
   std::function<std::vector<diagnostics::Effect>(const diagnostics::CaseScene&)> effects = {};
-  /// What `simulation.effects: auto` decides where the YAML leaves it open; empty: nothing.
+  /// Makes the decisions of `simulation.effects: auto` that the YAML leaves open. Empty if there are none.
   std::function<std::vector<diagnostics::EffectChoice>(const diagnostics::CaseScene&)> choose = {};
-  /// Memory and time of a step to be expected, for --explain; empty: not told.
+  /// Estimates memory and time per step for --explain. Empty if not available.
   std::function<diagnostics::ExpectedCost(const diagnostics::CaseScene&)> expected = {};
-  /// For --check: what is wrong with the files that the parameters name; empty: nothing but what every program's
-  /// --check sees.
+  /// Finds problems of the files that the parameters name, for --check. If empty, only the general checks are
+  /// done.
   std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
-  /// Reads `coupling` instead of a participant's section, and makes no participant.
+  /// Reads `coupling` instead of a participant's section and creates no participant.
   bool is_coupler = false;
 };
 
-/// main() of a physics program:
+/// Entry point of a physics program, which runs alone or as part of a coupled job:
 ///   prog case.yaml [--participant NAME] [--check] [--docs] [--schema] [--print-config] [--set a.b=v]
 ///   [--restart FOLDER] [-v|-q]
-/// Runs alone (one program in the MPI job) or as part of a coupled job. Returns the exit code.
+/// Returns the exit code.
 int run_program(int argc, char** argv, const Program& program);
 
 }  // namespace couplet::app

@@ -51,7 +51,7 @@ Phase phase_of(coupling::Op op) {
   return Phase::waiting;
 }
 
-/// What each command does to the watch over the job and to the timers.
+/// Updates the watch over the job and the timers for each command.
 class Bookkeeping {
  public:
   Bookkeeping(const Job& job, RunReport& report) : job_(job), report_(report) {}
@@ -80,7 +80,7 @@ class Bookkeeping {
   double processor_since_ = 0;
 };
 
-/// A participant with its diagnostics: they see each step that it accepts, and their memory is saved with its state.
+/// Participant with its diagnostics, which observe each accepted step and save their memory with its state.
 class Observed final : public coupling::Participant {
  public:
   Observed(coupling::Participant& inner, diagnostics::Diagnostics& diagnostics, const Diagnose& diagnose)
@@ -122,14 +122,14 @@ class Observed final : public coupling::Participant {
   coupling::Participant& inner_;
   diagnostics::Diagnostics& diagnostics_;
   const Diagnose& diagnose_;
-  double end_ = 0;  // of the step under way [s]
+  double end_ = 0;  // of the current step [s]
 };
 
-/// How a run is told of at its end.
+/// Options of the closing report of a run.
 struct Closing {
-  bool is_alone = true;  ///< the whole job's error is this program's; else the coupler says what dominates
-  bool has_failed =
-      false;  ///< what it left out then counts only where it was not sound, and nothing says what its answer errs by
+  bool is_alone = true;  ///< the error of the job is that of this program; else the coupler reports it
+  /// The run failed. Neglected effects then count only if they were not sound, and no error is estimated.
+  bool has_failed = false;
 };
 
 void closing_words(const Job& job, coupling::Participant& participant, diagnostics::Diagnostics& diagnostics,
@@ -157,7 +157,7 @@ void closing_words(const Job& job, coupling::Participant& participant, diagnosti
             all);
 }
 
-/// Commands to the participant from its own loop, with the same bookkeeping as in a coupled run.
+/// Sends commands from the participant's own loop, with the bookkeeping of a coupled run.
 class OwnCommands {
  public:
   OwnCommands(const Job& job, coupling::Participant& participant, RunReport& run)
@@ -188,13 +188,13 @@ class OwnCommands {
     advised_dt_ = std::numeric_limits<double>::infinity();
     must({coupling::Op::accept_step, {}, {}, time, output, ""});
   }
-  /// A command that is no step: its failure is the end.
+  /// Executes a command other than a step. Its failure ends the run.
   void must(const coupling::Command& command) {
     const coupling::Reply reply = (*this)(command);
     if (reply.status != coupling::Reply::Status::ok) throw SolveFailure(reply.text);
   }
   double advised_dt() const { return advised_dt_; }
-  /// Of the last accepted step.
+  /// Report on the last accepted step.
   const coupling::StepReport& report() const { return report_; }
 
  private:
@@ -207,7 +207,7 @@ class OwnCommands {
   double advised_dt_ = std::numeric_limits<double>::infinity();
 };
 
-/// A line twice a second at most, and at the end.
+/// Prints a line at most twice per second, and at the end.
 class Console {
  public:
   explicit Console(const SimulationParameters& simulation) : end_(simulation.end_time) {}
@@ -215,7 +215,7 @@ class Console {
     if (!begun_) begun_ = {Clock::now(), time};
     if (seconds_since(last_) < 0.5 && time < end_) return;
     last_ = Clock::now();
-    // What comes before the second step (meshes, factors, modes) is not what a step takes.
+    // The time before the second step (meshes, factors, modes) is not representative of a step.
     const std::string eta =
         time < end_ && time == begun_->second
             ? ""

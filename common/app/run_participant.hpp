@@ -12,10 +12,10 @@ namespace couplet::app {
 /// Adds the diagnostics of an initialized participant; empty if it has none.
 using Diagnose = std::function<void(coupling::Participant&, diagnostics::Diagnostics&)>;
 
-/// The participant alone, from start to end. Returns the exit code.
+/// Runs the participant alone from start to end. Returns the exit code.
 int run_alone(const Job& job, coupling::Participant& participant, const Diagnose& diagnose = {});
 
-/// The participant under a coupler's commands, until it is told to finalise.
+/// Runs the participant under a coupler's commands until it is told to finalize.
 int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& participant,
                 const Diagnose& diagnose = {});
 

@@ -20,7 +20,7 @@ namespace {
 
 const char* const summary_file = "run.json";
 
-/// As a JSON string.
+/// Formats a JSON string.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -68,7 +68,7 @@ double RunReport::processor_seconds() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-// getrusage would count what the process that started this one had in use before.
+// getrusage would include the memory of the parent process before exec.
 double RunReport::peak_memory() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)

@@ -17,36 +17,35 @@ namespace couplet::app {
 
 struct Job;
 
-/// What a run leaves for scripts and studies, beside its results:
-///   steps.csv  a row an accepted step: time and dt [s], iterations of linear solvers, estimated time error
-///              of the step [1], energy [J], seconds; what was not computed is nan. Off with output.steps.
-///   run.json   at the end: how it ended, wall and processor seconds, memory, steps, iterations, phases,
-///              estimated parts of the error (null: not known), where the run stands on the atlas, findings with
-///              their ids.
-/// Written by rank 0. The file of an earlier run is removed at the start: a run.json speaks of this run.
+/// Files of a run for scripts and studies, beside its results:
+///   steps.csv  a row per accepted step: time and dt [s], iterations of linear solvers, estimated time error
+///              of the step [1], energy [J], seconds; nan if not computed. Disabled by output.steps.
+///   run.json   at the end: outcome, wall and processor seconds, memory, steps, iterations, phases,
+///              estimated error contributions (null: unknown), position in the atlas, findings with ids.
+/// Written by rank 0. A run.json of an earlier run is removed at the start.
 class RunReport {
  public:
-  /// `with_steps`: steps.csv, unless the case does not want it.
+  /// `with_steps` writes steps.csv unless the case disables it.
   explicit RunReport(const Job& job, bool with_steps = true);
-  /// Adds seconds spent on the step under way, failed attempts included.
-  /// `processor`: user and system seconds of this process among them.
+  /// Adds seconds spent on the current step, including failed attempts. `processor` is user and system time
+  /// of this process.
   void spent(double seconds, double processor) {
     since_accepted_ += seconds;
     working_ += processor;
   }
-  /// `time`: the end of the step [s]; report.seconds is replaced by those spent since the last call.
+  /// Records a step that ended at `time` [s]. Sets report.seconds to the time spent since the last call.
   void accepted(double time, coupling::StepReport report);
-  /// In place of accepted(): all steps of the run at once, for who keeps the steps otherwise.
+  /// Records all steps at once, for programs that count them elsewhere.
   void total(double time, long steps, long iterations) {
     time_ = time, count_ = steps, iterations_ = iterations;
   }
-  /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
+  /// Writes run.json. `wall` [s]; `problem`: why the run ended early, or empty. Collective over job.comm.
   void finish(double wall, const std::string& problem, const diagnostics::ErrorParts& errors,
               const std::vector<diagnostics::Coordinate>& position);
 
-  /// User and system seconds of this process since it began.
+  /// User and system time of this process since it started.
   static double processor_seconds();
-  /// Most memory this process has had in use [MB]; 0 where the system does not tell.
+  /// Peak memory of this process [MB], or 0 if unknown.
   static double peak_memory();
 
  private:

@@ -9,11 +9,11 @@
 
 namespace couplet::base {
 
-/// Numbers 0 to n - 1 that are joined pair by pair: which belong together.
+/// Disjoint sets of the numbers 0 to n - 1, which are joined pair by pair.
 class DisjointSets {
  public:
   explicit DisjointSets(Index n) : up_(std::size_t(n)) { std::iota(up_.begin(), up_.end(), Index(0)); }
-  /// The smallest of those that belong to i.
+  /// Smallest member of the set that contains i.
   Index find(Index i) {
     while (up_[std::size_t(i)] != i) i = up_[std::size_t(i)] = up_[std::size_t(up_[std::size_t(i)])];
     return i;

@@ -8,7 +8,7 @@
 
 namespace couplet {
 
-/// Something the user can mend: what is wrong, where, what was expected, what to do. Full sentences.
+/// Error that the user can fix. Full sentences say what is wrong, where, what was expected and what to do.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& text) : std::runtime_error(text) {}
@@ -17,13 +17,13 @@ class Error : public std::runtime_error {
       : std::runtime_error(fmt::format(text, std::forward<Args>(args)...)) {}
 };
 
-/// A step that could not be solved (linear solver, inverted cell, NaN). A coupler may try a smaller step.
+/// Step that could not be solved (linear solver, inverted cell, NaN). The coupler may try a smaller step.
 class SolveFailure : public Error {
  public:
   using Error::Error;
 };
 
-/// A step that the scheme cannot solve whatever its length: nothing is gained by a smaller one.
+/// Step that the scheme cannot solve whatever its length, so that a smaller one does not help.
 class SchemeFailure final : public SolveFailure {
  public:
   using SolveFailure::SolveFailure;

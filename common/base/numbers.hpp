@@ -15,32 +15,32 @@
 
 namespace couplet::base {
 
-/// A list of values as plain numbers, for checkpoints. The same list of calls writes them and reads them back:
+/// List of values as plain numbers, for checkpoints. The same list of calls writes them and reads them back:
 ///
 ///   template <class N>
 ///   void visit(N& numbers) { numbers(time_, peaks_, name_); }
 ///
-/// Takes numbers, enumerations, strings, pairs, optional values, containers of these, and anything that has
-/// such a visit() itself.
+/// Supports numbers, enumerations, strings, pairs, optional values, containers of these, and anything that
+/// has such a visit() itself.
 class Numbers final {
  public:
-  /// Writes: the list is in values() afterwards.
+  /// Starts writing. values() returns the list afterwards.
   Numbers() = default;
-  /// Reads. `what` completes "The checkpoint's ... are damaged".
+  /// Starts reading. `what` completes "The checkpoint's ... are damaged".
   Numbers(std::span<const double> saved, const char* what) : left_(saved), what_(what) {}
 
   bool reads() const { return what_ != nullptr; }
-  /// Throws Error if fewer numbers were saved than are asked for, or others than the type can hold.
+  /// Throws Error when reading if too few numbers were saved or the type cannot hold one.
   template <class... T>
   void operator()(T&... values) {
     (one(values), ...);
   }
-  /// As many values as there is room for.
+  /// Reads or writes all values of the span.
   void fill(std::span<double> values) {
     for (double& value : values) real(value);
   }
   const std::vector<double>& values() const { return written_; }
-  /// Throws Error unless all that was saved has been read.
+  /// Throws Error unless all saved numbers have been read.
   void finish() const {
     if (!left_.empty()) damaged();
   }
@@ -69,7 +69,7 @@ class Numbers final {
       if (!is_there) value.reset();
       if (is_there && !value) value.emplace();
       if (is_there) one(*value);
-    } else if constexpr (requires { value.derived(); }) {  // of Eigen, which has a visit() of its own
+    } else if constexpr (requires { value.derived(); }) {  // Eigen types have a visit() of their own
       container(value);
     } else if constexpr (requires { value.visit(*this); }) {
       value.visit(*this);
@@ -82,7 +82,7 @@ class Numbers final {
     }
   }
 
-  /// Whole numbers that both T and a double hold.
+  /// Largest whole number that both T and a double can hold.
   template <class T>
   static double largest() {
     return std::min(9e15, static_cast<double>(std::numeric_limits<T>::max()));
@@ -138,18 +138,18 @@ class Numbers final {
 
   std::vector<double> written_;
   std::span<const double> left_;
-  const char* what_ = nullptr;  // nullptr: writes
+  const char* what_ = nullptr;  // nullptr when writing
 };
 
-/// The values of one thing as numbers.
+/// Converts a value to plain numbers.
 template <class T>
 std::vector<double> to_numbers(const T& value) {
   Numbers numbers;
-  numbers(const_cast<T&>(value));  // writing changes nothing
+  numbers(const_cast<T&>(value));  // const_cast is safe, since writing changes nothing
   return numbers.values();
 }
 
-/// Fills `value` from what to_numbers() gave. Throws Error if that is damaged.
+/// Restores `value` from the result of to_numbers(). Throws Error if that is damaged.
 template <class T>
 void from_numbers(std::span<const double> saved, T& value, const char* what) {
   Numbers numbers(saved, what);

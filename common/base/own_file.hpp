@@ -5,11 +5,11 @@
 
 namespace couplet::base {
 
-/// `file` if a program may write it: there is nothing yet, or a regular file of an earlier run. Throws Error for
-/// a symbolic link, which would be written through into somebody else's file, and for anything that is no file.
+/// Returns `file` if it does not exist or is a regular file. Throws Error for a symbolic link, which would
+/// overwrite another file, and for anything that is not a file.
 const std::filesystem::path& own_file(const std::filesystem::path& file);
 
-/// Waits until the file's (or folder's) content is on the disk.
+/// Waits until the content of a file or folder is on disk.
 void flush_to_disk(const std::filesystem::path& path);
 
 }  // namespace couplet::base

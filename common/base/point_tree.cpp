@@ -45,7 +45,7 @@ std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
   constexpr double equal = 1 + 2e-9;  // of squares
   std::vector<Index> indices;
   std::vector<double> squares;
-  // More than k, until the last one is further than the k-th.
+  // Queries more than k points until the last one is farther than the k-th.
   for (std::size_t n = std::min(k + 3, all);; n = std::min(2 * n, all)) {
     indices.resize(n), squares.resize(n);
     state_->tree.knnSearch(p.data(), n, indices.data(), squares.data());
@@ -63,7 +63,7 @@ std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
 
 std::vector<Index> PointTree::within(const Vec3& p, double distance) const {
   std::vector<std::pair<Index, double>> found;
-  // nanoflann leaves out what is as far as the limit: a distance of 0 still holds the place itself.
+  // nanoflann excludes points at the limit. A distance of 0 must include the position itself.
   const double square = distance * distance * (1 + 1e-9) + std::numeric_limits<double>::min();
   state_->tree.radiusSearch(p.data(), square, found, {});
   std::vector<Index> indices;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Before a function: compiled for several processors, the best is chosen when the program starts. Not with Clang, which leaves
-/// out the inline functions that only the clones call (seen with 16).
+/// Compiles a function for several processors; the best one is chosen at program start. Disabled for Clang,
+/// which drops inline functions called only by the clones (seen with version 16).
 #ifdef __clang__
 #define COUPLET_PROCESSOR_CLONES
 #else

@@ -3,11 +3,11 @@
 
 namespace couplet::base {
 
-/// How much a finding says about the answer of a run.
+/// Severity of a finding about the result of a run.
 enum class Severity {
-  note,     ///< worth knowing
-  warning,  ///< the answer may be off: --strict fails the run
-  wrong     ///< the answer is useless: the run ends with exit code 4, unless the finding is accepted
+  note,     ///< informational
+  warning,  ///< the result may be inaccurate: --strict fails the run
+  wrong     ///< the result is useless: the run ends with exit code 4, unless the finding is accepted
 };
 
 constexpr const char* name(Severity s) {

@@ -31,7 +31,7 @@ std::string join(const std::vector<std::string>& words, std::string_view separat
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Optimal string alignment: three rows of the table are enough.
+  // Optimal string alignment, which needs only three rows of the table.
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -61,7 +61,7 @@ std::optional<std::string> closest(std::string_view word, const std::vector<std:
   for (const std::string& candidate : candidates) {
     const std::string name = lower(candidate);
     std::size_t distance = edit_distance(wanted, name);
-    // One is a part of the other ("modulus" for "youngs-modulus"): nearly as good as a typing error.
+    // A name that contains the other ("modulus" for "youngs-modulus") is almost as good as a typing error.
     const auto& [shorter, longer] =
         std::minmax(wanted, name, [](auto& a, auto& b) { return a.size() < b.size(); });
     if (shorter.size() >= 4 && longer.find(shorter) != std::string::npos)

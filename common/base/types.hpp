@@ -16,7 +16,7 @@ using Vec = Eigen::Matrix<double, D, 1>;
 template <int D>
 using Tensor = Eigen::Matrix<double, D, D>;
 
-/// a : b.
+/// Double contraction a : b.
 inline double contraction(const Tensor3& a, const Tensor3& b) { return a.cwiseProduct(b).sum(); }
 
 }  // namespace couplet

@@ -81,8 +81,8 @@ Unit symbol_unit(std::string_view name) {
   throw Error("unknown unit '{}'.{}", name, meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
 }
 
-/// product = power { ["*" | " "] power | "/" power };  power = (symbol | "1" | "(" product ")") [["^"]
-/// integer]
+/// Grammar: product = power { ["*" | " "] power | "/" power };
+/// power = (symbol | "1" | "(" product ")") [["^"] integer]
 class UnitParser {
  public:
   explicit UnitParser(std::string_view text) : all_(text), rest_(text) {}
@@ -90,7 +90,7 @@ class UnitParser {
   Unit parse() {
     Unit unit = product();
     if (!rest_.empty()) fail();
-    // A scale with its own zero makes no sense as a factor.
+    // A scale with an offset cannot be a factor.
     if (factors_ > 1 || powers_) unit.offset = 0;
     return unit;
   }
@@ -156,7 +156,7 @@ class UnitParser {
   Unit base() {
     ++factors_;
     if (take("(")) {
-      // Brackets in brackets are a call in a call: a long row of them shall not use up the stack.
+      // Limits nested brackets, because each one is a recursive call.
       if (++depth_ > deepest)
         throw Error("the unit '{:.20}...' has more than {} nested brackets.", all_, deepest);
       const Unit unit = product();
@@ -190,7 +190,7 @@ class UnitParser {
   bool powers_ = false;
 };
 
-/// What a number without a unit would be, or why there must be one.
+/// Returns a number without unit, or throws Error if it requires one.
 double bare_number(double number, std::string_view text, std::string_view unit) {
   if (!needs_unit(unit) || (number == 0 && unit != "K")) return number;
   throw Error("'{0}' has no unit, but one is required: write {0} {1} or {0} {2}.", text,
@@ -200,7 +200,7 @@ double bare_number(double number, std::string_view text, std::string_view unit) 
               unit);
 }
 
-/// A temperature is no difference of temperatures and the other way round, a frequency no speed of rotation.
+/// Throws Error if a temperature and a difference, or a frequency and a rotation speed, are confused.
 void check_kind(const Unit& given, std::string_view given_text, double number, std::string_view text,
                 std::string_view unit) {
   if (unit == kelvin_difference && given.offset != 0)
@@ -228,7 +228,7 @@ std::optional<Quantity> split_quantity(std::string_view text) {
   std::string_view digits = text;
   if (digits.starts_with('+')) digits.remove_prefix(1);
   const std::string_view unsigned_part = digits.substr(digits.starts_with('-') ? 1 : 0);
-  // Keeps "inf" and "nan", which from_chars would take, out.
+  // Excludes "inf" and "nan", which from_chars would accept.
   if (unsigned_part.empty() || unsigned_part.find_first_of("0123456789.") != 0) return std::nullopt;
   Quantity result;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result.number);

@@ -50,12 +50,12 @@ std::vector<Item> describe(const Section::Declare& declare, Describe extent) {
 
 namespace {
 
-/// A bar would end the table's cell.
+/// Escapes bars, which would end a table cell.
 std::string cell(const std::string& text) { return base::join(base::split(text, '|'), "\\|"); }
 
 std::string code(const std::string& text) { return text.empty() ? text : fmt::format("`{}`", text); }
 
-/// "usual: 0.01 to 1e5 kg/m^3"; or why there is no such range.
+/// Text "usual: 0.01 to 1e5 kg/m^3", or why there is no such range.
 std::string usual_text(const Key::Facts& facts) {
   if (facts.plausible) return "usual: " + describe_plausible(facts);
   return facts.any_magnitude.empty() ? "" : "any magnitude: " + facts.any_magnitude;
@@ -71,7 +71,7 @@ std::string row(const Item& item) {
       if (!item.words.empty()) range = fmt::format("`{}`", base::join(item.words, "`, `"));
       if (const std::string usual = usual_text(facts); !usual.empty())
         range += (range.empty() ? "" : "; ") + usual;
-      if (facts.size && !type.starts_with("list of 2 or 3"))  // there a matter of the scene
+      if (facts.size && !type.starts_with("list of 2 or 3"))  // depends on the dimension
         type += fmt::format(" ({})", *facts.size);
       fallback = facts.required ? "**required**" : item.value.empty() ? "not set" : code(item.value);
       break;
@@ -139,7 +139,7 @@ std::string key_text(const std::string& name) {
   return emitter.c_str();
 }
 
-/// First line of a list entry starts with "- ", everything else is indented.
+/// Writes YAML. The first line of a list entry starts with "- ", everything else is indented.
 void write(std::string& out, const std::vector<Item>& items, std::size_t indent) {
   const std::string blanks(indent, ' ');
   for (const Item& item : items) {

@@ -20,7 +20,7 @@ namespace couplet::config {
 
 namespace {
 
-/// Looks for what yaml-cpp lets pass and nobody after it could bear.
+/// Finds content that yaml-cpp accepts but that later code cannot handle.
 bool is_control(unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c == 127; }
 
 class Inspection {
@@ -29,7 +29,7 @@ class Inspection {
 
   void look(const YAML::Node& node, const std::string& path, int depth = 0) {
     if (messages.size() >= most_messages) return;
-    // Anchors of anchors double with every line.
+    // Nested anchors double the size with every line.
     if (++nodes_ > most_nodes)
       throw Error("{}: more than {} values up to here. Do anchors contain each other?", path.substr(0, 60),
                   most_nodes);
@@ -48,7 +48,7 @@ class Inspection {
   static constexpr int deepest = 50;
   static constexpr std::size_t most_messages = 50, most_nodes = 1'000'000, longest_name = 200;
 
-  /// False if the text holds what would spoil messages, names of files and terminals.
+  /// Returns false for control characters, which would corrupt messages, file names and terminals.
   bool check_text(const YAML::Node& node, const std::string& path, const char* what) {
     const std::string& text = node.Scalar();
     const auto found = std::find_if(text.begin(), text.end(), is_control);
@@ -88,7 +88,7 @@ class Inspection {
   std::size_t nodes_ = 0;
 };
 
-/// yaml-cpp's words for the usual mistakes, in words that say what to do.
+/// Translates yaml-cpp's messages about common mistakes into advice.
 std::string explain(const std::string& message, std::string_view line) {
   static const std::pair<const char*, const char*> known[] = {
       {"illegal map value",
@@ -111,14 +111,14 @@ std::string explain(const std::string& message, std::string_view line) {
   return message;
 }
 
-/// Where the second document of a stream starts.
+/// Finds the start of the second document of a stream.
 class SecondDocument final : public YAML::EventHandler {
  public:
   static std::optional<YAML::Mark> find(const std::string& text) {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     SecondDocument handler;
-    // Not YAML::LoadAll: on some broken files it never ends.
+    // YAML::LoadAll does not terminate on some invalid files.
     if (!parser.HandleNextDocument(handler) || !parser.HandleNextDocument(handler)) return std::nullopt;
     return handler.start_;
   }
@@ -142,7 +142,7 @@ class SecondDocument final : public YAML::EventHandler {
 YAML::Node parse_yaml(const std::string& text, const std::string& name) {
   try {
     const YAML::Node root = YAML::Load(text);
-    // A line that is indented less than the first key starts a second document without a word in yaml-cpp.
+    // yaml-cpp silently starts a second document at a line that is indented less than the first key.
     if (const auto second = SecondDocument::find(text))
       throw Error(
           "{}:{}:{}: this line does not belong to the mapping above; check its indentation (and remove "
@@ -161,7 +161,7 @@ std::string describe(const std::string& path) {
   return path.empty() ? "the file" : fmt::format("'{}'", path);
 }
 
-/// The entry `part` of the node at `path`; throws if a step of a --set path does not exist.
+/// Entry `part` of the node at `path`. Throws Error if part of a --set path does not exist.
 YAML::Node step_into(const YAML::Node& node, const std::string& path, const std::string& part,
                      const std::string& option) {
   if (node.IsSequence()) {
@@ -230,7 +230,7 @@ Document Document::parse(const std::string& text, const std::string& name) {
 
 void Document::set(const std::string& assignment) {
   std::string option = "--set " + assignment;
-  std::replace_if(option.begin(), option.end(), is_control, '?');  // what is told must not steer a terminal
+  std::replace_if(option.begin(), option.end(), is_control, '?');  // messages must not control a terminal
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw Error("{}: expected key=value, for example --set simulation.end-time='2 s'.", option);
@@ -255,7 +255,7 @@ void Document::set(const std::string& assignment) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool last = i + 1 == parts.size();
     if (last && node.IsMap()) {
-      // operator[] would not find a key whose text YAML reads as a number or a truth value.
+      // operator[] does not find a key that YAML reads as a number or boolean.
       if (const Entry entry = find(node, parts[i]); entry.found && value.IsNull()) {
         node.remove(parts[i]);
       } else if (entry.found) {
@@ -265,8 +265,8 @@ void Document::set(const std::string& assignment) {
         node.force_insert(parts[i], value);
       }
     } else {
-      // A section that is not there is made: which keys it may have is for its declaration to say. Participants and
-      // what stands at the top are not made this way: a misspelt name would be another one.
+      // Creates a missing section; its declaration defines the valid keys. Participants and top-level
+      // sections are not created, because a misspelled name would be a new one.
       if (node.IsMap() && !walked.empty() && walked != "participants" && !value.IsNull() &&
           !find(node, parts[i]).found)
         node.force_insert(parts[i], YAML::Node(YAML::NodeType::Map));

@@ -17,9 +17,9 @@ struct Document::Content {
   std::vector<std::pair<std::string, std::string>> overrides;  ///< dotted path, "--set path=value"
 };
 
-/// Where a message points. Overridden values come after everything in the file.
+/// Location that a message refers to. Overridden values come after everything in the file.
 struct Place {
-  int line = 0, column = 0;   ///< 1-based; 0: unknown
+  int line = 0, column = 0;   ///< 1-based; 0 if unknown
   std::string override_text;  ///< "--set a.b=v" if the value comes from there
 };
 
@@ -29,21 +29,21 @@ struct Message {
 };
 
 Place place_of(const YAML::Node& node);
-/// "case.yaml:12:5: participants.solid: text".
+/// Formats "case.yaml:12:5: participants.solid: text".
 std::string format(const std::string& file, const Message& message);
-/// In file order, equal ones once.
+/// Sorts the messages in file order and removes duplicates.
 std::vector<std::string> format_all(const std::string& file, std::vector<Message> messages);
 
-/// "a.b" and "c" give "a.b.c"; an empty parent gives "c".
+/// Joins "a.b" and "c" to "a.b.c". An empty parent gives "c".
 std::string join_path(const std::string& parent, std::string_view name);
 
-/// Is `path` the same as `above`, or something in it?
+/// Returns true if `path` is `above` or lies below it.
 bool is_below(std::string_view path, std::string_view above);
 
-/// The names of a mapping's keys in file order.
+/// Keys of a mapping in file order.
 std::vector<std::string> key_names(const YAML::Node& map);
 
-/// One entry of a mapping; found is false if it is not there.
+/// Entry of a mapping. `found` is false if it does not exist.
 struct Entry {
   bool found = false;
   Place place;      ///< of the key
@@ -51,11 +51,11 @@ struct Entry {
 };
 Entry find(const YAML::Node& map, std::string_view name);
 
-/// Every single value of the document with the overrides of --set, under its dotted path: "participants.solid.mesh",
-/// "participants.solid.boundaries.top.value[0]". Empty mappings and lists stand as "{}" and "[]".
+/// All scalar values of the document including --set, by dotted path: "participants.solid.mesh",
+/// "participants.solid.boundaries.top.value[0]". Empty mappings and lists appear as "{}" and "[]".
 std::map<std::string, std::string> leaves(const Document& document);
 
-/// Whether two texts of a value say the same: "20 ms" and "0.02 s" do, and so does "0.02", which is in SI.
+/// Returns true if two texts have the same value: "20 ms", "0.02 s" and "0.02" (which is in SI).
 bool same_value(const std::string& a, const std::string& b);
 
 }  // namespace couplet::config

@@ -9,8 +9,8 @@
 namespace couplet::config {
 namespace {
 
-/// The node at a dotted path and the place of its key; if a part is missing, found is false, the place is
-/// that of the last mapping on the way and `reached` its path.
+/// Node at a dotted path and the location of its key. If a part is missing, found is false, and the location
+/// is that of the last existing mapping with path `reached`.
 struct Located {
   Entry entry;
   std::string reached, missing;
@@ -21,7 +21,7 @@ Located locate(const Document::Content& content, const std::string& path) {
   Located result;
   result.entry.found = true;
   result.entry.place.line = result.entry.place.column = 1;
-  // reset(), not =: assigning one YAML::Node to another changes the tree.
+  // Assigning one YAML::Node to another changes the tree, so reset() is required.
   result.entry.node.reset(content.root);
   if (path.empty()) return result;
   for (const std::string& part : base::split(path, '.')) {

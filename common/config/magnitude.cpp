@@ -14,7 +14,7 @@
 namespace couplet::config {
 namespace {
 
-/// The values of table(t, clamp, 0, 0, 2, 300000), which stand behind their places; none of a table in a file.
+/// Values of table(t, clamp, 0, 0, 2, 300000), which follow their positions. None for a table in a file.
 std::vector<double> values_of_table(const std::string& text) {
   std::vector<double> values;
   if (!text.starts_with("table(") || !text.ends_with(")")) return values;
@@ -42,7 +42,7 @@ std::vector<double> values_of(const Slot& slot) {
                  [](std::vector<double>* v) { return *v; }, [](ExpressionText* v) { return values_of(*v); },
                  [](std::optional<ExpressionText>* v) { return *v ? values_of(**v) : std::vector<double>{}; },
                  [](std::vector<ExpressionText>* v) {
-                   // A vector: what is small beside its largest component is as good as zero.
+                   // In a vector, values that are small compared to its largest component count as zero.
                    double largest = 0;
                    for (const ExpressionText& component : *v)
                      for (const double value : values_of(component))

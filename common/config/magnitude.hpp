@@ -7,11 +7,11 @@
 
 namespace couplet::config {
 
-/// "1e3 to 1e13 Pa", the plausible magnitudes of a key; empty if it has none.
+/// Plausible magnitudes of a key: "1e3 to 1e13 Pa". Empty if it has none.
 std::string describe_plausible(const Key::Facts& facts);
 
-/// Why the value now in the member is implausible; empty if it is not. A vector is judged by its largest component, a
-/// list by its largest and smallest entry, a table by its values; an expression is not judged.
+/// Reason why the current value is implausible, or empty. Judges the largest component of a vector, the
+/// largest and smallest entry of a list, and the values of a table, but no expression.
 std::string doubt_of_magnitude(const Key::Facts& facts, const Slot& slot);
 
 }  // namespace couplet::config

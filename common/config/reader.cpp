@@ -20,7 +20,7 @@ std::string one_of(const std::vector<std::string>& words) {
   return fmt::format("one of: {}", base::join(words));
 }
 
-/// The keys a declaration makes at its own level; touches no member.
+/// Names of the keys that a declaration adds at its own level, without changing members.
 std::vector<std::string> names_of(const Section::Declare& declare) {
   std::vector<std::string> names;
   const Visitor collect = [&](const Declaration& d) {
@@ -37,7 +37,7 @@ std::vector<std::string> names_of(const Section::Declare& declare) {
 std::string kind_of(const YAML::Node& node) {
   if (node.IsSequence()) return "a list";
   if (!node.IsScalar()) return "nothing";
-  // A whole file may stand here, if it is none of ours.
+  // Shortens the text, which may be a whole file.
   constexpr std::size_t longest = 60;
   const std::string& text = node.Scalar();
   if (text.size() <= longest) return "'" + text + "'";
@@ -108,7 +108,7 @@ void Reader::read_mapping(const YAML::Node& node, const Place& place, const std:
 
 void Reader::report_unknown_keys() {
   const Frame frame = frames_.back();
-  constexpr int most = 20;  // of one mapping: suggestions for more take long, and nobody reads them
+  constexpr int most = 20;  // per mapping, because suggestions for more are slow and unread
   int unknown = 0;
   for (const auto& item : frame.node) {
     const std::string& name = item.first.Scalar();
@@ -128,7 +128,7 @@ void Reader::report_unknown_keys() {
       if (!find(frame.node, known).found) free.push_back(known);
     const auto meant = base::closest(name, free);
     if (meant) forget_missing(join_path(frame.path, *meant));
-    // A key that is there already cannot be meant, but shows what could stand here.
+    // An existing key cannot be meant, but the message shows which keys are allowed.
     report(place_of(item.first), path, unknown_key(name, meant ? free : frame.known));
   }
   if (unknown > most)
@@ -227,8 +227,7 @@ void Reader::variant(const Declaration& d) {
       read_value(entry.node, {}, word);
     } catch (const Error& error) {
       report_key(entry.found ? entry.place : frames_.back().place, path, error.what());
-      // Nobody knows which keys are valid now: take all of them as known, so that only the real mistake is
-      // reported.
+      // The valid keys are unknown now, so all are treated as known, and only the actual mistake is reported.
       for (const auto& [text, declare] : d.cases)
         for (const std::string& key : names_of(declare)) frames_.back().known.push_back(key);
       return;
@@ -247,7 +246,7 @@ void Reader::variant(const Declaration& d) {
 
 void Reader::apply_rule(const Declaration& d) {
   const Frame& frame = frames_.back();
-  // The rule may look at any key of the mappings around this one.
+  // The rule may depend on any key of the surrounding mappings.
   const bool wrong_key =
       std::any_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.wrong_key; });
   if (wrong_key || messages_.size() != frame.messages_before) return;

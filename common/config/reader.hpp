@@ -12,35 +12,35 @@
 
 namespace couplet::config {
 
-/// Fills the members from a mapping and collects everything that is wrong with it.
+/// Fills the members from a mapping and collects all errors.
 class Reader final {
  public:
   explicit Reader(const Document::Content& content, CheckExpression check_expression = {})
       : content_(content), check_expression_(std::move(check_expression)) {}
 
-  /// `node` may be undefined: all defaults, required keys are missing at `place`.
+  /// Reads a mapping. If `node` is undefined, defaults apply, and required keys are missing at `place`.
   void read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
                     const Section::Declare& declare);
   const std::vector<Message>& messages() const { return messages_; }
-  /// What is possible but implausible.
+  /// Possible but implausible values.
   const std::vector<Message>& doubts() const { return doubts_; }
 
  private:
-  /// The mapping that is being read.
+  /// Mapping that is being read.
   struct Frame {
     YAML::Node node;
     Place place;
     std::string path;
     std::vector<std::string> known;
-    std::vector<std::pair<std::string, std::string>> elsewhere;  ///< key, the variant case it belongs to
+    std::vector<std::pair<std::string, std::string>> elsewhere;  ///< key and the variant case it belongs to
     std::size_t messages_before = 0;
-    std::optional<int> dimension;  ///< value of the key of this name
-    bool wrong_key = false;        ///< one of the keys in this very mapping could not be read
+    std::optional<int> dimension;  ///< value of the key `dimension`
+    bool wrong_key = false;        ///< a key of this mapping could not be read
   };
-  /// Takes in one declaration; the visitor of the sections.
+  /// Processes one declaration, as visitor of the sections.
   void on(const Declaration& declaration);
   void key(const KeyFacts& facts, const Slot& slot);
-  /// What stands below a section, optional, map or list.
+  /// Reads the contents of a section, optional, map or list.
   void below(const Declaration& declaration);
   void variant(const Declaration& declaration);
   Entry take(std::string_view name);
@@ -48,15 +48,15 @@ class Reader final {
   void report(const Place& place, const std::string& path, const std::string& text);
   void report_key(const Place& place, const std::string& path, const std::string& text);
   void report_unknown_keys();
-  /// " Its keys: a, b." of a mapping that is none.
+  /// Text " Its keys: a, b." for a value that should be a mapping.
   std::string keys_of(const Place& place, const std::string& path, const Section::Declare& declare);
-  /// Runs a rule across keys, if nothing that it may look at is wrong.
+  /// Applies a rule across keys, unless a key that it may depend on is invalid.
   void apply_rule(const Declaration& declaration);
-  /// A misspelt required key is one mistake, not two.
+  /// Removes the message about a missing key, because a misspelled required key is one mistake.
   void forget_missing(const std::string& path);
 
-  /// What is wrong with the expressions of a key that was read; a list of them is a vector of the scene, whose
-  /// `dimension` stands in one of the mappings around it.
+  /// Problem of the expressions of a key. A list of them is a vector with the `dimension` of a surrounding
+  /// mapping.
   std::string problem_of(const KeyFacts& facts, const Slot& slot) const;
 
   const Document::Content& content_;

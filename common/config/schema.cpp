@@ -24,7 +24,7 @@ std::string quote(std::string_view text) {
   return result + '"';
 }
 
-/// A JSON object or array under construction; the members are JSON texts already.
+/// Builds a JSON object or array from members in JSON.
 std::string enclose(char open, char close, const std::vector<std::string>& members) {
   if (members.empty()) return {open, close};
   std::string inner = base::join(members, ",\n");
@@ -44,7 +44,7 @@ std::vector<std::string> quoted_all(const std::vector<std::string>& words) {
   return result;
 }
 
-/// A bare number within its limits, or a text: the number with its unit or percent sign.
+/// Schema of a bare number within its limits, or a text: the number with its unit or percent sign.
 std::string number_schema(const Key::Facts& facts, bool integer) {
   std::vector<std::string> number{member("type", integer ? "\"integer\"" : "\"number\"")};
   if (std::isfinite(facts.lowest))
@@ -59,7 +59,7 @@ std::string number_schema(const Key::Facts& facts, bool integer) {
   return base::needs_unit(facts.unit) ? text : object({member("anyOf", array({object(number), text}))});
 }
 
-/// A number, an expression, or a table as a mapping.
+/// Schema of a number, an expression, or a table as a mapping.
 std::string expression_schema() {
   return object({member("type", array({"\"number\"", "\"string\"", "\"object\""}))});
 }
@@ -118,7 +118,7 @@ std::string item_schema(const Item& item) {
   }
 }
 
-/// The contract of a quantity, for tools: its unit and the magnitudes that are usual, or why none are.
+/// Annotations of a quantity for tools: its unit and usual magnitudes, or why there are none.
 std::vector<std::string> contract(const Key::Facts& facts) {
   std::vector<std::string> notes;
   if (!facts.unit.empty()) notes.push_back(member("x-unit", quote(facts.unit)));
@@ -129,7 +129,7 @@ std::vector<std::string> contract(const Key::Facts& facts) {
   return notes;
 }
 
-/// The schema of one item with what editors show beside it.
+/// Schema of one item with its documentation for editors.
 std::string documented(const Item& item) {
   std::string schema = item_schema(item);
   std::string doc = item.facts.doc;
@@ -148,8 +148,8 @@ bool has_required(const std::vector<Item>& items) {
   return false;
 }
 
-/// The alternatives a mapping has: every variant in it multiplies them by its cases. Each is closed on its
-/// own, so every validator refuses keys of another case.
+/// Alternatives of a mapping; every variant multiplies them by its cases. Each is closed, so that every
+/// validator rejects keys of other cases.
 struct Alternative {
   std::vector<std::string> properties, required;
 };

@@ -11,7 +11,7 @@ namespace couplet::config {
 
 namespace {
 
-// A wrong declaration is a bug in the program: it shows at once, in every build, whatever the YAML says.
+// An invalid declaration is a bug in the program. It fails at once, in every build and for every YAML.
 std::string_view kebab(std::string_view name) {
   if (!base::is_kebab_case(name))
     throw std::logic_error("config key '" + std::string(name) + "' is not kebab-case");

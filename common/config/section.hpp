@@ -20,25 +20,25 @@ namespace couplet::config {
 
 class Section;
 
-/// A number, an expression in x, y, z, t (muParser syntax) or a table, kept as text; see fv/expression.hpp
-/// for evaluation, fv/table.hpp for tables.
+/// Number, expression in x, y, z, t (muParser syntax) or table as text. See fv/expression.hpp for evaluation,
+/// fv/table.hpp for tables.
 struct ExpressionText {
   std::string text = "0";
 };
 
-/// A word out of a fixed list, as a visitor sees the member that holds it.
+/// Word of a fixed list, as seen by a visitor.
 struct Word {
   std::vector<std::string> words;
   std::string current;  ///< empty if the member holds none of them
   std::function<void(const std::string&)> set;
 };
-/// The member a key fills, seen by the visitors.
+/// Member that a key fills, as seen by the visitors.
 using Slot = std::variant<double*, int*, bool*, std::string*, ExpressionText*, Vec3*, std::vector<double>*,
                           std::vector<std::string>*, std::vector<ExpressionText>*, std::optional<double>*,
                           std::optional<std::string>*, std::optional<ExpressionText>*,
                           std::map<std::string, double>*, Word>;
 
-/// Facts about one key, and the name and doc of every other declaration.
+/// Properties of a key, and name and documentation of other declarations.
 struct KeyFacts {
   std::string name, unit, doc;
   bool required = false;
@@ -47,44 +47,44 @@ struct KeyFacts {
   bool open_lowest = false;
   std::optional<std::size_t> size;
   std::optional<std::pair<double, double>> plausible;  ///< of magnitudes
-  std::string any_magnitude;                           ///< the reason
+  std::string any_magnitude;                           ///< reason
 };
 
-/// One declaration, as a Section hands it to its visitor.
+/// Declaration that a Section passes to its visitor.
 struct Declaration {
   enum class Kind { key, section, optional, map, list, variant, check, doubt } kind;
-  KeyFacts facts{};  ///< of a rule: the name of the key that its message points to
-  /// Member that a key fills; of a variant, its words.
+  KeyFacts facts{};  ///< of a rule: name of the key that its message refers to
+  /// Member that a key fills, or the words of a variant.
   Slot slot = static_cast<double*>(nullptr);
-  std::string what{};                  ///< of a map: the kind of name
-  std::vector<std::string> present{};  ///< entries that a map, list (without names) or optional has now
-  /// Declares what is below; `name` or `i`: which entry of a map or list.
+  std::string what{};                  ///< of a map: kind of its names
+  std::vector<std::string> present{};  ///< current entries of a map, list (without names) or optional
+  /// Declares the contents of entry `name` of a map or `i` of a list.
   std::function<void(Section&, const std::string& name, std::size_t i)> declare{};
   std::vector<std::pair<std::string, std::function<void(Section&)>>> cases{};  ///< of a variant
   std::function<std::string()> rule{};
 };
 
-/// Whatever is done with the declarations: a YAML node is read and validated, the Markdown reference or the JSON schema written,
-/// the effective values printed. See load.hpp.
+/// Processes declarations: reads and validates a YAML node, writes the Markdown reference or JSON schema, or
+/// prints the effective values. See load.hpp.
 using Visitor = std::function<void(const Declaration&)>;
 
-/// Range and documentation of one key, chained onto its declaration:
-///   s.value("youngs-modulus", p.youngs_modulus).unit("Pa").positive().required().doc("Young's modulus");
-/// A key that is not required keeps the value its target already has: that is its default.
-/// The declaration takes effect when the Key goes out of scope, i.e. at the end of the statement.
+/// Range and documentation of one key, chained to its declaration: s.value("youngs-modulus",
+/// p.youngs_modulus).unit("Pa").positive().required().doc("Young's modulus"); The default of an optional key
+/// is the current value of its target. The declaration takes effect when the Key is destroyed, at the end of
+/// the statement.
 class Key {
  public:
-  /// Accepts "5.6 MPa", "0.1 s" and plain numbers in this SI unit, but none in K or rad (base::needs_unit).
-  /// "K difference" is that of a difference of temperatures.
+  /// Accepts "5.6 MPa", "0.1 s" and plain numbers in this SI unit, but no plain numbers in K or rad
+  /// (base::needs_unit). "K difference" is the unit of a temperature difference.
   Key& unit(std::string_view si_unit);
   Key& required();
   Key& range(double lowest, double highest);  ///< inclusive
   Key& positive();                            ///< > 0
   Key& not_negative();                        ///< >= 0
   Key& size(std::size_t n);                   ///< of a list of numbers
-  /// Magnitudes that are usual: a value outside is flagged, not refused; 0 is usual wherever the key takes it.
+  /// Sets usual magnitudes. A value outside gives a warning; 0 is accepted wherever the key allows it.
   Key& plausible(double lowest, double highest);
-  /// Why a key with a unit has no such range.
+  /// States why a key with a unit has no usual magnitudes.
   Key& any_magnitude(std::string_view reason);
   Key& doc(std::string_view text);
 
@@ -98,33 +98,33 @@ class Key {
   Declaration declaration_;
 };
 
-/// One mapping of the YAML file. Parameters are declared once, bound to the members they fill:
+/// Mapping of the YAML file. Parameters are declared once, bound to the members they fill:
 ///
 ///   void declare(config::Section& s, SolidParameters& p) {
 ///     s.value("density", p.density).unit("kg/m^3").positive().required().doc("density");
 ///     s.choice("analysis", p.analysis, {{"static", Analysis::steady}, {"dynamic", Analysis::dynamic}}).doc("...");
-///     s.section("output", [&](config::Section& o) { declare(o, p.output); }, "what is written");
+///     s.section("output", [&](config::Section& o) { declare(o, p.output); }, "output settings");
 ///     s.map("boundaries", p.boundaries, [](config::Section& b, Boundary& v) { declare(b, v); }, "patch", "...");
 ///     s.check([&] { return p.a < p.b ? "" : "'a' must be below 'b'"; }, "a");
 ///   }
 ///
-/// Names are kebab-case (asserted). Unknown keys, duplicate keys, wrong types, units and ranges are all
+/// Names are kebab-case (asserted). Unknown and duplicate keys and wrong types, units and ranges are
 /// collected with file:line:column and reported together.
 class Section {
  public:
-  /// By reference.
+  /// Keeps a reference to `visitor`.
   explicit Section(const Visitor& visitor) : visitor_(visitor) {}
   Section(const Section&) = delete;
 
-  /// A key that fills `target`, a member of one of Slot's types: a number, a word, an expression, Vec3 (a list of 2 or 3
-  /// numbers), a list; std::optional stays empty when the key is absent; std::map holds numbers under names of the user's
-  /// choice, e.g. {nr: 16, nz: 8}.
+  /// Declares a key that fills `target`, a member of one of Slot's types: number, word, expression, Vec3 (a
+  /// list of 2 or 3 numbers) or list. std::optional stays empty if the key is absent. std::map holds numbers
+  /// under names chosen by the user, e.g. {nr: 16, nz: 8}.
   template <class T>
   requires std::constructible_from<Slot, T*> Key value(std::string_view name, T& target) {
     return Key(visitor_, name, &target);
   }
 
-  /// A word out of a fixed list.
+  /// Declares a key whose value is a word of a fixed list.
   template <class E>
   Key choice(std::string_view name, E& target, const std::vector<std::pair<std::string, E>>& words) {
     Word slot;
@@ -140,10 +140,10 @@ class Section {
   }
 
   using Declare = std::function<void(Section&)>;
-  /// A mapping below this one; absent means all its defaults (its required keys are then reported as
-  /// missing).
+  /// Declares a mapping below this one. If it is absent, defaults apply and its required keys are reported as
+  /// missing.
   void section(std::string_view name, const Declare& declare, std::string_view doc);
-  /// An effect: present in the YAML or not there at all.
+  /// Declares an optional mapping, such as an effect.
   template <class T>
   void optional_section(std::string_view name, std::optional<T>& target,
                         const std::function<void(Section&, T&)>& declare, std::string_view doc) {
@@ -155,8 +155,8 @@ class Section {
     };
     visitor_(d);
   }
-  /// A mapping with names of the user's choice, e.g. one entry a patch. `what` is the kind of name, for
-  /// messages.
+  /// Declares a mapping with names chosen by the user, e.g. one entry per patch. `what` is the kind of name,
+  /// for messages.
   template <class T>
   void map(std::string_view name, std::map<std::string, T>& target,
            const std::function<void(Section&, T&)>& declare, std::string_view what, std::string_view doc) {
@@ -168,7 +168,7 @@ class Section {
     };
     visitor_(d);
   }
-  /// A sequence of mappings.
+  /// Declares a sequence of mappings.
   template <class T>
   void list(std::string_view name, std::vector<T>& target, const std::function<void(Section&, T&)>& declare,
             std::string_view doc) {
@@ -180,8 +180,8 @@ class Section {
     };
     visitor_(d);
   }
-  /// The key `name` (a word) of this mapping decides which further keys of it are valid, e.g. type: inlet |
-  /// outlet | wall. Absent means what `target` holds already, unless it is `required`.
+  /// Declares a key `name` whose word selects further valid keys of this mapping, e.g. type: inlet | outlet |
+  /// wall. If it is absent, `target` keeps its value, unless it is `required`.
   template <class E>
   void variant(std::string_view name, E& target,
                const std::vector<std::tuple<std::string, E, Declare>>& cases, std::string_view doc,
@@ -201,11 +201,11 @@ class Section {
     d.slot = slot;
     visitor_(d);
   }
-  /// Cross-rule: declare it after the keys it looks at. It runs at once, if this section was read without
-  /// error so far and no key of the sections around it was wrong; an empty text is a pass; `key` is where the
-  /// message points.
+  /// Declares a rule across keys, after these keys. It is applied at once, unless this section has errors or
+  /// the sections around it an invalid key. An empty text means success; `key` is the location of the
+  /// message.
   void check(const std::function<std::string()>& rule, std::string_view key);
-  /// The same for what is implausible: its sentence is a warning, the file stays valid.
+  /// Declares a rule for implausible values, which gives a warning.
   void doubt(const std::function<std::string()>& rule, std::string_view key);
 
  private:
@@ -213,7 +213,7 @@ class Section {
   const Visitor& visitor_;
 };
 
-/// std::visit with one lambda a type.
+/// Helper for std::visit with one lambda per type.
 template <class... F>
 struct Overloaded : F... {
   using F::operator()...;

@@ -69,10 +69,10 @@ std::string outside_of(const YAML::Node& node) {
   return outside;
 }
 
-/// A table given as a mapping becomes the text of an expression, in SI:
+/// Converts a table given as a mapping to the text of an expression in SI:
 ///   {of: t, at: [0, 2 s], values: [0, 3 bar], outside: error}   table(t, error, 0, 0, 2, 300000)
 ///   {of: z, file: profile.csv, column: speed}                   table(z, clamp, "/case/profile.csv", "speed")
-/// Throws Error with a sentence without place.
+/// Throws Error with a sentence without location.
 std::string table_text(const YAML::Node& node, const Key::Facts& facts, const std::filesystem::path& folder) {
   for (const auto& item : node)
     if (std::find(keys.begin(), keys.end(), item.first.Scalar()) == keys.end())
@@ -98,12 +98,12 @@ std::string table_text(const YAML::Node& node, const Key::Facts& facts, const st
   return text + ")";
 }
 
-/// Relative file names of the tables in an expression, table(t, "..."), made absolute.
+/// Makes relative file names of tables in an expression, table(t, "..."), absolute.
 std::string with_absolute_files(const std::string& text, const std::filesystem::path& folder) {
   if (text.find("table") == std::string::npos) return text;
   std::string result;
   std::size_t from = 0;
-  // The first of two neighbouring quoted words is the file, the second its column.
+  // Of two adjacent quoted words the first is the file, the second its column.
   for (std::size_t open = text.find('"'); open != std::string::npos; open = text.find('"', from)) {
     const std::size_t close = text.find('"', open + 1);
     if (close == std::string::npos) break;
@@ -163,7 +163,7 @@ bool read_bool(const YAML::Node& node) {
   return value;
 }
 
-/// "2*sin(t)" starts with a number, too, but what follows is no unit.
+/// Distinguishes a unit from an expression such as "2*sin(t)", which starts with a number, too.
 bool is_unit(const std::string& text) {
   if (text.starts_with('/')) return false;
   try {
@@ -174,7 +174,7 @@ bool is_unit(const std::string& text) {
   }
 }
 
-/// A number with a unit becomes a number in the key's unit; anything else is an expression in that unit.
+/// Converts a number with a unit to the key's unit. Anything else is an expression in that unit.
 ExpressionText read_expression(const YAML::Node& node, const Facts& facts,
                                const std::filesystem::path& folder) {
   if (node.IsMap()) return {table_text(node, facts, folder)};

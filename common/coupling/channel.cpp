@@ -45,21 +45,21 @@ void MpiChannel::send(const Command& command) {
 
 namespace {
 
-/// The cut of a surface must be that of the participant's ranks.
+/// Checks that the surface is distributed over the participant's ranks.
 void check_cut(const Cut& cut, int ranks) {
   for (const Starts* starts : {&cut.vertices, &cut.faces})
     if (starts->size() != std::size_t(ranks) + 1)
       throw Error("it partitions its interface over {} ranks, but runs on {}", starts->size() - 1, ranks);
 }
 
-/// What stands only once in a list of names.
+/// Checks that names in a list are unique.
 void check_names(const std::vector<Interface::Datum>& list) {
   for (std::size_t i = 0; i < list.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (list[i].name == list[j].name) throw Error("it announces '{}' twice", list[i].name);
 }
 
-/// Places that came, against those that were announced.
+/// Compares received vertices and faces with the announced ones.
 void check_places(const Interface& interface, const Cut& mine, int rank, const std::string& whose) {
   const auto here = [&](const Starts& starts) {
     return std::size_t(starts[std::size_t(rank) + 1] - starts[std::size_t(rank)]);
@@ -81,7 +81,7 @@ void check_places(const Interface& interface, const Cut& mine, int rank, const s
 
 }  // namespace
 
-// What a guest says is looked at before anything is made of it.
+// Checks a guest's message before using it.
 Reply MpiChannel::unpacked(const std::vector<char>& head, Cut& cut) const {
   try {
     Reply reply = unpack_reply(head, cut);
@@ -129,7 +129,7 @@ void MpiChannel::receive_places(Interface& interface, Surfaces& surfaces) {
       surfaces.of_vertex.size() != interface.vertices.size())
     throw Error("'{}' gave the surfaces of {} of the {} vertices of its interface.", name_,
                 surfaces.of_vertex.size(), interface.vertices.size());
-  if (interface.face_vertices.empty()) interface.face_offset.clear();  // not known
+  if (interface.face_vertices.empty()) interface.face_offset.clear();  // unknown
 }
 
 void MpiChannel::receive_values(Exchange& data) {

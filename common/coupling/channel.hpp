@@ -10,28 +10,28 @@
 
 namespace couplet::coupling {
 
-/// How the coupler talks to one participant. A command is sent, then its reply received; several participants
-/// may be sent to before the first reply is received, so they work at the same time. Collective over the
-/// coupler's ranks: data and places are each rank's own part, all else is the same on all.
+/// Connection from the coupler to one participant. Each command has one reply. Commands can be sent to
+/// several participants before the first reply is received, so they work concurrently. Collective over the
+/// coupler's ranks: data and positions are each rank's own part, everything else is the same on all ranks.
 class Channel {
  public:
   virtual ~Channel() = default;
   virtual const std::string& name() const = 0;
   virtual void send(const Command& command) = 0;
   virtual Reply receive() = 0;
-  /// Arrays of an earlier reply, for the values of the next: what has its size need not be made and zeroed anew.
+  /// Offers the arrays of an earlier reply for the next one, to save allocations.
   virtual void reuse(Exchange) {}
-  /// Of the participant.
+  /// Number of ranks of the participant.
   virtual int ranks() const { return 1; }
-  /// Processor seconds that this process has spent waiting for replies so far, or has lent to the participant.
+  /// Processor time [s] that this process has spent waiting for replies or inside the participant.
   virtual double waiting_seconds() const { return 0; }
 };
 
-/// To another program: heads from rank 0 to rank 0 of the intercommunicator, values from rank to rank. The
-/// participant's vertices and faces are cut anew, evenly, over the coupler's ranks.
+/// Channel to another program. Heads go between the ranks 0 of the intercommunicator, values from rank to
+/// rank. The participant's vertices and faces are distributed evenly over the coupler's ranks.
 class MpiChannel final : public Channel {
  public:
-  /// `comm`: the coupler's ranks.
+  /// `comm` contains the coupler's ranks.
   MpiChannel(std::string name, MPI_Comm peers, MPI_Comm comm)
       : name_(std::move(name)), peers_(peers), comm_(comm) {}
   const std::string& name() const override { return name_; }
@@ -55,10 +55,10 @@ class MpiChannel final : public Channel {
   std::vector<Interface::Datum> takes_, gives_;
   Exchange spare_;
   double waiting_seconds_ = 0;
-  Cut theirs_, mine_;  // the same list of places, cut over the participant's and the coupler's ranks
+  Cut theirs_, mine_;  // the same entities, distributed over the participant's and the coupler's ranks
 };
 
-/// To a participant inside this process: a function call.
+/// Channel to a participant inside this process, by function calls.
 class LocalChannel final : public Channel {
  public:
   /// The participant must outlive the channel.
@@ -77,7 +77,7 @@ class LocalChannel final : public Channel {
   double waiting_seconds_ = 0;
 };
 
-/// Which rank of the other side takes or gives which of my places, both kinds at once.
+/// Entities, both vertices and faces, that this rank exchanges with a rank of the other side.
 struct Exchanged {
   int rank;
   Slice slice;

@@ -25,7 +25,7 @@ std::vector<const mesh::Patch*> find_patches(const mesh::Mesh& mesh, const std::
   return patches;
 }
 
-/// One rank's problem is everyone's: sizes are judged together, so that no rank is left in a collective call.
+/// Checks sizes collectively, so that a problem of one rank leaves no other rank in a collective call.
 void check_size(MPI_Comm comm, std::size_t got, std::size_t entries, int components) {
   if (!parallel::any(comm, got != 0 && got != entries * std::size_t(components))) return;
   throw Error(
@@ -38,8 +38,8 @@ void check_size(MPI_Comm comm, std::size_t got, std::size_t entries, int compone
 
 InterfaceMap::InterfaceMap(const mesh::Mesh& mesh, const std::vector<std::string>& patches)
     : mesh_(&mesh), patches_(patches) {
-  // Whether a ghost point lies on the patches only its owner can tell: the faces that touch it may not be
-  // here.
+  // Only the owner of a ghost point knows if it lies on the patches, because the faces at it may be on other
+  // ranks.
   std::vector<double> on_patch(mesh.points.n_local(), 0);
   for (const mesh::Patch* p : find_patches(mesh, patches)) {
     for (Index f = p->first; f < p->first + p->count; ++f) faces_.push_back(f);
@@ -51,7 +51,7 @@ InterfaceMap::InterfaceMap(const mesh::Mesh& mesh, const std::vector<std::string
   std::sort(faces_.begin(), faces_.end());
   faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
 
-  // Where each point stands among its owner's interface points.
+  // Position of each point among its owner's interface points.
   std::vector<double> place(mesh.points.n_local(), 0);
   Index n_owned = 0;
   for (Index p = 0; p < mesh.points.n_local(); ++p) {

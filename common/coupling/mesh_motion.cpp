@@ -16,11 +16,11 @@ constexpr int motion_tag = 7101;
 const char* const mover_name = "the mesh mover";
 const char* const fluid_name = "the fluid";
 
-/// A message is the status, then dim values a point in the order that both sides agreed on: displacements, and
-/// velocities where there are such.
+/// Status at the start of a message. It is followed by dim displacements per point in the agreed order, and
+/// velocities if there are any.
 enum class Status : int { moved, failed };
 
-/// The points that one rank of the other program gives or takes.
+/// Points that one rank of the other program sends or receives.
 struct Peer {
   int rank;
   std::vector<Index> points;
@@ -32,14 +32,14 @@ int remote_size(MPI_Comm peers) {
   return size;
 }
 
-/// Neither side may hold up the other's processor while that one still reads its mesh.
+/// Synchronizes without blocking the other side's processor while it reads its mesh.
 void meet(MPI_Comm peers, const char* whom) {
   MPI_Request request;
   MPI_Ibarrier(peers, &request);
   wait_politely(request, whom);
 }
 
-/// Owned point ids of every rank on the other side. Both sides throw if the numbers of points differ.
+/// Ids of the points owned by every rank of the other side. Both sides throw if the numbers of points differ.
 std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const mesh::Mesh& mesh) {
   const int n_remote = remote_size(peers);
   const GlobalIndex mine[3] = {mesh.points.n_global(), mesh.dim, mesh.points.n_owned()};
@@ -66,7 +66,7 @@ std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const m
   return by_rank;
 }
 
-/// send[r] goes to rank r of the other side.
+/// Exchanges ids: send[r] goes to rank r of the other side.
 std::vector<std::vector<GlobalIndex>> exchange_ids(MPI_Comm peers,
                                                    const std::vector<std::vector<GlobalIndex>>& send) {
   const int n = remote_size(peers);
@@ -87,7 +87,7 @@ std::vector<std::vector<GlobalIndex>> exchange_ids(MPI_Comm peers,
   return received;
 }
 
-/// On both sides: true if it is true on any rank of the source.
+/// Returns true on both sides if `value` is true on any rank of the source.
 bool any_of_source(MPI_Comm peers, MPI_Comm own, bool is_source, bool value) {
   const int mine = is_source && value ? 1 : 0;
   int theirs = 0;
@@ -161,7 +161,7 @@ class Source final : public MeshMotionSource {
     for (std::size_t i = 0; i < peer.points.size(); ++i)
       for (int c = 0; c < dim_; ++c) values[std::size_t(peer.points[i]) * dim_ + c] = from[i * dim_ + c];
   }
-  /// Equal numbers with other places would pass unseen and move the wrong points.
+  /// Checks positions, because equal ids at other positions would move the wrong points.
   void compare_points(const mesh::Mesh& mesh, std::span<const Vec3> places) {
     const std::vector<double> theirs = receive();
     Vec3 low = Vec3::Constant(INFINITY), high = -low;
@@ -217,7 +217,7 @@ class Sink final : public MeshMotionSink {
   }
 
   ~Sink() override {
-    // A message the fluid never took (the job ends early): MPI may still read it, so it outlives us.
+    // If the job ends early, MPI may still read a message that the fluid never received, so it is leaked.
     for (Outgoing& to : to_) {
       int done = 1;
       if (to.request != MPI_REQUEST_NULL) MPI_Test(&to.request, &done, MPI_STATUS_IGNORE);
@@ -251,8 +251,8 @@ class Sink final : public MeshMotionSink {
     std::vector<double> message;
     MPI_Request request = MPI_REQUEST_NULL;
   };
-  /// Sends do not wait: the fluid takes the message when the coupler lets it solve. The last one must be gone
-  /// before.
+  /// Starts a message after the previous one was sent. Sends do not wait, because the fluid receives them
+  /// when the coupler starts its solve.
   void start(Outgoing& to, Status status) {
     wait_politely(to.request, fluid_name);
     to.message.assign(1, double(status));

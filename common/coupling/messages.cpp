@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t command_mark = 0x434f'4d4d;  // "COMM"
 constexpr std::int64_t reply_mark = 0x5245'504c;    // "REPL"
 
-/// Everything is 8 bytes wide, in the machine's order; texts and arrays carry their length first.
+/// Packs values of 8 bytes in the machine's byte order. Texts and arrays start with their length.
 class Packer {
  public:
   void put(std::int64_t value) { raw(&value, sizeof value); }
@@ -24,7 +24,7 @@ class Packer {
     raw(text.data(), text.size());
   }
   void put(const Vec3& point) { raw(point.data(), 3 * sizeof(double)); }
-  /// Names alone: the values go from rank to rank.
+  /// Packs only names, since values are sent from rank to rank.
   void put(const Exchange& data) {
     put(std::int64_t(data.size()));
     for (const auto& [name, values] : data) put(name);
@@ -143,7 +143,7 @@ std::vector<char> pack(const Reply& r, const Cut& cut) {
 
 namespace {
 
-/// "datum@" beside "datum" asks for its values within the step.
+/// Extracts requests for values within the step: "datum@" beside "datum".
 void take_out_within(std::vector<Interface::Datum>& takes, Surfaces& surfaces) {
   std::erase_if(takes, [&](const Interface::Datum& d) {
     if (!d.name.ends_with(WithinStep::mark)) return false;
@@ -234,8 +234,8 @@ std::vector<std::span<double>> places_in(Exchange& data, const std::vector<Inter
   return stretches<double>(data, of, dim, slice, whose);
 }
 
-// Vertices: number, ids, places. Faces: number, ids, centres, areas, parts, numbers of vertices, their
-// positions. Last the surfaces of the vertices, or none.
+// Layout: number, ids and positions of vertices; number, ids, centers, areas, parts, numbers of vertices and
+// their positions of faces; surfaces of the vertices, or none.
 std::vector<char> cut_out(const Interface& i, const Slice& s) {
   Packer out;
   out.put(std::int64_t(s.vertices));
@@ -257,7 +257,7 @@ std::vector<char> cut_out(const Interface& i, const Slice& s) {
     for (Index k = i.face_offset[f]; k < i.face_offset[f + 1]; ++k)
       out.put(std::int64_t(i.face_vertices[std::size_t(k)]));
   }
-  out.put(std::int64_t(0));  // our participants have no surfaces of their own
+  out.put(std::int64_t(0));  // our participants have no separate surfaces
   return out.take();
 }
 

@@ -18,7 +18,7 @@
 
 namespace couplet::coupling {
 
-/// A list cut into contiguous blocks, rank by rank: entries starts[r] to starts[r + 1] are rank r's.
+/// Partition of a list into contiguous blocks: rank r has entries starts[r] to starts[r + 1].
 using Starts = std::vector<GlobalIndex>;
 
 inline Starts starts_of(const std::vector<GlobalIndex>& counts) {
@@ -27,7 +27,7 @@ inline Starts starts_of(const std::vector<GlobalIndex>& counts) {
   return starts;
 }
 
-/// n entries on `ranks` ranks: rank r has [n r / ranks, n (r + 1) / ranks).
+/// Distributes n entries evenly: rank r has [n r / ranks, n (r + 1) / ranks).
 inline Starts even_starts(GlobalIndex n, int ranks) {
   Starts starts;
   for (int r = 0; r <= ranks; ++r) starts.push_back(n * r / ranks);
@@ -38,10 +38,10 @@ inline int owner_of(const Starts& starts, GlobalIndex position) {
   return int(std::upper_bound(starts.begin(), starts.end(), position) - starts.begin()) - 1;
 }
 
-/// The part of my block that lies in another rank's block of the same list, cut differently.
+/// Intersection of this rank's block with another rank's block in a different partition of the same list.
 struct Overlap {
-  int rank;                  ///< the other one
-  std::size_t first, count;  ///< within my block
+  int rank;                  ///< rank of the other partition
+  std::size_t first, count;  ///< within this rank's block
 };
 
 inline std::vector<Overlap> overlaps(const Starts& mine, int rank, const Starts& theirs) {
@@ -54,7 +54,7 @@ inline std::vector<Overlap> overlaps(const Starts& mine, int rank, const Starts&
   return result;
 }
 
-/// What a coupler can ask of a participant. The numbers are part of the protocol (docs/protocol.md).
+/// Operations that a coupler can request. The numbers are part of the protocol (docs/protocol.md).
 enum class Op : std::int64_t {
   initialise = 1,
   begin_step = 2,
@@ -68,75 +68,75 @@ enum class Op : std::int64_t {
 };
 const char* name(Op op);
 
-/// Coupler to participant.
+/// Message from coupler to participant.
 struct Command {
   Op op = Op::initialise;
   Step step;           ///< begin_step
   Exchange data;       ///< solve, start: the input, this rank's entries
   double time = 0;     ///< accept_step, write_output: the accepted time t^{n+1} [s]
-  int output = -1;     ///< accept_step, write_output: number of the output that is due; -1: none
+  int output = -1;     ///< accept_step, write_output: number of the output that is due, or -1
   std::string folder;  ///< save, load: of the checkpoint, with <name>.h5; finalise: why the run failed
 };
 
-/// Vertices that belong to surfaces of their own (a guest's meshes), and which data are theirs alone.
+/// Vertices on separate surfaces (a guest's meshes), and the data that exist only there.
 struct Surfaces {
-  std::vector<int> of_vertex{};  ///< of this rank; empty: there are no such surfaces
-  std::map<std::string, int> takes{},
-      gives{};  ///< by datum at vertices; one that is not here is at all of them
-  std::set<std::string>
-      within{};  ///< taken data whose values within the step are wanted, too (see WithinStep)
+  std::vector<int> of_vertex{};  ///< per vertex of this rank; empty if there are none
+  /// Surface of a datum at vertices. Data not listed are at all vertices.
+  std::map<std::string, int> takes{}, gives{};
+  /// Taken data whose values within the step are wanted, too (see WithinStep).
+  std::set<std::string> within{};
 };
 
-/// Participant to coupler. Every command has exactly one reply.
+/// Message from participant to coupler. Every command has exactly one reply.
 struct Reply {
   enum class Status : std::int64_t {
     ok = 0,
-    failure = 1,   ///< the step could not be solved (`text` says why); state n is as it was
-    hopeless = 2,  ///< the same, and a smaller step would not help
+    failure = 1,   ///< the step could not be solved (`text` states why); state n is unchanged
+    hopeless = 2,  ///< as `failure`, and a smaller step would not help
   };
   Status status = Status::ok;
   std::string text;
   double seconds = 0;                                             ///< spent on the command
   double suggested_dt = std::numeric_limits<double>::infinity();  ///< initialise, accept_step, load
   StepReport report;                                              ///< accept_step
-  Exchange data;        ///< solve: the output, initialise: values before the first step; this rank's entries
+  Exchange data;        ///< solve: the output; initialise: values before the first step; this rank's entries
   bool anew = false;    ///< solve: Participant::answered_anew()
   Interface interface;  ///< initialise: this rank's entries
   Surfaces surfaces;    ///< initialise
 };
 
-/// How a participant's surface is cut over its ranks: part of the reply to initialise.
+/// Distribution of a participant's surface over its ranks, part of the reply to initialise.
 struct Cut {
   Starts vertices{0}, faces{0};
 };
 
-/// Heads of messages: all but the values at vertices and faces, of which they hold the names. From rank 0 to
-/// rank 0.
+/// Packs the head of a message: everything but the values at vertices and faces, which it only names. Sent
+/// between the ranks 0.
 std::vector<char> pack(const Command& command);
 std::vector<char> pack(const Reply& reply, const Cut& cut);
-/// Throw Error if the bytes are not such a message of this version of the protocol. The data are there by
-/// name, empty.
+/// Unpacks a head. Throws Error if the bytes are not such a message of this protocol version. The data get
+/// their names, but no values.
 Command unpack_command(std::span<const char> bytes);
 Reply unpack_reply(std::span<const char> bytes, Cut& cut);
 
-/// What one rank has of a participant's values, cut further for another rank: all data of `names` one after
-/// the other, each the part at vertices or faces; data without a value there are left out. Throws Error if an array has
-/// not the announced length.
+/// Part of a rank's values that goes to another rank. All data of `names` follow one another, each at the
+/// vertices or faces of the slice. Data without values are omitted. Throws Error if an array does not have
+/// the announced length.
 struct Slice {
   std::size_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;  ///< within this rank's entries
   bool empty() const { return vertices == 0 && faces == 0; }
 };
 std::vector<std::span<const double>> cut_out(const Exchange& data, const std::vector<Interface::Datum>& of,
                                              int dim, const Slice& slice, const std::string& whose);
-/// The same of arrays that are to be filled.
+/// Returns the same slices of arrays that are to be filled.
 std::vector<std::span<double>> places_in(Exchange& data, const std::vector<Interface::Datum>& of, int dim,
                                          const Slice& slice, const std::string& whose);
-/// Those of `announced` whose names are in `data`, by name, values within the step by their own names; throws Error if a
-/// name was not announced.
+/// Data of `announced` that are in `data`, by name; values within the step have their own names. Throws Error
+/// if a name was not announced.
 std::vector<Interface::Datum> present(const Exchange& data, const std::vector<Interface::Datum>& announced,
                                       const std::string& whose);
 
-/// The places themselves, once, the same way.
+/// Packs the vertices and faces of a slice, once.
 std::vector<char> cut_out(const Interface& interface, const Slice& slice);
 void put_back(std::span<const char> bytes, Interface& interface, std::vector<int>& surface_of_vertex);
 
@@ -146,9 +146,9 @@ inline constexpr int command_tag = 101, reply_tag = 102, input_tag = 103, places
 inline constexpr std::int64_t largest_integer = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t most_sub_steps = 1000000, most_surfaces = 1000;
 
-/// The one reader of messages between programs, of which a guest's may hold anything: every length is compared with the
-/// bytes that are there before anything is made of it, every number with what it may be. Throws Error. messages.cpp
-/// alone uses it.
+/// Reader of messages between programs. A guest may send anything, so every length is checked against the
+/// available bytes before memory is allocated, and every number against its range. Throws Error. Only
+/// messages.cpp uses it.
 class Unpacker {
  public:
   static constexpr std::size_t longest_name = 256;
@@ -175,7 +175,7 @@ class Unpacker {
     raw(value.data(), value.size());
     return value;
   }
-  /// One that stands in messages and files.
+  /// Reads a name that is valid in messages and files.
   std::string name() {
     std::string value = text();
     bool sound = value.size() <= longest_name;
@@ -193,9 +193,9 @@ class Unpacker {
     if (!p.allFinite()) throw Error("A {} gives {} as ({}, {}, {}).", what_, of, p[0], p[1], p[2]);
     return p;
   }
-  /// Of a list whose entries take at least `words` times 8 bytes.
+  /// Reads the length of a list whose entries take at least `words` times 8 bytes.
   std::size_t count(std::size_t words) { return length(8 * words); }
-  /// How entries are cut over ranks: from 0 on, never downwards.
+  /// Reads offsets of a partition, which must start at 0 and not decrease.
   std::vector<GlobalIndex> cut(const char* of) {
     std::vector<GlobalIndex> values(length(sizeof(GlobalIndex)));
     raw(values.data(), values.size() * sizeof(GlobalIndex));
@@ -217,7 +217,7 @@ class Unpacker {
     for (std::size_t n = count(1); n > 0; --n) data[name()];
     return data;
   }
-  /// `surfaces`: of data at the vertices of one surface alone (place 2 + surface).
+  /// `surfaces` receives data that exist only at the vertices of one surface (location 2 + surface).
   std::vector<Interface::Datum> data(std::map<std::string, int>& surfaces) {
     std::vector<Interface::Datum> list;
     for (std::size_t n = count(4); n > 0; --n) {

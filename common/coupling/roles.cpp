@@ -16,7 +16,7 @@ const Demand displacement{"'displacement'", "displacement", {"m"}, Place::vertic
 const Demand velocity{"'velocity'", "velocity", {"m/s"}, Place::vertices};
 
 bool meets(const Demand& demand, const Datum& datum) {
-  // A vector may be announced by the number of its components, too; whether it is the right one the links know.
+  // A vector may also be declared by its number of components; Links checks it.
   const bool fits = demand.any_size || datum.components != 1;
   return fits && (demand.name.empty() || demand.name == datum.name) &&
          std::ranges::find(demand.units, datum.unit) != demand.units.end() &&
@@ -44,7 +44,7 @@ std::string text(const std::vector<Datum>& data) {
   return words.empty() ? "nothing" : base::join(words);
 }
 
-/// The first demand that none of the data meets.
+/// First demand that none of the data meets.
 const Demand* unmet(const std::vector<Demand>& demands, const std::vector<Datum>& data) {
   for (const Demand& demand : demands)
     if (std::ranges::none_of(data, [&](const Datum& datum) { return meets(demand, datum); })) return &demand;

@@ -14,8 +14,8 @@
 namespace couplet::coupling {
 namespace {
 
-/// The coupler knows the data as rank 0 describes them. A rank whose list is another one would be passed over without a
-/// word, and with it what its part of the interface gives or takes; none at all is right where rank 0 describes all.
+/// Checks that all ranks list the same data. The coupler uses the list of rank 0, so data of a rank with
+/// another list would be ignored silently. A rank may have no list if rank 0 describes everything.
 void check_lists(MPI_Comm comm, const Interface& interface) {
   const auto described = [&](const std::vector<Interface::Datum>& takes,
                              const std::vector<Interface::Datum>& gives) {
@@ -75,7 +75,7 @@ void dispatch(const Command& command, Participant& participant, const std::strin
     }
     case Op::finalise:
       return;
-    case Op::start:  // is for those that give values before the first step
+    case Op::start:  // for participants with values before the first step
       break;
   }
   throw Error("The coupler sent command {}, which is unknown to this program.",
@@ -89,13 +89,13 @@ Cut cut_of(MPI_Comm comm, const Interface& interface) {
   return {cut(interface.vertices.size()), cut(interface.face_centres.size())};
 }
 
-/// This rank's end of the values and places that go from rank to rank.
+/// This rank's part of the rank-to-rank exchange of values, vertices and faces.
 class Ranks {
  public:
   Ranks(MPI_Comm coupler, MPI_Comm comm, std::string name)
       : coupler_(coupler), comm_(comm), name_(std::move(name)) {}
 
-  /// `announced`: dimension and data as rank 0 has them.
+  /// Sends vertices and faces. `announced` holds dimension and data of rank 0.
   void send_places(const Interface& interface, const Interface& announced, const Cut& cut) {
     interface_ = announced;
     mine_ = cut;
@@ -109,7 +109,7 @@ class Ranks {
                  "interface geometry");
   }
 
-  /// Values for the names that the head has announced. A rank without places gets none.
+  /// Receives values of the names in the head. A rank without vertices and faces receives none.
   void receive(Exchange& data) const {
     const auto list = present(data, interface_.takes, name_);
     const auto rank = std::size_t(parallel::comm_rank(comm_));
@@ -150,7 +150,7 @@ class Ranks {
  private:
   MPI_Comm coupler_, comm_;
   std::string name_;
-  Interface interface_;  // takes and gives alone
+  Interface interface_;  // only takes and gives
   Cut mine_;
   std::vector<Exchanged> plan_;
 };
@@ -197,7 +197,7 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
                                           "the coupler to receive a "
                                           "reply");
     if (described) {
-      // Participants that describe all on rank 0 leave the rest of the description to it, too.
+      // If rank 0 describes everything, the other ranks take its description.
       broadcast_bytes(comm, head, "");
       ranks.send_places(reply.interface, unpack_reply(head, cut).interface, cut);
     }

@@ -18,11 +18,11 @@ namespace {
 
 constexpr int least_patience = 2, most_patience = 64;
 
-// A rest of this part of a step is what the digits of the step leave, such as 0.0333333333 s: the last step takes it along. As
-// a step of its own it would be so short that its forces are noise.
+// Relative length up to which a remainder of the time belongs to the last step. It results from rounded step
+// sizes such as 0.0333333333 s. As a separate step it would be too short for accurate forces.
 constexpr double rest_taken_along = 1e-6;
 
-/// Nominal steps to the end; what rounding adds to the quotient is no step of its own.
+/// Number of nominal steps to the end, without a step for round-off of the quotient.
 GlobalIndex count(double end_time, double nominal_dt) {
   const double steps = end_time / nominal_dt;
   if (!(steps <= StepPlan::most_steps))
@@ -50,8 +50,8 @@ double StepPlan::nominal_time(GlobalIndex i) const {
 double StepPlan::nominal_length() const {
   if (nominal_ + 1 < n_nominal_) return nominal_dt_;
   const double rest = end_time_ - double(nominal_) * nominal_dt_;
-  // Where rounding alone parts it from a step or one of its halves, it is that: matrices made for the one serve the other
-  // bit for bit, also in a run that was continued and has made none yet.
+  // A step that differs from a nominal one or its halves only by round-off is set to it, so matrices can be
+  // reused bit for bit, even after a restart.
   for (int level = 0; level <= max_halvings_; ++level)
     if (const double dt = std::ldexp(nominal_dt_, -level); std::abs(rest - dt) <= 1e-9 * dt) return dt;
   return rest;
@@ -65,7 +65,7 @@ double StepPlan::time() const {
 int StepPlan::level() const {
   int level = wanted_level_;
   while (level < max_halvings_ && std::ldexp(nominal_length(), -level) > largest_dt_ * (1 + 1e-12)) ++level;
-  // A longer step may only start where its own grid has a node.
+  // A longer step may only start at a node of its own grid.
   while (level < max_halvings_ && tick_ % (1L << (max_halvings_ - level)) != 0) ++level;
   return level;
 }
@@ -160,7 +160,7 @@ void SubStepping::back_to_start() {
   moved_on_ = false;
 }
 
-/// At t^n + share dt; a mean over the step stands for all of it.
+/// Input at t^n + share dt. A mean over the step is constant.
 Exchange SubStepping::input_at(double share) const {
   Exchange in = given_;
   if (!step_.waveform) return in;
@@ -213,7 +213,7 @@ StepReport SubStepping::accept_step() {
 }
 
 void SubStepping::save(io::CheckpointWriter& file) const {
-  if (moved_on_) {  // a step that was given up: what is saved is state n
+  if (moved_on_) {  // the step was given up, so state n is saved
     io::CheckpointReader reader(start_);
     inner_.load(reader);
     moved_on_ = false;

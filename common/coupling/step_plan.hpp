@@ -14,42 +14,42 @@
 
 namespace couplet::coupling {
 
-/// Which step comes next. Nominal steps end at multiples of the nominal dt (the last one at the end time); a
-/// step that fails is halved; after a while the halves grow back, later each time that was too early; nominal
-/// times are always met. All sizes are the nominal one divided by a power of two, exactly: a solver that
-/// keeps a factorised matrix for each dt meets few different ones.
+/// Chooses the next time step. Nominal steps end at multiples of the nominal dt, the last one at the end
+/// time. A failed step is halved. Step sizes grow back after some accepted steps, more slowly after each
+/// premature growth. Nominal times are always met. All sizes are the nominal one divided by a power of two,
+/// so a solver can reuse few factorizations.
 class StepPlan {
  public:
-  /// More nominal steps than this are refused: times would no longer be told apart.
+  /// Limit on nominal steps, beyond which times could not be distinguished.
   static constexpr double most_steps = 1e12;
 
-  /// max_halvings: a step is halved at most this often (0 to 30). Throws Error for more than `most_steps`.
+  /// A step is halved at most `max_halvings` times (0 to 30). Throws Error for more than `most_steps`.
   StepPlan(double end_time, double nominal_dt, int max_halvings);
 
   bool finished() const { return nominal_ >= n_nominal_; }
   double time() const;   ///< t^n [s]
-  double dt() const;     ///< of the step to try next; never beyond the next nominal time
-  bool is_last() const;  ///< whether the step to try next ends the run
-  /// Advice of the participants: the next steps are not longer than this if max_halvings allows.
+  double dt() const;     ///< of the next step to try; never beyond the next nominal time
+  bool is_last() const;  ///< true if the next step to try ends the run
+  /// Sets the participants' limit on the next steps, as far as max_halvings allows.
   void limit(double largest_dt) { largest_dt_ = largest_dt; }
   void accepted();
-  /// False if the step may not be halved any more.
+  /// Halves the step. Returns false if it may not be halved any more.
   bool halve();
-  /// True right after a nominal step was completed (outputs and checkpoints are made then).
+  /// Returns true right after a nominal step was completed, when outputs and checkpoints are due.
   bool at_nominal_time() const { return tick_ == 0; }
   GlobalIndex steps_accepted() const { return accepted_; }
   int halvings() const { return level(); }
 
-  /// For checkpoints.
+  /// State for checkpoints.
   std::array<double, 6> state() const;
-  /// `time`: the checkpoint's. The nominal dt may differ from that of the run that was saved if `time` is one
-  /// of the new nominal times; throws Error otherwise.
+  /// Restores the state at the checkpoint's `time`. The nominal dt may differ from that of the saved run if
+  /// `time` is one of the new nominal times; throws Error otherwise.
   void restore(const std::array<double, 6>& state, double time);
 
  private:
-  int level() const;  // halvings in force, made to fit the grid of ticks and the advice
+  int level() const;  // current halvings, adapted to the grid of ticks and the participants' limit
   double nominal_time(GlobalIndex i) const;
-  double nominal_length() const;  // of the nominal step under way [s]
+  double nominal_length() const;  // of the current nominal step [s]
 
   double end_time_, nominal_dt_;
   int max_halvings_;
@@ -59,19 +59,19 @@ class StepPlan {
   long tick_ = 0;            // within the nominal step, in units of length / 2^max_halvings
   int wanted_level_ = 0;
   int calm_ = 0;      // steps accepted since the last failure or growth
-  int patience_ = 2;  // so many calm steps before the next growth
+  int patience_ = 2;  // calm steps before the next growth
   GlobalIndex accepted_ = 0;
 };
 
-/// A participant that takes several steps of its own within a coupling step, whatever it is: it is put back
-/// to state n by save and load in memory before each further pass. Input is taken as a line in time through
-/// the values of the last accepted step and those at hand (waveform: linear), so that the coupling keeps its
-/// second order, or as constant. Of what it gives, amounts (N, W) are means over its steps, all else is the
-/// last. With one step a coupling step (the rule) it hands everything through and keeps nothing.
+/// Participant that takes several steps within a coupling step. It is restored to state n in memory before
+/// each further pass. Its input is linear in time between the values of the last accepted step and the
+/// current ones (waveform: linear), which keeps the coupling second-order, or constant. Output amounts (N, W)
+/// are means over the sub-steps, other data are taken from the last. With one step per coupling step (the
+/// default) it forwards everything and stores nothing.
 class SubStepping final : public Participant {
  public:
   explicit SubStepping(Participant& inner) : inner_(inner) {}
-  /// Steps within a coupling step; to be known before load.
+  /// Sets the number of steps within a coupling step. Must be called before load.
   void set(int steps) { steps_ = steps; }
 
   Interface initialise() override;
@@ -95,22 +95,22 @@ class SubStepping final : public Participant {
   int steps_ = 1;
   Step step_;
   std::vector<Interface::Datum> takes_, gives_;
-  std::map<Interface::Place, std::pair<std::vector<GlobalIndex>, std::size_t>>
-      places_;                     // numbers and how many, here
+  // Numbers and how many, here.
+  std::map<Interface::Place, std::pair<std::vector<GlobalIndex>, std::size_t>> places_;
   io::StateInMemory start_;        // state n
-  bool has_start_ = false;         // it is in start_
+  bool has_start_ = false;         // start_ holds state n
   mutable bool moved_on_ = false;  // the participant has accepted steps beyond it
-  Exchange before_, given_;        // input of the accepted step before, of the pass under way
+  Exchange before_, given_;        // input of the last accepted step, of the current pass
   long iterations_ = 0;
 };
 
-/// Values of a datum within a step, of participants that subdivide it: in an Exchange they stand beside the values at
-/// its end by the name "datum@share", share of the step in (0, 1), for example "displacement@0.25". A participant that
-/// asks for them announces "datum@" beside "datum" (docs/protocol.md).
+/// Values of a datum within a step, for participants with sub-steps. An Exchange holds them beside the values
+/// at the end of the step as "datum@share" with share in (0, 1), for example "displacement@0.25". A
+/// participant requests them by announcing "datum@" beside "datum" (docs/protocol.md).
 struct WithinStep {
   static constexpr char mark = '@';
   static std::string name(const std::string& datum, double share);
-  /// The datum and the share that a name stands for; nothing if it is no such name.
+  /// Datum and share encoded in a name, or nothing if it is not such a name.
   static std::optional<std::pair<std::string, double>> parse(std::string_view name);
 };
 

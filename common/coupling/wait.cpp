@@ -80,7 +80,7 @@ std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::st
   MPI_Message message = await_message(peers, from, tag, what, status);
   int count = 0;
   MPI_Get_count(&status, MPI_BYTE, &count);
-  // MPI counts up to 2^31 - 1; beyond it the count is not defined.
+  // MPI counts up to 2^31 - 1; beyond that the count is undefined.
   if (count < 0 || std::size_t(count) > most)
     throw Error("While waiting for {}: received a message of {} bytes; expected at most {}.", what, count,
                 most);
@@ -93,7 +93,7 @@ std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::st
 
 namespace {
 
-/// Stretches as one MPI datatype, to be taken from MPI_BOTTOM; the one of a single stretch is that of its values.
+/// Segments as one MPI datatype relative to MPI_BOTTOM. A single segment uses the type of its values.
 template <class Value>
 class Layout {
  public:
@@ -112,7 +112,7 @@ class Layout {
     MPI_Type_commit(&type_);
   }
   ~Layout() {
-    // MPI keeps it until the messages under way are done.
+    // MPI keeps the type until pending messages are completed.
     if (type_ != MPI_DOUBLE) MPI_Type_free(&type_);
   }
   Layout(const Layout&) = delete;
@@ -136,7 +136,7 @@ void receive_stretches(MPI_Comm peers, int from, int tag, const Stretches& to, c
   MPI_Message message = await_message(peers, from, tag, what, status);
   int bytes = 0;
   MPI_Get_count(&status, MPI_BYTE, &bytes);
-  // A program of somebody else may have another idea of its interface than it has announced.
+  // A foreign program may send another size than it announced.
   if (std::size_t(bytes) != wanted * sizeof(double))
     throw Error("While waiting for {}: received a message of {} values; {} were announced.", what,
                 std::size_t(bytes) / sizeof(double), wanted);

@@ -11,19 +11,18 @@
 
 namespace couplet::coupling {
 
-/// Waiting that leaves the core to others: the programs of a coupled job take turns, and MPI's own blocking
-/// calls spin. Spins for the first 80 us (messages between programs are short), then sleeps for a
-/// sixteenth of the time already waited, 0.25 ms at most: a step of a small job has a score of waits, one behind the
-/// other, and each ends half a sleep late. Says for whom and since when after 30 s, and again each time the
-/// wait has doubled.
+/// Waiting that yields the core, because programs of a coupled job take turns and MPI's blocking calls spin.
+/// It spins for 80 us, since messages between programs are short. Then it sleeps for 1/16 of the time already
+/// waited, at most 0.25 ms, because delays of consecutive waits add up in small jobs. It logs the awaited
+/// program after 30 s, and each time the wait has doubled.
 class PoliteWait {
  public:
-  /// `what` completes "waiting for ..."; empty: never says anything.
+  /// `what` completes "waiting for ..."; nothing is logged if it is empty.
   explicit PoliteWait(std::string what) : what_(std::move(what)) {}
   PoliteWait(const PoliteWait&) = delete;
   PoliteWait& operator=(const PoliteWait&) = delete;
   ~PoliteWait();
-  /// Between two looks at whatever is awaited.
+  /// Pauses between two polls.
   void pause();
 
  private:
@@ -34,8 +33,8 @@ class PoliteWait {
   bool reported_ = false;
 };
 
-/// Who hears of waits that last (the watch over the job), one a process: four times a second from the second second of
-/// a wait on, and when it is over.
+/// Observer of long waits (the watch over the job), one per process. It is called four times per second after
+/// the first second of a wait, and at its end.
 struct WaitObserver {
   void (*lasts)(const char* what) = nullptr;
   void (*over)() = nullptr;
@@ -44,22 +43,22 @@ void observe_waits(const WaitObserver& observer);
 
 void wait_politely(MPI_Request& request, const std::string& what);
 
-/// Of this process so far, in seconds; what others do on the machine is not in it.
+/// Processor time of this process [s].
 inline double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-/// One message of any length. `peers` may be an intercommunicator.
+/// Sends one message of any length. `peers` may be an intercommunicator.
 void send_bytes(MPI_Comm peers, int to, int tag, std::span<const char> bytes, const std::string& what);
-/// Throws Error if more than `most` bytes come.
+/// Limit on the length of heads. receive_bytes() throws Error for more than `most` bytes.
 inline constexpr std::size_t longest_head = std::size_t(64) << 20;
 std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what,
                                 std::size_t most = std::size_t(2) << 30);
 
-/// Some stretches of arrays that travel as one message, one after the other, without being copied together.
-/// Throws Error if a message of another length comes.
+/// Segments of arrays that are received as one message without being copied together. Throws Error for a
+/// message of another length.
 using Stretches = std::vector<std::span<double>>;
 void receive_stretches(MPI_Comm peers, int from, int tag, const Stretches& to, const std::string& what);
 
-/// Several messages on their way at once; the values must stay where they are until wait().
+/// Sends several messages concurrently. The values must not move until wait() returns.
 class SendAll {
  public:
   explicit SendAll(MPI_Comm peers) : peers_(peers) {}
@@ -71,7 +70,7 @@ class SendAll {
   std::vector<MPI_Request> requests_;
 };
 
-/// Rank 0's bytes to all ranks; the others wait politely. Collective.
+/// Broadcasts rank 0's bytes; the others wait politely. Collective.
 void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string& what);
 
 }  // namespace couplet::coupling

@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view blanks = " \t";
 constexpr std::size_t shown = 60;  // of a cell in messages
 
-/// Without one pair of quotes around it.
+/// Removes one pair of quotes.
 std::string_view unquoted(std::string_view cell) {
   cell = base::trim(cell);
   if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
@@ -36,7 +36,7 @@ std::optional<Number> parsed(std::string_view text) {
   return value;
 }
 
-/// Digits, one or more commas, signs and points: a number as other languages write it.
+/// Detects digits with commas, signs and points: a number in another locale.
 bool has_decimal_comma(std::string_view text) {
   return text.find(',') != std::string_view::npos &&
          text.find_first_of("0123456789") != std::string_view::npos &&
@@ -131,7 +131,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Meant as a number, even where it is none: "0,5", "-", "1.2.3", "nan".
+/// Detects an intended number, even if invalid: "0,5", "-", "1.2.3", "nan".
 bool is_like_number(std::string_view cell) {
   constexpr std::string_view of_numbers = "0123456789.,+-eE";
   if (number_of(cell)) return true;
@@ -142,7 +142,7 @@ bool is_like_number(std::string_view cell) {
   return std::ranges::any_of(cell, is_digit) && cell.find_first_not_of(of_numbers) == std::string_view::npos;
 }
 
-/// "05": what stands behind a decimal comma, not a number of its own.
+/// Detects "05", which follows a decimal comma and is not a number of its own.
 bool has_leading_zero(std::string_view cell) {
   return cell.size() > 1 && cell[0] == '0' && std::ranges::all_of(cell, is_digit);
 }
@@ -172,7 +172,7 @@ CsvReader::CsvReader(const std::filesystem::path& file, const std::string& kind,
 
 std::string CsvReader::place_of_names() const { return fmt::format("{}:{}", lines_.name(), line_of_names_); }
 
-/// The next line that holds cells.
+/// Reads the next line that contains cells.
 bool CsvReader::next_line() {
   for (std::string_view text; lines_.next(text);) {
     text = without_comment(text);
@@ -185,7 +185,7 @@ bool CsvReader::next_line() {
   return false;
 }
 
-/// Names are no numbers, none of them: a first row with a slip must not pass for names.
+/// Takes the first row as names only if none looks like a number, so that a faulty row is not accepted.
 void CsvReader::take_names() {
   const auto number = std::ranges::find_if(cells_, is_like_number);
   if (number == cells_.end()) {
@@ -215,7 +215,7 @@ void CsvReader::check_width() const {
                       : "");
 }
 
-/// "0,5,1000": three numbers, or 0.5 and 1000? Without names nothing decides.
+/// Rejects "0,5,1000" without names: three numbers, or 0.5 and 1000?
 void CsvReader::refuse_ambiguous() const {
   if (!names_.empty() || separator_ != ',' || width_ < 3 || has_points_) return;
   throw Error(

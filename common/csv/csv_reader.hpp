@@ -15,17 +15,17 @@ struct z_stream_s;
 
 namespace couplet::csv {
 
-/// What a text file may be. The defaults hold ten million numbers and keep a reader far below 1 GB.
+/// Limits on a text file. The defaults allow ten million numbers and keep a reader far below 1 GB.
 struct Limits {
   std::uint64_t bytes = std::uint64_t(64) << 20;  ///< of text, decompressed
   std::size_t line = std::size_t(64) << 10;       ///< bytes in a line
   std::size_t lines = 2000000;
   double expansion = 100;  ///< bytes of text per byte of gzip, beyond the first megabyte
-  bool text_only = true;   ///< zeros and control characters are refused
+  bool text_only = true;   ///< rejects zeros and control characters
 };
 
-/// The bytes of a regular file, decompressed where it is gzip (by its first bytes, whatever its name). Never reads or holds more
-/// than `limits` allow. Throws Error with the file's name and what to do; `kind` says in it what the file is.
+/// Bytes of a regular file, decompressed if its first bytes are those of gzip. Never reads or holds more than
+/// `limits` allow. Throws Error with the file's name and what to do; `kind` describes the file.
 class ByteSource final {
  public:
   ByteSource(const std::filesystem::path& file, std::string kind, const Limits& limits);
@@ -33,7 +33,7 @@ class ByteSource final {
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
 
-  /// Fills the front of `into` and returns how much; 0 at the end.
+  /// Fills the front of `into` and returns the number of bytes, 0 at the end.
   std::size_t read(std::span<char> into);
 
  private:
@@ -47,24 +47,24 @@ class ByteSource final {
   Limits limits_;
   std::ifstream stream_;
   std::vector<char> input_;
-  std::size_t at_ = 0, end_ = 0;  // what of input_ is not used yet
+  std::size_t at_ = 0, end_ = 0;  // unused range of input_
   std::uint64_t taken_ = 0, given_ = 0;
-  std::unique_ptr<z_stream_s, void (*)(z_stream_s*)> gzip_;  // none: plain text
+  std::unique_ptr<z_stream_s, void (*)(z_stream_s*)> gzip_;  // nullptr for plain text
   bool member_ended_ = false;
 };
 
-/// Line by line through a text file, plain or gzip: the only way in which text data come into a program. A mark of UTF-8 at
-/// the start and CR before LF are dropped. Throws Error with file and line for what is no text (zeros, control characters), for
-/// lines and files beyond the limits.
+/// Reads a text file, plain or gzip, line by line. All text data enter the programs here. Drops a UTF-8 byte
+/// order mark and CR before LF. Throws Error with file and line for zeros, control characters, and lines and
+/// files beyond the limits.
 class LineReader final {
  public:
-  /// `kind` in messages: "weather file".
+  /// `kind` describes the file in messages: "weather file".
   LineReader(const std::filesystem::path& file, const std::string& kind, const Limits& limits = {});
 
-  /// The next line, which stays until the next call. False at the end.
+  /// Reads the next line, valid until the next call. Returns false at the end.
   bool next(std::string_view& line);
   std::size_t number() const { return number_; }  ///< of that line, from 1
-  bool has_end() const { return has_end_; }       ///< false for a last line that was cut or has no line end
+  bool has_end() const { return has_end_; }       ///< false if the last line is truncated or has no line end
   std::string place() const;                      ///< "folder/file.csv:12"
   const std::string& name() const { return name_; }
   const std::string& kind() const { return kind_; }
@@ -81,55 +81,55 @@ class LineReader final {
   bool has_end_ = true;
 };
 
-/// All lines of a file, without the empty ones at its end.
+/// All lines of a file, without empty ones at its end.
 std::vector<std::string> read_lines(const std::filesystem::path& file, const std::string& kind,
                                     const Limits& limits = {});
 
-/// Between cells: ',', ';', a tab, or ' ' for any number of blanks and tabs.
+/// Separator of cells: ',', ';', a tab, or ' ' for any number of blanks and tabs.
 using Separator = char;
 
-/// The separator of a line: the first of ';', ',' and tab that it holds outside quotes, else blanks.
+/// Separator of a line: the first ';', ',' or tab outside quotes, else blanks.
 Separator separator_of(std::string_view line);
 
-/// The cells of a line, without blanks and double quotes around them; they point into `line`. What stands within double
-/// quotes does not separate. False: a quote is not closed.
+/// Splits a line into cells without surrounding blanks and double quotes, as views into `line`. Separators
+/// within double quotes are ignored. Returns false if a quote is not closed.
 bool split_cells(std::string_view line, Separator separator, std::vector<std::string_view>& cells);
-/// As texts, where foreign files have quotes that close nothing.
+/// Splits a line into texts, tolerating unbalanced quotes of foreign files.
 std::vector<std::string> fields(std::string_view line, Separator separator = ',');
 
-/// The line before the '#' of a comment.
+/// Returns the line up to the '#' of a comment.
 std::string_view without_comment(std::string_view line);
 
-/// Empty unless the whole text is one finite number as 1, -0.5 or 2e3.
+/// Converts a text such as 1, -0.5 or 2e3. Returns nothing unless all of it is one finite number.
 std::optional<double> number_of(std::string_view text);
-/// Whole numbers likewise.
+/// Converts a whole number likewise.
 std::optional<int> integer_of(std::string_view text);
 
-/// Why a text that should be a number is none: "'0,5' has a decimal comma; write 0.5".
+/// Explains why a text is not a number: "'0,5' has a decimal comma; write 0.5".
 std::string why_no_number(std::string_view text);
 
-/// "time [ms]": its name and its unit, which is empty without brackets.
+/// Column heading such as "time [ms]". The unit is empty without brackets.
 struct Heading {
   std::string name, unit;
 };
 Heading heading_of(std::string_view cell);
 
-/// Row by row through a table: cells separated by one of comma, semicolon, tab or blanks, the same in the whole file and as many
-/// in each row; '#' begins a comment; the first line may name the columns. Throws Error with file and line, and with what to
-/// do, for ragged rows, decimal commas, separators that could be meant otherwise, and cells that are no finite numbers.
+/// Reads a table row by row. Cells are separated by commas, semicolons, tabs or blanks throughout the file.
+/// '#' begins a comment. The first line may name the columns. Throws Error with file, line and advice for
+/// ragged rows, decimal commas, ambiguous separators and cells that are not finite numbers.
 class CsvReader final {
  public:
-  /// Reads up to the names or the first row.
+  /// Opens the file and reads up to the names or the first row.
   CsvReader(const std::filesystem::path& file, const std::string& kind, const Limits& limits = {});
 
-  /// Cells of the first line; empty where it holds numbers.
+  /// Cells of the first line. Empty if it holds numbers.
   const std::vector<std::string>& names() const { return names_; }
   std::string place_of_names() const;
 
-  /// The next row. False at the end.
+  /// Reads the next row. Returns false at the end.
   bool next();
   const std::vector<std::string_view>& cells() const { return cells_; }
-  /// The number in a cell of the row. `what` names it in messages: "the wind".
+  /// Number in a cell of the row. `what` names it in messages: "the wind".
   double number(std::size_t column, std::string_view what = "") const;
   std::string place() const { return lines_.place(); }
   int line() const { return int(lines_.number()); }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t compressed_chunk = 1 << 16;
 constexpr std::uint64_t always_allowed = 1 << 20;
-constexpr int gzip_format = 16;  // added to the bits of zlib's window
+constexpr int gzip_format = 16;  // added to zlib's window bits
 
 void end_and_delete(z_stream* stream) {
   inflateEnd(stream);
@@ -39,7 +39,7 @@ ByteSource::ByteSource(const std::filesystem::path& file, std::string kind, cons
   if (!std::filesystem::exists(status))
     throw Error("{}: this {} does not exist. Relative paths start at the folder of the YAML file.", name_,
                 kind_);
-  // A pipe would wait for ever for somebody to write, a device would never end.
+  // A pipe would wait forever for a writer, and a device would never end.
   if (!std::filesystem::is_regular_file(status))
     throw Error("{}: this {} is not a regular file, but a folder, pipe or device.", name_, kind_);
   const std::uintmax_t size = std::filesystem::file_size(file, code);
@@ -83,7 +83,7 @@ void ByteSource::check_size() const {
         name_, kind_, limits_.expansion);
 }
 
-/// Files of several members are legal: their texts follow one another.
+/// Continues with the next member. Gzip files may have several, whose texts are concatenated.
 void ByteSource::next_member() {
   std::array<char, 2> head{};
   for (char& c : head) {

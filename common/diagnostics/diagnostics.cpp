@@ -16,10 +16,10 @@ namespace {
 
 using base::Severity;
 
-/// Tells whether a is further beyond its limit than b; NaN is worse than any number.
+/// Returns true if a exceeds its limit by more than b. NaN counts as largest.
 bool exceeds(const Finding& a, const Finding& b) { return !(a.number / a.limit <= b.number / b.limit); }
 
-/// Adds the time of what follows to the timers of the run.
+/// Adds the time until the end of the scope to the timers of the run.
 class Timed {
  public:
   ~Timed() {

@@ -17,85 +17,85 @@ class Archive;
 
 namespace couplet::diagnostics {
 
-/// Where a run stands on a map of the atlas (docs/stability.md), in the terms of its axis.
+/// Position of a run on one axis of a map in the atlas (docs/stability.md).
 struct Coordinate {
   std::string quantity;  ///< "Courant number"
   double value = 0;
-  double limit = 0;    ///< up to here the map is green
+  double limit = 0;    ///< the map is green up to this value
   std::string map{};   ///< "fluid-convection"
-  bool floor = false;  ///< true: from here up
-  /// Share of the way to the limit [1], above 1 beyond it. With a floor the way begins at 1, the best value.
+  bool floor = false;  ///< true if the map is green from `limit` upwards
+  /// Fraction of the limit that is used [1], above 1 beyond it. For a floor it is measured from 1, the best
+  /// value.
   double used() const { return floor ? (1 - value) / (1 - limit) : value / limit; }
-  /// For checkpoints.
+  /// Archives the members in checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(quantity, value, limit, map, floor);
   }
 };
 
-/// Keeps of each quantity the coordinate that is nearer to its limit.
+/// Keeps, for each quantity, the coordinate that is closer to its limit.
 void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen);
-/// "on the map: Courant number 0.8 of 1, ...; nearest limit: ..."; empty without coordinates.
+/// Text "on the map: Courant number 0.8 of 1, ...; nearest limit: ...". Empty without coordinates.
 std::string position_sentence(const std::vector<Coordinate>& position);
 
-/// Collects what diagnostics say.
+/// Results of diagnostics.
 struct Report {
-  /// Findings of an effect or of the answer. A note is a sound one: it is told at the end of the run only.
+  /// Findings about an effect or the result. A note confirms that it is sound and is printed only at the end.
   std::vector<Finding> findings;
   std::vector<std::string> sentences;  ///< for the end of the log
-  ErrorParts errors;                   ///< parts of the estimated error, each over the size of the solution
+  ErrorParts errors;                   ///< parts of the estimated error, relative to the size of the solution
   std::vector<Coordinate> position;
 };
 
-/// Looks at a run from outside and judges its answer. It reads what the program shows of itself (its view) and changes
-/// nothing there. Each one keeps a reference to its view, which outlives it. All calls are collective over the ranks of
-/// the program.
+/// Judges the result of a run from the outside. It reads the program's view without changing anything. It
+/// keeps a reference to the view, which outlives it. All calls are collective over the ranks of the program.
 class Diagnostic {
  public:
   virtual ~Diagnostic() = default;
-  /// After each accepted step.
+  /// Called after each accepted step.
   virtual void observe(Report&) {}
-  /// After steps 1, 2, 4, 8, ... and each hundredth, at outputs and at the end: says what the accepted state shows. Of what
-  /// it says over the run the worst counts.
+  /// Called after steps 1, 2, 4, 8, ..., after each hundredth, at outputs and at the end. Reports on the
+  /// accepted state; the worst finding of the run counts.
   virtual void look(Report&) {}
-  /// At the end of a run that was not given up, after the last look().
+  /// Called at the end of a completed run, after the last look().
   virtual void conclude(Report&) {}
-  /// Saves or loads its memory of the run. A resumed run must end with the findings of the unbroken one.
+  /// Saves or loads its memory of the run. A resumed run must end with the findings of an uninterrupted one.
   virtual void visit(io::Archive&) {}
 };
 
-/// A new diagnostic; nullptr where it does not apply to a run.
+/// New diagnostic, or nullptr if it does not apply to a run.
 using Made = std::shared_ptr<Diagnostic>;
 
-/// All diagnostics of one program in a run: calls them, tells their findings, and keeps the worst of each. What they
-/// have found is part of the checkpoint. All calls are collective.
+/// All diagnostics of one program in a run. Calls them, logs their findings and keeps the worst of each. The
+/// findings are part of the checkpoint. All calls are collective.
 class Diagnostics {
  public:
-  /// `with_errors`: the parts of the error are wanted.
+  /// `with_errors` requests the parts of the error.
   Diagnostics(int rank, bool with_errors) : rank_(rank), with_errors_(with_errors) {}
   bool with_errors() const { return with_errors_; }
-  /// `name`: of its memory in checkpoints, different for each. nullptr: it does not apply to this run.
+  /// Adds a diagnostic. `name` must be unique; it identifies the memory in checkpoints. nullptr is ignored.
   void add(std::string name, std::shared_ptr<Diagnostic> diagnostic) {
     if (diagnostic) all_.push_back({std::move(name), std::move(diagnostic)});
   }
 
-  /// After an accepted step that ended at `time` [s].
+  /// Called after an accepted step that ended at `time` [s].
   void accepted(double time);
-  /// Now, because output is due.
+  /// Looks at the accepted state because output is due.
   void look();
-  /// After the last step, once. `failed`: the run was given up, so that its error and what it neglected are not judged
-  /// except for what has been found already. Gives the lines for the end of the log.
+  /// Concludes after the last step and returns the lines for the end of the log. If the run `failed`, its
+  /// error and neglected effects are not judged beyond existing findings.
   std::vector<std::string> conclude(bool failed);
 
-  /// The worst of each finding so far, notes included.
+  /// Worst of each finding so far, notes included.
   const std::vector<Finding>& findings() const { return worst_; }
-  /// Parts of the error, the model's included, once the run is concluded.
+  /// Parts of the error, including the model's, after conclude().
   const ErrorParts& errors() const { return errors_; }
-  /// Where the run came nearest to the limits of its maps.
+  /// Coordinates at which the run came closest to the limits of its maps.
   const std::vector<Coordinate>& position() const { return position_; }
 
-  /// Saves or loads what was found and the memory of each diagnostic. `Archive` is io::Archive, which this folder, below
-  /// io, only knows by name.
+  /// Saves or loads the findings and the memory of each diagnostic. `Archive` is io::Archive, which is only
+  /// declared in this folder because io depends on it.
   template <class Archive>
   void visit(Archive& archive) {
     std::vector<Finding> found = diagnostics::findings();
@@ -124,27 +124,27 @@ class Diagnostics {
   long steps_ = 0;
   double time_ = 0;
   std::vector<Finding> worst_;        // of each id and subject
-  std::vector<Coordinate> position_;  // nearest to its limit, of each quantity
+  std::vector<Coordinate> position_;  // of each quantity, closest to its limit
   ErrorParts errors_;
   bool concluding_ = false;
 };
 
-/// A finding about an effect that a scene leaves out, or that it has. Nothing if `number` is not known.
+/// Finding about an effect that a scene neglects or includes. Not reported if `number` is unknown.
 struct EffectFinding {
-  const char* effect = "";  ///< its name; the id of the finding is the name in lower case with hyphens
-  double number = 0;        ///< size of what is left out; NaN: not known
-  double limit = 0;         ///< neglecting it is justified up to here
+  const char* effect = "";  ///< its name; the finding's id is the name in lower case with hyphens
+  double number = 0;        ///< size of the neglected effect; NaN if unknown
+  double limit = 0;         ///< up to which neglecting it is justified
   std::string what;         ///< the number in words, with its unit: "max |grad u| = 0.29"
   std::string advice{};
-  bool left_out = true;  ///< false: the scene has it
-  /// The answer is useless from here on.
+  bool left_out = true;  ///< false if the scene includes it
+  /// Value from which the result is useless.
   double wrong_from = std::numeric_limits<double>::infinity();
   double share = std::numeric_limits<double>::quiet_NaN();  ///< see Finding
   double saves = 0;                                         ///< see Finding
 };
 std::optional<Finding> finding_of(const EffectFinding& effect);
 
-/// Adds the model's part of the error: the sum of the shares that are known, and what could be omitted.
+/// Adds the model's part of the error: the sum of the known shares, and effects that could be omitted.
 void add_model(const std::vector<Finding>& findings, ErrorParts& errors);
 
 }  // namespace couplet::diagnostics

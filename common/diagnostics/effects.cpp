@@ -23,7 +23,7 @@ std::string text(const ExpectedCost& c) {
 
 namespace {
 
-/// What it adds in words, then by the list of prices.
+/// Cost of an effect: its description, then its prices.
 std::string cost_text(const Effect& effect) {
   std::string text(effect.adds);
   for (const Price& p : effect.prices)

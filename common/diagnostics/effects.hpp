@@ -13,35 +13,35 @@
 
 namespace couplet::diagnostics {
 
-/// One effect of a program as data. `asked_by` names what in the scene asks for it (a key with its value), or
-/// is empty where it is off.
+/// Effect of a program. `asked_by` returns the key and value in the scene that enable it, or an empty string
+/// if it is off.
 template <class Parameters>
 struct EffectCard {
   const char* name;
-  const char* keys;  ///< what switches it on, for the documents
+  const char* keys;  ///< keys that enable it, for the documentation
   std::string (*asked_by)(const Parameters&);
-  std::string_view
-      adds{};  ///< where it is on: fields, matrices, files, processes; nothing of it exists where it is off
-  const char* judged_by = "";  ///< the number and its limit by which a run judges it, for the documents
+  /// Fields, matrices, files and processes that exist only while the effect is on.
+  std::string_view adds{};
+  const char* judged_by = "";  ///< number and limit by which a run judges it, for the documentation
   bool judged_when_on = false;
 };
 
-/// A card looked at with the parameters of a scene.
+/// Card evaluated for the parameters of a scene.
 struct Effect {
   std::string name, keys;
-  std::string asked_by;  ///< empty: off
+  std::string asked_by;  ///< empty if it is off
   std::string_view adds;
-  std::vector<Price> prices;  ///< of the one list
+  std::vector<Price> prices;  ///< from price_list()
   std::string judged_by;
   bool judged_when_on = false;
   bool on() const { return !asked_by.empty(); }
 };
 
-/// What the case says to a participant beside the participant's own parameters.
+/// Settings of the case beside the participant's own parameters.
 struct CaseScene {
   std::filesystem::path folder{};                               ///< of the YAML
   double end_time = 0;                                          ///< [s]
-  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN if unknown
   bool coupled = false;
   bool has_mover = false;  ///< `coupling.mesh` names one
 };
@@ -56,35 +56,35 @@ std::vector<Effect> effects_of(std::string_view program, std::span<const EffectC
   return effects;
 }
 
-/// "effects: inertia (analysis: dynamic), gravity (gravity); left out: ...", for the start of a run.
+/// Summary for the start of a run: "effects: inertia (analysis: dynamic), gravity (gravity); left out: ...".
 std::string summary(const std::vector<Effect>& effects);
 
-/// A line an effect, for --explain.
+/// One line per effect, for --explain.
 std::string explanation(const std::vector<Effect>& effects);
 
-/// The cards as a Markdown table, for docs/effects.md.
+/// Cards as a Markdown table, for docs/effects.md.
 std::string markdown(const std::string& program, const std::vector<Effect>& effects);
 
-/// One decision of `effects: auto`. A key that the YAML has is never replaced.
+/// Decision of `effects: auto`. A key in the YAML is never replaced.
 struct EffectChoice {
-  std::string key;     ///< of the participant, "analysis"; empty: nothing to set, only told
-  std::string value;   ///< as YAML; empty: the key stays away
+  std::string key;     ///< of the participant, "analysis"; empty if it is only reported
+  std::string value;   ///< as YAML; empty if the key stays unset
   std::string what;    ///< "static"
-  std::string reason;  ///< one line with the numbers that decided
-  bool given = false;  ///< the YAML says it: the choice was not made
+  std::string reason;  ///< one line with the numbers behind the decision
+  bool given = false;  ///< the YAML sets the key, so there was no choice
 };
 
-/// "auto: analysis: static (nothing changes in time)", or that the key was given.
+/// Text "auto: analysis: static (nothing changes in time)", or that the key was given.
 std::string text(const EffectChoice& choice);
 
-/// What a run of a participant on one rank is expected to take, from measured runs of small cases.
+/// Expected cost of a participant on one rank, extrapolated from measured runs of small cases.
 struct ExpectedCost {
   std::size_t cells = 0;
-  double bytes = 0;           ///< at the most, to about a fifth
-  double seconds_a_step = 0;  ///< of the solver, to a factor of three: it depends on the machine and the flow
+  double bytes = 0;           ///< peak, to about a fifth
+  double seconds_a_step = 0;  ///< of the solver, to a factor of three, depending on the machine and the flow
 };
 
-/// "4096 cells: about 54 MB, 20 ms a step on one rank (time to a factor of three)"
+/// Text "4096 cells: about 54 MB, 20 ms a step on one rank (time to a factor of three)".
 std::string text(const ExpectedCost& cost);
 
 }  // namespace couplet::diagnostics

@@ -13,10 +13,10 @@
 namespace couplet::diagnostics {
 namespace {
 
-// Of the largest part: less buys nothing.
+// Contributions below this fraction of the largest one are not worth reducing.
 constexpr double nothing = 0.1;
-// From here on the answer is questionable: estimates are good to a factor, and this one may stand for a fifth, beyond which the
-// atlas calls an answer wrong.
+// Error from which the result is questionable. Estimates are accurate to a factor, and this one may represent
+// a fifth, beyond which the atlas calls a result wrong.
 constexpr double questionable_error = 0.15;
 
 struct Kind {
@@ -38,7 +38,7 @@ struct Part {
   bool is(double ErrorParts::*which) const { return kind->value == which; }
 };
 
-/// The cheapest change that lowers a part, what it leaves of it, and its price.
+/// Cheapest change that lowers a contribution, the remaining contribution, and its price.
 std::string cure(const Part& part) {
   if (part.is(&ErrorParts::mesh)) {
     constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
@@ -59,7 +59,7 @@ std::string cure(const Part& part) {
   return part.of->parts.model_by;
 }
 
-/// What would buy nothing, as words: "halving the step", ...
+/// Describes changes without benefit: "halving the step", ...
 std::string idle_words(const std::vector<Part>& parts, double most) {
   std::string words;
   for (const Part& p : parts) {
@@ -73,7 +73,7 @@ std::string idle_words(const std::vector<Part>& parts, double most) {
   return words;
 }
 
-/// Of each kind the participant's that has most.
+/// Largest contribution of each kind over the participants.
 std::vector<Part> largest_parts(const std::vector<NamedErrors>& participants) {
   std::vector<Part> parts;
   for (const Kind& k : kinds) {
@@ -190,7 +190,7 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
                           several ? " (" + p.of->name + ")" : "");
       total += p.value;
     }
-    // The largest part of many a run: a number without it must not pass for the whole.
+    // The mesh often has the largest contribution, so an estimate without it must say so.
     const bool knows_mesh = std::ranges::any_of(parts, [](const Part& p) { return p.is(&ErrorParts::mesh); });
     sentences.push_back(fmt::format(
         "estimated error {:.2g} of the solution: {}{}.", total, list,

@@ -10,46 +10,46 @@
 
 namespace couplet::diagnostics {
 
-/// What a run's error is made of, as the run itself can know it cheaply, each over the size of the solution [1].
-/// Good to a factor of a few; NaN: not known.
+/// Contributions to a run's error as far as the run can estimate them cheaply, relative to the size of the
+/// solution [1]. Accurate to a factor of a few; NaN if unknown.
 struct ErrorParts {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  double mesh = unknown;      ///< what cells leave
-  double step = unknown;      ///< what time steps leave
-  double linear = unknown;    ///< what solvers of linear (or Newton's) systems leave below their tolerance
-  double coupling = unknown;  ///< what the iteration between participants leaves below its tolerance
-  /// What neglected effects change: the sum of the verdicts on them that say so.
+  double mesh = unknown;      ///< spatial discretization error
+  double step = unknown;      ///< time discretization error
+  double linear = unknown;    ///< error of linear (or Newton) solvers below their tolerance
+  double coupling = unknown;  ///< error of the coupling iteration below its tolerance
+  /// Error from neglected effects: the sum of the findings that state a share.
   double model = unknown;
-  std::string model_by{};                 ///< the largest of these and its cure, in words
-  std::string omittable{};                ///< effects that do next to nothing, and what they cost, in words
-  int dimension = 0;                      ///< of the mesh, 0: not known
-  double mesh_order = 2, step_order = 2;  ///< by which the parts fall with cell size and step
+  std::string model_by{};                 ///< the largest of these and its remedy, in words
+  std::string omittable{};                ///< effects with negligible influence, and their cost, in words
+  int dimension = 0;                      ///< of the mesh, 0 if unknown
+  double mesh_order = 2, step_order = 2;  ///< order of convergence with cell size and step
   bool known() const;
-  /// "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ": the known ones, for messages; empty: none.
+  /// Text "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ". Empty if nothing is known.
   std::string text() const;
-  /// Throws Error if it is no such text.
+  /// Parses text(). Throws Error if it is not such a text.
   static ErrorParts of(const std::string& text);
 };
 
-/// The parts of one participant of a job.
+/// Error contributions of one participant of a job.
 struct NamedErrors {
   std::string name;
   ErrorParts parts;
 };
 
-/// "estimated error 0.013: mesh 0.013, step 4.9e-05", which part dominates, with the cheapest change that lowers it and what
-/// that gains and costs, and which effects could be omitted. Of several participants the largest of each kind counts and is
-/// named. Empty if nothing is known.
+/// Sentences such as "estimated error 0.013: mesh 0.013, step 4.9e-05". They name the dominating part, the
+/// cheapest change that lowers it with its gain and cost, and effects that could be omitted. For several
+/// participants the largest of each kind counts and is named. Empty if nothing is known.
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants);
 
-/// Of each kind the largest of the participants: the budget of a whole job.
+/// Error budget of a job: the largest of each contribution over the participants.
 ErrorParts largest(const std::vector<NamedErrors>& participants);
 
-/// Of mesh, steps, solvers and coupling; 0 if nothing is known. What neglected effects change is not in it: it is judged by
-/// findings of its own.
+/// Sum of mesh, step, solver and coupling errors; 0 if none is known. Neglected effects are excluded, because
+/// they have findings of their own.
 double total_error(const std::vector<NamedErrors>& participants);
-/// From an error as large as the solution on the answer is useless. `wrong` where one part alone is so large: parts are good to
-/// a factor of a few, and a sum of several that just reaches it proves nothing; it is a warning. Nothing below.
+/// Finding if the error is as large as the solution. It is `wrong` if one part alone is so large. Parts are
+/// accurate to a factor of a few, so a sum that large only gives a warning.
 constexpr double as_large_as_the_solution = 1;
 std::optional<Finding> worthless(const std::vector<NamedErrors>& participants);
 

@@ -21,8 +21,8 @@ std::vector<std::string>& accepted_ids() {
 }
 
 constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::neglected;
-// Every program must know the ids of all: those that a case accepts are for the whole job. Each program lists its own in
-// its table.def, a text without code, so that this list needs no second place.
+// Every program must know all ids, because a case accepts findings for the whole job. Each program lists its
+// own in its table.def without code, from which this list is built.
 #define LOOK(name, function)
 #define DIAGNOSTIC(name, make)
 #define ESTIMATE(name, make)

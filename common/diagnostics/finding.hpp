@@ -10,60 +10,60 @@
 
 namespace couplet::diagnostics {
 
-/// What a run found out about its own answer. Printed as "<sentence>; <advice> [<id>]", where the sentence has the form
-/// "effect: number (limit): verdict".
+/// Observation of a run about its own result. Printed as "<sentence>; <advice> [<id>]", where the sentence
+/// has the form "effect: number (limit): verdict".
 struct Finding {
   std::string id{};  ///< one of finding_ids()
   base::Severity severity = base::Severity::warning;
-  double number = std::numeric_limits<double>::quiet_NaN(), limit = number;  ///< NaN: none
+  double number = std::numeric_limits<double>::quiet_NaN(), limit = number;  ///< NaN if there is none
   std::string sentence{};
-  std::string advice{};  ///< what to do; empty: the sentence says it
-  /// Part of the answer that a neglected effect changes [1]; its part of the error budget. NaN: not known.
+  std::string advice{};  ///< what to do; empty if the sentence states it
+  /// Share of the result that a neglected effect changes [1], its part of the error budget. NaN if unknown.
   double share = std::numeric_limits<double>::quiet_NaN();
-  /// Above 0: time that the run would save without this effect [1], which does next to nothing here.
+  /// Share of the run time saved by omitting this effect [1]. Positive only if its influence is negligible.
   double saves = 0;
-  std::string effect{};   ///< "thermal strain neglected"; empty: the finding is not about an effect
-  std::string subject{};  ///< tells findings of one id apart: a probe, a participant
+  std::string effect{};   ///< "thermal strain neglected"; empty if the finding is not about an effect
+  std::string subject{};  ///< distinguishes findings of one id: a probe, a participant
 
-  /// For checkpoints.
+  /// Archives the members in checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(id, severity, number, limit, sentence, advice, share, saves, effect, subject);
   }
 };
 
-/// Logs a finding and keeps it. Called on every rank; rank 0 prints. An id that finding_ids() lacks is a std::logic_error.
+/// Logs (rank 0) and stores a finding. Call it on every rank. Throws std::logic_error for an unknown id.
 void finding(int rank, Finding f);
 /// All findings of this process so far.
 const std::vector<Finding>& findings();
-/// Adds what an earlier part of this run had found before it was interrupted. Findings that the resumed run has
-/// already made again (those of its start) are not repeated.
+/// Adds the findings of an earlier part of this run, before it was interrupted. Findings that the resumed run
+/// has already repeated at its start are not duplicated.
 void resume_findings(int rank, const std::vector<Finding>& earlier);
 
-/// Findings that the user lets pass; they are logged, and neither end a run with exit code 4 nor fail it with --strict.
+/// Accepts findings by id. They are logged, but neither end a run with exit code 4 nor fail it with --strict.
 void accept(std::span<const std::string> ids);
 bool is_accepted(const std::string& id);
 
-/// Number of findings about the answer that are not accepted and at least so severe; `with_neglected`: opinions on
-/// neglected effects among them.
+/// Number of findings about the result that are not accepted and have at least this severity.
+/// `with_neglected` includes neglected effects.
 int count(base::Severity least, bool with_neglected);
-/// Warnings and worse, opinions on neglected effects included.
+/// Number of warnings and worse, including neglected effects.
 int doubts();
 
-/// As a JSON list of objects with id, severity, number, limit, sentence, advice, neglected-effect and accepted.
+/// JSON list of objects with id, severity, number, limit, sentence, advice, neglected-effect and accepted.
 std::string findings_as_json();
 
-/// Ids that exist, with what they mean: the list of docs/findings.md. `about` neglected effects: an opinion, which
-/// --strict=effects counts and plain --strict does not.
+/// Existing ids and their meaning, as listed in docs/findings.md. Ids about neglected effects are opinions,
+/// which --strict=effects counts and plain --strict does not.
 struct FindingId {
   enum class About { answer, neglected } about;
   const char* id;
   const char* meaning;
 };
 std::span<const FindingId> finding_ids();
-/// Throws std::logic_error where there is no such id.
+/// Throws std::logic_error for an unknown id.
 const FindingId& finding_id(const std::string& id);
-/// Why `ids` cannot be accepted: those that do not exist, with the nearest and all allowed ones; empty if all exist.
+/// Lists the unknown `ids` with the closest and all valid ones. Empty if all exist.
 std::string unknown_ids(std::span<const std::string> ids);
 
 }  // namespace couplet::diagnostics

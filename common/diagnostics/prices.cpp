@@ -11,7 +11,7 @@ namespace {
 
 const char* scenes_of(int dimension) { return dimension == 2 ? "2-D: " : dimension == 3 ? "3-D: " : ""; }
 
-/// "a to b", "a" where both are alike, "up to b" from nothing.
+/// Text "a to b", "a" if both are equal, "up to b" from zero.
 std::string spread_text(const std::string& least, const std::string& most, bool from_nothing) {
   if (from_nothing) return "up to " + most;
   return least == most ? most : least + " to " + most;

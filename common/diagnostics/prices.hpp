@@ -8,38 +8,38 @@
 
 namespace couplet::diagnostics {
 
-/// From the least to the most over the scenes that were measured.
+/// Range over the measured scenes.
 struct Spread {
   double least = 0, most = 0;
 };
 
-/// What an effect costs beside the same scene without it, on one rank; 0: next to nothing.
+/// Cost of an effect compared to the same scene without it, on one rank. 0 means negligible.
 struct Price {
   std::string_view program, effect;
   int dimension;  ///< of the scenes; 1: beds of a tank
-  Spread bytes;   ///< per cell, while it steps
-  Spread step;    ///< as a share of a step without it
+  Spread bytes;   ///< per cell, during a step
+  Spread step;    ///< relative to a step without it
 };
 
-/// The one list of prices: `scripts/prices` measures and writes it.
+/// All prices, measured and written by `scripts/prices`.
 std::span<const Price> price_list();
 
-/// Of one effect, by dimension; empty: not measured.
+/// Prices of one effect by dimension. Empty if not measured.
 std::vector<Price> prices_of(std::string_view program, std::string_view effect);
 
-/// "16 to 62", in bytes per cell; empty: next to none.
+/// Text "16 to 62", in bytes per cell. Empty if negligible.
 std::string memory_text(const Price& price);
 
-/// "+60 to +78", in per cent of a step; empty: next to none.
+/// Text "+60 to +78", in percent of a step. Empty if negligible.
 std::string time_text(const Price& price);
 
-/// "2-D: 16 to 62 B per cell, +60 to +78 % of a step"; empty: next to nothing.
+/// Text "2-D: 16 to 62 B per cell, +60 to +78 % of a step". Empty if negligible.
 std::string price_text(const Price& price);
 
-/// A cell of a table: "2-D: 16 to 62 B; 3-D: 30 B"; empty: not measured.
+/// Table cell "2-D: 16 to 62 B; 3-D: 30 B". Empty if not measured.
 std::string column(const std::vector<Price>& prices, std::string (*text)(const Price&), const char* unit);
 
-/// What leaving an effect out saves at least, as a share of a step with it; 0: not measured.
+/// Least saving from omitting an effect, relative to a step with it. 0 if not measured.
 double saved_share(std::string_view program, std::string_view effect);
 
 }  // namespace couplet::diagnostics

@@ -13,7 +13,7 @@ ElasticMatrix orthotropic_matrix(const OrthotropicConstants& c) {
   ElasticMatrix compliance = ElasticMatrix::Zero();
   for (int a = 0; a < 3; ++a) {
     compliance(a, a) = 1 / c.youngs_modulus[a];
-    compliance(3 + a, 3 + a) = 1 / c.shear_modulus[a];  // 12, 23, 13 stand as xy, yz, xz
+    compliance(3 + a, 3 + a) = 1 / c.shear_modulus[a];  // 12, 23, 13 correspond to xy, yz, xz
     const int i = first[3 + a], j = second[3 + a];
     compliance(i, j) = compliance(j, i) = -c.poissons_ratio[a] / c.youngs_modulus[i];
   }
@@ -34,7 +34,7 @@ bool is_positive(const ElasticMatrix& matrix) {
                                        .minCoeff() > 0;
 }
 
-/// Stress turns as s'_ij = Q_ia Q_jb s_ab: M holds that for pairs of indices; strain turns with M^-T.
+/// Bond matrix M: stress transforms as s'_ij = Q_ia Q_jb s_ab, strain with M^-T.
 ElasticMatrix turned(const ElasticMatrix& matrix, const Tensor3& axes) {
   ElasticMatrix m;
   for (int r = 0; r < 6; ++r)

@@ -96,7 +96,7 @@ void ElasticKernel::apply_with_mass(std::span<const double> unknowns, std::span<
   space.take_rows(with_stiffness ? unknowns : std::span<const double>(), known, result);
 }
 
-/// The forces of u on all nodes and points, times what v moves them.
+/// Work of the forces of u on all nodes and points with the displacements v.
 double ElasticKernel::product(ElasticPart part, const ElasticField& u, const ElasticField& v) const {
   if (!symmetric_) return 0;
   SymmetricSpace& space = filled(u.unknowns, u.known);
@@ -119,7 +119,7 @@ std::vector<Wrench> ElasticKernel::holding_forces(std::span<const double> unknow
   space.negate_forces();
   space.fill(unknowns, known);
   symmetric_->add_internal_forces();
-  // At a vertex that a support shares the support takes the springs' part along what it knows.
+  // At a vertex shared with a support, the support carries the spring force along its known directions.
   space.add_springs(known);
   return space.held(known, false);
 }

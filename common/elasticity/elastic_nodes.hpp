@@ -10,8 +10,7 @@
 
 namespace couplet::elastic {
 
-/// Lame's constants of a face: the owner's where cells have their own, the mean of both across an interior
-/// face.
+/// Lame constants of a face: those of the owner, or the mean across an interior face if cells differ.
 inline LameConstants face_lame(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
   const LameConstants here = rows.lame(mesh.owner[f]);
   if (f >= mesh.n_interior) return here;
@@ -19,20 +18,20 @@ inline LameConstants face_lame(const mesh::Mesh& mesh, const ElasticOperator& ro
   return {0.5 * (here.mu + there.mu), 0.5 * (here.lambda + there.lambda)};
 }
 
-/// The same of the elastic matrix, where the body has one.
+/// Elastic matrix of a face, averaged likewise.
 inline ElasticMatrix face_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f) {
   const ElasticMatrix& here = rows.elastic_matrix(mesh.owner[f]);
   if (f >= mesh.n_interior) return here;
   return 0.5 * (here + rows.elastic_matrix(mesh.neighbour[f]));
 }
 
-/// Faces whose force is asked for: the flux faces, and with bonded faces those of ghosts too, since the row
-/// of a bonded face holds the force on its other side.
+/// Number of faces whose force is needed. With bonded faces those of ghosts are included, because a bonded
+/// row contains the force on the other side.
 inline Index n_faces_with_force(const mesh::Mesh& mesh) {
   return mesh.twin.empty() ? mesh.n_flux_faces() : mesh.n_faces();
 }
 
-/// face_lame() of all faces with a force; one pair where all are alike.
+/// face_lame() of all faces with a force, stored once for a uniform body.
 class FaceLames {
  public:
   FaceLames(const mesh::Mesh& mesh, const ElasticOperator& rows) : varies_(rows.is_uniform() ? 0 : 1) {
@@ -46,8 +45,8 @@ class FaceLames {
   std::vector<LameConstants> value_;
 };
 
-/// Displacements of all nodes (local cells, then boundary faces), four doubles each, and room for further places behind
-/// them; the forces on the cells. A symmetry face is a node of value zero.
+/// Displacements of all nodes (local cells, then boundary faces) with four doubles each and space for more
+/// locations, and the forces on the cells. The node of a symmetry face is zero.
 class ElasticNodes {
  public:
   static constexpr int stride = 4;
@@ -64,11 +63,11 @@ class ElasticNodes {
     return (*this)[mesh_->cells.n_local() + face - mesh_->n_interior];
   }
   double* force(Index cell) { return force_.data() + std::size_t(cell) * stride; }
-  /// First of all that touches forces: who asks for gradients alone has none.
+  /// Zeroes the forces. Must precede their first use; allocates them on demand.
   void clear_forces() { force_.assign(std::size_t(mesh_->cells.n_local()) * stride, 0.0); }
 
-  /// Node values of all local nodes. `supports_hold`: supports have their known components, whatever the
-  /// unknowns say. Collective.
+  /// Sets the values of all local nodes. With `supports_hold`, supports take their known components
+  /// regardless of the unknowns. Collective.
   template <int D>
   void fill(std::span<const double> unknowns, std::span<const double> known, bool supports_hold = false) {
     const Index n_owned = mesh_->cells.n_owned(), n_cells = mesh_->cells.n_local();
@@ -97,7 +96,7 @@ class ElasticNodes {
     }
   }
 
-  /// The rows of the owned cells from the forces collected.
+  /// Copies the collected forces to the rows of the owned cells.
   template <int D>
   void take_forces(std::span<double> result) const {
     for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
@@ -110,11 +109,11 @@ class ElasticNodes {
   std::vector<double> value_, force_;
 };
 
-/// Which vertices a kernel interpolates and which it constrains: u_V = F_V sum_i w_i u_i + g_V.
+/// Vertices that a kernel interpolates or constrains: u_V = F_V sum_i w_i u_i + g_V.
 class ElasticVertices {
  public:
-  std::vector<Index> free;         ///< points whose nodes matter
-  std::vector<Index> constrained;  ///< points with F_V other than I; those that are not free have F_V = 0
+  std::vector<Index> free;         ///< points that depend on nodes
+  std::vector<Index> constrained;  ///< points with F_V other than I; those not in `free` have F_V = 0
 
   ElasticVertices(const mesh::Mesh& mesh, const ElasticOperator& rows) : rows_(&rows) {
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
@@ -124,14 +123,14 @@ class ElasticVertices {
     free.shrink_to_fit();
   }
 
-  /// take(point) for all points that have a value.
+  /// Calls take(point) for all points that have a value.
   template <class Take>
   void visit(const Take& take) const {
     for (const Index v : free) take(v);
     for (const Index v : constrained) take(v);
   }
 
-  /// Applies F_V and g_V to the values, `stride` doubles a point, whose first D are the displacement.
+  /// Applies F_V and g_V to the first D of `stride` doubles per point.
   template <int D>
   void constrain(std::span<double> values, int stride, std::span<const double> known) const {
     const VertexConstraints& constraints = rows_->constraints();

@@ -10,7 +10,7 @@
 
 namespace couplet::elastic {
 
-/// What the boundary faces of owned cells do with the force on them: the rows that ElasticOperator defines.
+/// Rows of ElasticOperator for forces on the boundary faces of owned cells.
 class ElasticRows {
  public:
   ElasticRows(const mesh::Mesh& mesh, const ElasticOperator& rows)
@@ -28,8 +28,8 @@ class ElasticRows {
     }
   }
 
-  /// Adds the forces to the cells and writes the rows of the unknown faces. `force(f)`: sigma . S;
-  /// `slope(f)`: n . grad u.
+  /// Adds the forces to the cells and writes the rows of unknown faces. `force(f)` is sigma . S, `slope(f)`
+  /// is n . grad u.
   template <int D, class Force, class Slope>
   [[gnu::always_inline]] inline void add_rows(ElasticNodes& nodes, std::span<const double> known, double* row,
                                               const Force& force, const Slope& slope) const {
@@ -60,8 +60,8 @@ class ElasticRows {
   }
 
  private:
-  /// The force on the face becomes its row. No lanes in the signature: how they are passed depends on the
-  /// processor.
+  /// Replaces the force on the face by its row. The signature avoids lanes, because passing them depends on
+  /// the processor.
   template <int D, std::size_t Width>
   void hold(Index f, double stiffness, ElasticNodes& nodes, std::span<const double> known,
             std::array<double, Width>& force) const {
@@ -87,8 +87,8 @@ class ElasticRows {
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   const ElasticOperator* rows_;
-  std::vector<std::pair<Index, Vec3>> symmetry_;  // with the normals
-  std::vector<Index> held_;                       // the whole force goes into the cell
+  std::vector<std::pair<Index, Vec3>> symmetry_;  // faces with normals
+  std::vector<Index> held_;                       // faces whose whole force acts on the cell
   std::vector<double> stiffness_;                 // (2 mu + lambda) S / (d . n) of the unknown faces
 };
 

@@ -21,12 +21,12 @@ fv::VertexInterpolation::ByFace stencils_of(const ElasticBoundary& boundary, con
 
 }  // namespace
 
-/// One block row under construction: blocks by column, found through marks.
+/// Block row under construction. Markers find blocks by column.
 struct ElasticOperator::Row {
   struct Part {
     std::vector<Index> column;
     std::vector<Tensor3> block;
-    std::vector<Index> place;  // of each column in `column`, -1: not there
+    std::vector<Index> place;  // of each column in `column`, or -1
     explicit Part(std::size_t n_columns) : place(n_columns, -1) {}
     void add(Index c, const Tensor3& value) {
       if (place[c] < 0) {
@@ -250,7 +250,7 @@ Tensor3 ElasticOperator::stress(Index cell, const Tensor3& gradient) const {
   return mu * (gradient + gradient.transpose()) + lambda * gradient.trace() * Tensor3::Identity();
 }
 
-// The boundary faces of an ElasticOperator carry known forces and values, holding forces and twins.
+// Known forces and values, reaction forces and twins of the boundary faces.
 
 Vec3 ElasticOperator::add_forces(std::span<const double> forces, std::span<double> rhs) const {
   const int dim = mesh_->dim;

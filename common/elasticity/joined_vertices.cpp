@@ -10,10 +10,10 @@ namespace couplet::elastic {
 namespace {
 
 constexpr int stride = ElasticNodes::stride;
-// Of the entries of F_V at the copies of a point, which are 0 to 1.
+// Tolerance for entries of F_V (0 to 1) at the copies of a point.
 constexpr double alike = 1e-6;
 
-// VertexSums on their way to the other copies: m, s, sum of 1/d, number of nodes, number of copies of Mesh::wide_points.
+// Layout of exchanged VertexSums: m, s, sum of 1/d, number of nodes, number of copies in Mesh::wide_points.
 constexpr int sums_stride = 15;
 void put(const fv::VertexSums& sums, bool is_wide, double* to) {
   to = std::copy_n(sums.m.data(), 9, to);
@@ -31,7 +31,7 @@ fv::VertexSums sums_at(const double* from) {
   return sums;
 }
 
-// The same of VertexWeightSums.
+// Layout of exchanged VertexWeightSums.
 constexpr int weights_stride = 5;
 void put(const fv::VertexWeightSums& sums, double* to) {
   to[0] = sums.sum;
@@ -57,14 +57,14 @@ JoinedVertices::JoinedVertices(const mesh::Mesh& mesh, const ElasticOperator& ro
   const Weights plain = weights(fv::VertexWeights::inverse_distance),
                 least = weights(fv::VertexWeights::least_squares);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    // As VertexInterpolation chooses.
+    // The choice is the same as in VertexInterpolation.
     const bool is_plain = !plain.is_wide[i] && plain.magnification[i] <= mesh::longest_reach;
     const std::vector<double>& chosen = is_plain ? plain.weight : least.weight;
     weight_.insert(weight_.end(), chosen.begin() + offset_[i], chosen.begin() + offset_[i + 1]);
   }
 }
 
-/// What one side holds and the other does not is no periodic scene.
+/// Throws Error if only one side is constrained, because the scene is then not periodic.
 void JoinedVertices::refuse_unlike() const {
   std::vector<double> free(std::size_t(mesh_.points.n_local()) * 9, 0.0);
   for (const Index v : periodic_.points())

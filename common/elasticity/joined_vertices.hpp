@@ -11,28 +11,28 @@
 
 namespace couplet::elastic {
 
-/// Vertices on joined periodic patches: their copies are one point with the nodes around all of them,
-///   u_V = sum over copies k, sum over nodes i of w_ki u_i,
-/// by the weights of VertexInterpolation [thesis (2.48)-(2.51)] from the sums over all copies, so that a linear field that is
-/// periodic is met and no place is a border. Forces go back by the transpose. For fields that are the same on both sides
-/// (displacements relative to a periodic mesh). A node belongs to one copy on one rank, that which owns the copy.
+/// Vertices on joined periodic patches. All copies of a point share one value and all nodes: u_V = sum over
+/// copies k, sum over nodes i of w_ki u_i The weights of VertexInterpolation [thesis (2.48)-(2.51)] use sums
+/// over all copies, so periodic linear fields are exact. Forces are distributed by the transpose. Fields must
+/// be equal on both sides (displacements relative to a periodic mesh). A node belongs to one copy, on the
+/// rank that owns the copy.
 class JoinedVertices {
  public:
-  /// Throws Error where the conditions at the copies of a point are not alike. Collective.
+  /// Throws Error if the copies of a point have different conditions. Collective.
   JoinedVertices(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
-  /// All local copies, of points that are known, too.
+  /// All local copies, including points with known values.
   const std::vector<Index>& all() const { return periodic_.points(); }
   bool has(Index point) const { return joined_[point] != 0; }
 
-  /// Values of all copies. `nodes`, `points`: ElasticNodes::stride doubles a node, a local point. Collective.
+  /// Interpolates to all copies, with ElasticNodes::stride doubles per entry. Collective.
   void interpolate(const double* nodes, std::span<double> points) const;
-  /// Adds the forces on the points, of which each rank has its own part, to those on the nodes. Collective.
+  /// Adds the forces on the points, of which each rank has a contribution, to those on the nodes. Collective.
   void to_nodes(std::span<double> point_forces, double* node_forces) const;
 
  private:
   void refuse_unlike() const;
-  /// Weights of one kind, with their magnification n sum w^2, per entry of points_.
+  /// Weights of one kind and their magnification n sum w^2, per entry of points_.
   struct Weights {
     std::vector<double> weight, magnification;
     std::vector<std::uint8_t> is_wide;
@@ -46,7 +46,7 @@ class JoinedVertices {
   const ElasticOperator& rows_;
   mesh::PeriodicPoints periodic_;
   std::vector<std::uint8_t> joined_;  // per local point
-  std::vector<Index> points_;         // owned ones whose nodes matter
+  std::vector<Index> points_;         // owned points that depend on nodes
   std::vector<std::int64_t> offset_{0};
   std::vector<double> weight_;  // of the nodes of each
 };

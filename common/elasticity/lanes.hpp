@@ -3,12 +3,12 @@
 
 #include <cstring>
 
-// Vector values are passed between inlined functions only; no ABI is involved.
+// Vector values are passed only between inlined functions, so no ABI is involved.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-/// Short vectors for loops over packed fields: the components of one node, padded to a power of two (2 in the
-/// plane, 4 in space). The vector extension of GCC and Clang: one register where the processor has it, several where it has
-/// not.
+/// Short vectors for loops over packed fields: the components of a node, padded to a power of two (2 in 2-D,
+/// 4 in 3-D). They use the vector extension of GCC and Clang, with one or several registers depending on the
+/// processor.
 namespace couplet::elastic::lanes {
 
 template <int Width>
@@ -32,7 +32,7 @@ template <int D>
   std::memcpy(to, &value, sizeof value);
 }
 
-/// The D components alone: what follows in memory stays as it is.
+/// Stores only the D components; the memory behind them is not changed.
 template <int D>
 [[gnu::always_inline]] inline void store_components(double* to, const Lane<D>& value) {
   std::memcpy(to, &value, sizeof(double) * D);
@@ -43,7 +43,7 @@ template <int D>
   store<D>(to, load<D>(to) + value);
 }
 
-/// Over the D components; what stands in the padding is not looked at.
+/// Dot product of the D components, without the padding.
 template <int D>
 [[gnu::always_inline]] inline double dot(const Lane<D>& a, const Lane<D>& b) {
   const Lane<D> product = a * b;
@@ -53,7 +53,7 @@ template <int D>
     return product[0] + product[1] + product[2];
 }
 
-/// In space; the padding becomes zero if it is finite.
+/// Cross product in 3-D. The padding becomes zero if it is finite.
 [[gnu::always_inline]] inline Lane<3> cross(const Lane<3>& a, const Lane<3>& b) {
   const Lane<3> turned =
       a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
@@ -64,7 +64,7 @@ template <int D>
 
 namespace couplet::elastic {
 
-/// Four places side by side.
+/// Values at four locations.
 using Four = lanes::Lane<3>;
 
 }  // namespace couplet::elastic

@@ -9,8 +9,8 @@
 
 namespace couplet::elastic {
 
-/// Values of nodes of an operator, `dim` each, as fields of its mesh, zeros where there is no node: for files that do not depend
-/// on the ranks.
+/// Node values of an operator as fields on its mesh with `dim` values each, zero if there is no node. Files
+/// written from them do not depend on the number of ranks.
 struct NodeFields {
   std::vector<double> inner;  ///< unknowns: per owned cell; known columns: per local point
   std::vector<double> faces;  ///< per boundary face of owned cells
@@ -24,7 +24,7 @@ inline NodeFields empty_fields(const mesh::Mesh& mesh, Index inner) {
           std::vector<double>(std::size_t(mesh.boundary.n_owned()) * dim, 0.)};
 }
 
-/// The `dim` values of entry `from` of one to entry `to` of the other.
+/// Copies the `dim` values of entry `from` of one array to entry `to` of the other.
 inline void copy_entry(const mesh::Mesh& mesh, std::span<const double> values, std::size_t from,
                        std::span<double> others, std::size_t to) {
   const auto dim = std::size_t(mesh.dim);

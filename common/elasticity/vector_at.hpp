@@ -7,7 +7,7 @@
 
 namespace couplet::elastic {
 
-/// Entry i of a field of `dim` values each; z is 0 in 2-D.
+/// Entry i of a field with `dim` values each; z is 0 in 2-D.
 inline Vec3 vector_at(std::span<const double> values, Index i, int dim) {
   Vec3 u = Vec3::Zero();
   for (int a = 0; a < dim; ++a) u[a] = values[std::size_t(i) * dim + a];

@@ -10,12 +10,12 @@
 namespace couplet::elastic {
 namespace {
 
-// Share of a patch's faces around a vertex that must know a direction for the vertex to know it.
+// Minimum share of a patch's faces around a vertex that must know a direction.
 constexpr double agreed = 0.75;
-// A direction whose part across the known ones is shorter than this (0.06 degrees) is known already.
+// A direction is already known if its remaining part is shorter than this (0.06 degrees).
 constexpr double new_direction = 1e-3;
 
-/// Eigenvectors of a symmetric tensor with eigenvalues above the threshold, the largest first.
+/// Eigenvectors of a symmetric tensor with eigenvalues above the threshold, largest first.
 std::vector<Vec3> directions_above(const Tensor3& tensor, double threshold) {
   const Eigen::SelfAdjointEigenSolver<Tensor3> eigen(tensor);
   std::vector<Vec3> result;
@@ -26,11 +26,11 @@ std::vector<Vec3> directions_above(const Tensor3& tensor, double threshold) {
 
 }  // namespace
 
-/// Q and the shares G_j of one vertex under construction.
+/// Projector Q and shares G_j of one vertex under construction.
 class VertexConstraints::Known {
  public:
-  /// b . u = b . g_face for a unit vector b; face < 0: g is zero. With the part r of b across what is known,
-  /// r . u = b . (g_face - g so far).
+  /// Adds b . u = b . g_face for a unit vector b, or g = 0 if face < 0. With the part r of b outside the
+  /// known directions, r . u = b . (g_face - g so far).
   void add(const Vec3& b, Index face) {
     const Vec3 across = b - q * b;
     const double size = across.norm();
@@ -69,7 +69,7 @@ VertexConstraints::VertexConstraints(const mesh::Mesh& mesh, const ElasticBounda
 void VertexConstraints::constrain(Index point, std::span<const Index> faces, const mesh::Mesh& mesh,
                                   const ElasticBoundary& boundary, std::span<const Index> patch_of_face,
                                   const Tensor3& symmetry) {
-  // The same order on every rank: by patch, then by the number in the mesh file.
+  // Sorts by patch, then by the number in the mesh file: the same order on every rank.
   std::vector<Index> ordered(faces.begin(), faces.end());
   std::ranges::sort(ordered, {}, [&](Index b) { return std::pair(patch_of_face[b], mesh.boundary_id[b]); });
   Known known;

@@ -11,16 +11,14 @@
 
 namespace couplet::elastic {
 
-/// What is known of the displacement at the vertices, from the conditions of the faces around them:
+/// Known displacements at the vertices from the conditions of the surrounding faces:
 ///   u_V = F_V sum_i w_i u_i + g_V,   F_V = I - Q_V,   g_V = sum_j G_j g_j(x_V)
-/// Q_V is the projector on the known directions; g_j is the known vector of the condition of boundary face j,
-/// taken at the vertex, so that g_V = Q_V g_V. Rules, in this order:
-/// - A vertex of a fixed face is known in all directions, from the first fixed face around it (order
-///   of the patches, then of the faces).
-/// - Supports: of each patch, in the order of the patches, those directions in which the patch's faces around
-///   the vertex agree: eigenvalue of their mean P above 3/4, so that a curved patch keeps its mean normal,
-///   and a support of a part of a patch ends at the last face of the part. What an earlier patch knows
-///   already stays; a later one adds what is still free, oblique directions included.
+/// Q_V is the projector on the known directions. g_j is the known vector of boundary face j, evaluated at the
+/// vertex, so that g_V = Q_V g_V. The rules apply in this order:
+/// - A vertex of a fixed face is known in all directions, from the first fixed face (by patch, then by face).
+/// - Supports: each patch, in order, fixes the directions that its faces at the vertex share: eigenvalues of
+///   their mean P above 3/4. A curved patch thus keeps its mean normal, and a support of part of a patch ends
+///   at the last face of the part. Later patches only add free directions, including oblique ones.
 /// - Symmetry planes: no displacement across them.
 class VertexConstraints {
  public:
@@ -32,13 +30,13 @@ class VertexConstraints {
   VertexConstraints(const mesh::Mesh& mesh, const ElasticBoundary& boundary,
                     const fv::VertexInterpolation& vertices);
 
-  /// F_V: I where nothing is known, 0 where all is.
+  /// F_V: I if nothing is known, 0 if everything is.
   const Tensor3& free_part(Index point) const { return free_parts_[free_of_[point]]; }
   bool is_constrained(Index point) const { return free_of_[point] != 0; }
   bool is_fixed(Index point) const { return free_of_[point] == 1; }
-  /// Points with a known value g_V (those on symmetry planes only have none), ascending; entry i is column i.
+  /// Points with a known value g_V (not those only on symmetry planes), ascending. Entry i is column i.
   const std::vector<Index>& points() const { return points_; }
-  Index column(Index point) const { return column_[point]; }  ///< -1: no value
+  Index column(Index point) const { return column_[point]; }  ///< -1 if there is no value
   std::span<const Source> sources(Index column) const {
     return {sources_.data() + offset_[column], std::size_t(offset_[column + 1] - offset_[column])};
   }
@@ -50,7 +48,7 @@ class VertexConstraints {
                  const Tensor3& symmetry);
   void store(Index point, const Known& known);
 
-  std::vector<Index> free_of_;  // per point, into free_parts_
+  std::vector<Index> free_of_;  // per point, index into free_parts_
   std::vector<Tensor3> free_parts_{Tensor3::Identity(), Tensor3::Zero()};
   std::vector<Index> points_, column_;
   std::vector<Index> offset_{0};

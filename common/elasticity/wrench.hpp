@@ -7,7 +7,7 @@
 
 namespace couplet::elastic {
 
-/// A force [N] with its moment about the origin [N m].
+/// Force [N] with its moment about the origin [N m].
 struct Wrench {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   void add(const Vec3& part, const Vec3& place) {

@@ -9,7 +9,7 @@
 namespace couplet::fv {
 namespace {
 
-// On orthogonal faces the correction along the face is round-off; without it the stencil is two cells.
+// On orthogonal faces the tangential correction is round-off, and the stencil reduces to two cells.
 constexpr double orthogonal = 1e-12;
 
 VertexInterpolation::ByFace stencils_of(const mesh::Mesh& mesh, std::span<const HeatCondition> conditions) {
@@ -21,7 +21,7 @@ VertexInterpolation::ByFace stencils_of(const mesh::Mesh& mesh, std::span<const 
   return stencils;
 }
 
-/// Sums coefficients by column, found through marks.
+/// Sums coefficients by column, found through markers.
 struct Sums {
   std::vector<Index> column, place;
   std::vector<double> value;
@@ -89,14 +89,14 @@ void ConductionOperator::sort_boundary(std::span<const HeatCondition> conditions
   }
 }
 
-/// Fluxes of this rank's rows: faces of its own, and the far sides of its bonded faces.
+/// Fluxes in this rank's rows: its own faces and the far sides of its bonded faces.
 bool ConductionOperator::needs_stencil(Index face) const {
   if (face < mesh_->n_flux_faces()) return true;
   const Index b = face - mesh_->n_interior;
   return mesh_->twin[b] >= 0 && mesh_->twin[b] < mesh_->boundary.n_owned();
 }
 
-// |S| n . grad T = |S| [(T_N - T_P) / (d . n) + sum_V (k . c_V) T_V] (2.58); nothing on symmetry planes.
+// S| n . grad T = |S| [(T_N - T_P) / (d . n) + sum_V (k . c_V) T_V] (2.58), zero on symmetry planes.
 void ConductionOperator::build_stencils() {
   Sums nodes(number_.size()), known(n_known());
   offset_.assign(1, 0);
@@ -253,7 +253,7 @@ Vec3 ConductionOperator::gradient(Index face, std::span<const double> cells, std
   return normal * faces_.normal[face] + along;
 }
 
-// From the point on the line between the nodes that lies in the plane of the face, on along the face.
+// Interpolates on the line between the nodes to the plane of the face, then along the face.
 double ConductionOperator::face_value(Index face, std::span<const double> cells,
                                       std::span<const double> boundary,
                                       std::span<const double> points) const {

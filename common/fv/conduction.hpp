@@ -13,28 +13,28 @@
 
 namespace couplet::fv {
 
-/// What is known of the temperature on a patch.
+/// Thermal boundary condition of a patch.
 enum class HeatCondition {
-  temperature,  ///< known at faces and vertices
-  flux,         ///< heat flux known, or convection: the temperature of each face is an unknown
-  symmetry,     ///< nothing flows, cells count as mirrored; no unknown
+  temperature,  ///< given at faces and vertices
+  flux,         ///< given heat flux or convection: the temperature of each face is an unknown
+  symmetry,     ///< no flux, mirrored cells; no unknown
   bonded,       ///< one side of a face between two materials; both sides share one unknown
 };
 
-/// Conduction of heat, div(k grad T), thesis (2.35) with the face gradient (2.53)-(2.58), of a scalar.
+/// Heat conduction div(k grad T), thesis (2.35), with the face gradient (2.53)-(2.58) of a scalar.
 ///
-/// Unknown nodes of a rank: its owned cells, then its flux faces patch by patch. Known columns: the points,
-/// then the faces, of patches with known temperature. With the conductance q_f(T) = k_f |S| n . grad T into
-/// the owner, from the rows' own stencils,
+/// Unknown nodes of a rank are its owned cells, then its flux faces patch by patch. Known columns are the
+/// points, then the faces, of patches with known temperature. With q_f(T) = k_f |S| n . grad T, the heat flow
+/// into the owner:
 ///   cell row       - sum_f q_f over its faces that are not flux faces      + h |S| T_B over those that are
 ///   flux face row    q_f + h |S| T_B
-///   bonded face row  q_f + q_f' of the two sides (the unknown is that of the side with the smaller boundary_id,
+///   bonded face row  q_f + q_f' of the two sides (unknown of the side with the smaller boundary_id,
 ///                    listed with the flux faces)
-/// so that a flux face's known heat, |S| (q + h T_inf), stands on the right of both (h = 0 without
+/// The known heat of a flux face, |S| (q + h T_inf), is on the right-hand side of both rows (h = 0 without
 /// convection).
 class ConductionOperator {
  public:
-  /// `conditions`: one a patch. Collective.
+  /// `conditions` has one entry per patch. Collective.
   ConductionOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                      std::span<const HeatCondition> conditions);
 
@@ -42,7 +42,7 @@ class ConductionOperator {
   const mesh::Geometry& geometry() const { return *geometry_; }
   const FaceGradient& faces() const { return faces_; }
   const VertexInterpolation& vertices() const { return vertices_; }
-  /// Flux faces of owned cells, then first sides of bonded faces: unknown n_owned cells + i is entry i.
+  /// Flux faces of owned cells, then first sides of bonded faces. Entry i is unknown n_owned cells + i.
   const std::vector<Index>& flux_faces() const { return flux_faces_; }
   const std::vector<Index>& known_points() const { return known_points_; }
   const std::vector<Index>& known_faces() const { return known_faces_; }  ///< of owned cells
@@ -50,42 +50,42 @@ class ConductionOperator {
   std::size_t n_unknowns() const { return mesh_->cells.n_owned() + flux_faces_.size(); }
   std::size_t n_known() const { return known_points_.size() + known_faces_.size(); }
 
-  /// A matrix with the places of all rows, not filled yet. Collective.
+  /// Creates an empty matrix with the sparsity pattern of all rows. Collective.
   linalg::SparseMatrix make_matrix() const;
 
-  /// Numbers that turn the stencils into rows.
+  /// Coefficients of the stencils in the rows.
   struct Weights {
-    std::span<const double> conductivity;  ///< k_f per local face (of ghosts: bonded only) [W/(m K)]
-    std::span<const double> transfer;      ///< h per entry of flux_faces() [W/(m^2 K)]; empty: none
-    std::span<const double> capacity;      ///< on the diagonal of owned cells [W/K]; empty: none
+    std::span<const double> conductivity;  ///< k_f per local face (ghosts: only bonded) [W/(m K)]
+    std::span<const double> transfer;      ///< h per entry of flux_faces() [W/(m^2 K)], or empty
+    std::span<const double> capacity;      ///< on the diagonal of owned cells [W/K], or empty
     double share = 1;                      ///< of the conduction in the cell rows (trapezoidal rule: 1/2)
   };
   void fill(const Weights& weights, linalg::SparseMatrix& matrix) const;
-  /// rhs -= (known columns) known, with the values of known points, then of known faces.
+  /// Subtracts the known columns times `known`: values of known points, then of known faces.
   void subtract_known(const Weights& weights, std::span<const double> known, std::span<double> rhs) const;
 
-  /// Gives the second side of bonded faces the value of the first (`boundary`: up-to-date ghosts).
+  /// Copies the value of a bonded face's first side to the second (`boundary`: up-to-date ghosts).
   void join_twins(std::span<double> boundary) const;
 
-  /// Values of all local points: interpolated, the known ones set. Collective.
+  /// Interpolates the values of all local points and sets the known ones. Collective.
   void point_values(std::span<const double> cells, std::span<const double> boundary,
                     std::span<const double> known, std::span<double> points) const;
-  /// Tangential gradient at a face, with the values at points.
+  /// Tangential gradient at a face from the values at points.
   Vec3 tangential_gradient(Index face, std::span<const double> points) const;
-  /// Whole gradient at a face.
+  /// Complete gradient at a face.
   Vec3 gradient(Index face, std::span<const double> cells, std::span<const double> boundary,
                 std::span<const double> points) const;
-  /// Value at the centre of a face from the nodes beside it, exact for linear fields.
+  /// Value at a face center from the neighboring nodes, exact for linear fields.
   double face_value(Index face, std::span<const double> cells, std::span<const double> boundary,
                     std::span<const double> points) const;
-  /// Heat that flows through each flux face of the mesh into its owner, k_f |S| n . grad T [W].
+  /// Heat flow through each flux face of the mesh into its owner, k_f |S| n . grad T [W].
   void face_heat(std::span<const double> conductivity, std::span<const double> cells,
                  std::span<const double> boundary, std::span<const double> points,
                  std::span<double> heat) const;
 
  private:
   enum class Kind : std::uint8_t { conduction, transfer, capacity };
-  /// One term of a row; a conduction term is the stencil of a face.
+  /// Term of a row. A conduction term is the stencil of a face.
   struct Term {
     Kind kind;
     bool in_cell_row;  // scaled by Weights::share
@@ -108,8 +108,8 @@ class ConductionOperator {
   VertexInterpolation vertices_;
   FaceGradient faces_;
   std::vector<Index> flux_faces_, known_points_, known_faces_;
-  std::vector<Index> known_of_point_, known_of_face_, flux_of_face_;  // -1: none; the latter two of boundary
-  std::vector<GlobalIndex> number_;                                   // of each local node as unknown, -1
+  std::vector<Index> known_of_point_, known_of_face_, flux_of_face_;  // or -1; the latter two of boundary
+  std::vector<GlobalIndex> number_;                                   // of each local node as unknown, or -1
 
   // Stencil of each flux face: |S| n . grad T = sum coefficient x value, over nodes and over known columns.
   std::vector<std::int64_t> offset_, known_offset_;

@@ -18,7 +18,7 @@ double value_in_table(void* table, double at) { return (*static_cast<const Table
 
 }  // namespace
 
-// muParser binds variables by address, so they live beside the parser in one block that never moves.
+// muParser binds variables by address, so they are in one block with the parser that never moves.
 struct Expression::State {
   std::string text = "0", where;
   std::deque<Table> tables;

@@ -12,13 +12,13 @@
 
 namespace couplet::fv {
 
-/// A compiled function of x, y, z [m] and t [s] in muParser syntax: "2*sin(pi*x)", "t < 7 ? -125*t/7 : 0".
-/// Tables are functions in it (see table.hpp): "1e5*table(t, 0, 0, 2, 1, 5, 0.5)", 'table(z, "p.csv")'.
+/// Compiled function of x, y, z [m] and t [s] in muParser syntax: "2*sin(pi*x)", "t < 7 ? -125*t/7 : 0".
+/// Tables are functions (see table.hpp): "1e5*table(t, 0, 0, 2, 1, 5, 0.5)", 'table(z, "p.csv")'.
 class Expression {
  public:
   Expression();  ///< zero
-  /// `where` is the key it stands for, for messages. Throws Error with the column inside the expression, what
-  /// is wrong there and which variables are known.
+  /// `where` is the key, for messages. Throws Error with the column in the expression, the cause and the
+  /// known variables.
   explicit Expression(const config::ExpressionText& text, std::string where = "");
   explicit Expression(double constant);
   ~Expression();
@@ -27,7 +27,7 @@ class Expression {
 
   /// Throws Error if the value is not finite.
   double operator()(const Vec3& x, double t) const;
-  /// values[stride * i + offset] = f(points[i], t): `stride` 3 and `offset` c fill component c of packed
+  /// Sets values[stride * i + offset] = f(points[i], t). `stride` 3 and `offset` c fill component c of packed
   /// vectors.
   void evaluate(std::span<const Vec3> points, double t, std::span<double> values, int stride = 1,
                 int offset = 0) const;
@@ -35,7 +35,7 @@ class Expression {
   const std::string& text() const;
   bool uses_time() const;
   bool uses_space() const;
-  /// Neither space nor time, and 0: whoever asks can skip the work.
+  /// Returns true for the constant 0, so that callers can skip the work.
   bool is_zero() const;
 
  private:
@@ -43,12 +43,11 @@ class Expression {
   std::unique_ptr<State> state_;
 };
 
-/// One expression a component. `texts` must have `dim` entries (Error otherwise, naming `where`).
+/// Compiles one expression per component. Throws Error with `where` unless there are `dim` texts.
 std::vector<Expression> make_expressions(const std::vector<config::ExpressionText>& texts, int dim,
                                          const std::string& where);
 
-/// What is wrong with the texts, as a configuration check wants it; empty if there are `n` and they can be
-/// read.
+/// Problem of the texts for a configuration check. Empty if there are `n` and they can be parsed.
 std::string problem_of(const std::vector<config::ExpressionText>& texts, int n);
 std::string problem_of(const config::ExpressionText& text);
 

@@ -42,12 +42,12 @@ void tangential_weights(const mesh::Mesh& mesh, std::span<const Vec3> points, In
                         Vec3* c) {
   const auto index = mesh.face_points[f];
   if (mesh.dim == 2) {
-    // An edge a-b of unit depth: the derivative along it.
+    // Derivative along an edge a-b of unit depth.
     c[1] = (points[index[1]] - points[index[0]]) / (line.area * line.area);
     c[0] = -c[1];
     return;
   }
-  // L_e m_e = (x_2 - x_1) x n, half of it to each end point (2.56).
+  // L_e m_e = (x_2 - x_1) x n, half of it for each end point (2.56).
   for (std::size_t i = 0; i < index.size(); ++i) c[i].setZero();
   for (std::size_t i = 0; i < index.size(); ++i) {
     const std::size_t j = (i + 1) % index.size();
@@ -59,9 +59,9 @@ void tangential_weights(const mesh::Mesh& mesh, std::span<const Vec3> points, In
 
 namespace {
 
-constexpr double near_weight = 0.05;  // beside the square of the distance over the reach
-constexpr double least_pivot = 1e-9;  // of a term that no sample determines, over one that they do
-// Of the squares of a term in the samples: a direction that they do not span.
+constexpr double near_weight = 0.05;  // added to the squared relative distance
+constexpr double least_pivot = 1e-9;  // ratio of the pivots of undetermined and determined terms
+// Relative square of a term in the samples, below which they do not span its direction.
 constexpr double not_spanned = 1e-20;
 
 }  // namespace
@@ -91,7 +91,7 @@ void NearQuadratic::add(const Vec3& place, std::span<const double> values) {
 }
 
 Eigen::MatrixXd NearQuadratic::solve() const {
-  // Thin cells make terms of very different sizes.
+  // Thin cells give terms of very different magnitude.
   const double least = not_spanned * of_(0, 0);
   const Eigen::VectorXd scale =
       of_.diagonal().unaryExpr([&](double v) { return v > least ? 1 / std::sqrt(v) : 0; });
@@ -102,7 +102,7 @@ Eigen::MatrixXd NearQuadratic::solve() const {
 
 namespace {
 
-/// A place with the field's value and gradient.
+/// Position with value and gradient of the field.
 struct Knot {
   Vec3 x = Vec3::Zero(), u = Vec3::Zero();
   Tensor3 slope = Tensor3::Zero();
@@ -115,17 +115,17 @@ Knot knot_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index point
   return knot;
 }
 
-/// Value that lies `part` L . (G_b - G_a) below the trapezoid: 1/8 in the middle of an edge, 1/12 as its
-/// mean.
+/// Value `part` L . (G_b - G_a) below the trapezoidal one: 1/8 in the middle of an edge, 1/12 for its mean.
 Vec3 below_chord(const Knot& a, const Knot& b, double part) {
   return 0.5 * (a.u + b.u) - part * (b.slope - a.slope).transpose() * (b.x - a.x);
 }
 
-/// Integrals over a face with its normal: of the values, S u^T, and of the place, S . x with x from `origin`.
+/// Integrals over a face with its normal: S u^T of the values, and S . x of the position relative to
+/// `origin`.
 struct Flux {
   Tensor3 values = Tensor3::Zero();
   Vec3 area = Vec3::Zero();
-  double volume = 0;  ///< dim times that of the cone from `origin`
+  double volume = 0;  ///< dim times the volume of the cone from `origin`
 
   void add(const Vec3& part, const Vec3& u, const Vec3& x) {
     values += part * u.transpose();
@@ -134,8 +134,8 @@ struct Flux {
   }
 };
 
-/// The mean of the corners as a knot: u(x) = u_i + (x - x_i) . (G_i + G) / 2 holds for a quadratic from each
-/// corner, and (x - x_i) . G cancels in their mean.
+/// Value and gradient at the mean of the corners. For a quadratic, u(x) = u_i + (x - x_i) . (G_i + G) / 2
+/// from each corner, and (x - x_i) . G cancels in the mean.
 Knot middle_of(std::span<const Knot> corners) {
   const auto n = double(corners.size());
   Knot middle;
@@ -148,7 +148,7 @@ Knot middle_of(std::span<const Knot> corners) {
   return middle;
 }
 
-/// The mean of a quadratic over a triangle is that of the middles of its edges.
+/// Adds a triangle. The mean of a quadratic is that of its edge midpoints.
 void add_triangle(const Knot& a, const Knot& b, const Knot& c, const Vec3& origin, Flux& flux) {
   const Vec3 to_b = b.x - a.x, to_c = c.x - a.x;
   const Vec3 u = (below_chord(a, b, 1.0 / 8) + below_chord(b, c, 1.0 / 8) + below_chord(c, a, 1.0 / 8)) / 3;
@@ -195,7 +195,7 @@ std::vector<Tensor3> gradients_from_points(const mesh::Mesh& mesh, const mesh::G
     gradient[other] -= flux.values;
     volume[other] -= (flux.volume - flux.area.dot(step)) / mesh.dim;
   }
-  // The volume between these triangles, not the mesh's: what makes linear fields exact on warped faces.
+  // The volume between these triangles makes linear fields exact on warped faces; that of the mesh would not.
   for (Index c = 0; c < n_owned; ++c) gradient[c] /= volume[c];
   return gradient;
 }

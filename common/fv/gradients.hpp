@@ -11,7 +11,7 @@
 
 namespace couplet::fv {
 
-/// What the gradient at one face takes from the geometry.
+/// Geometric coefficients of the gradient at a face.
 struct FaceLine {
   Vec3 normal;        ///< unit vector out of the owner
   double area;        ///< [m^2]
@@ -19,18 +19,18 @@ struct FaceLine {
   Vec3 skew;          ///< k = n - d / (d . n)
 };
 FaceLine face_line(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face);
-/// c_V of the points around the face [1/m], see FaceGradient; at most four.
+/// Coefficients c_V of the points around the face [1/m], see FaceGradient; at most four.
 void tangential_weights(const mesh::Mesh& mesh, std::span<const Vec3> points, Index face,
                         const FaceLine& line, Vec3* c);
 
-/// Gradient at a face from the two nodes beside it and the vertices around it, thesis (2.53)-(2.58):
-///   grad_t phi = sum_V c_V phi_V                    surface Gauss theorem, edge values = mean of their end points
-///   n . grad phi = (phi_N - phi_P) / (d . n) + k . grad_t phi,   d = x_N - x_P,  k = n - d / (d . n) (over-relaxed)
-/// N is the neighbour cell's centre, on the boundary the face centre. Exact for linear fields on any (also
-/// warped) face.
+/// Gradient at a face from the two nodes beside it and its vertices, thesis (2.53)-(2.58):
+///   grad_t phi = sum_V c_V phi_V   (surface Gauss theorem, edge values = mean of their end points)
+///   n . grad phi = (phi_N - phi_P) / (d . n) + k . grad_t phi,   d = x_N - x_P,   k = n - d / (d . n)
+/// N is the center of the neighbor cell, or of the face on the boundary. Exact for linear fields on any, also
+/// warped, face.
 struct FaceGradient {
   FaceGradient(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
-  /// For another placement of the points. Allocates nothing.
+  /// Recomputes the coefficients for new point positions without allocation.
   void update(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
   std::vector<Vec3> normal;        ///< per local face: unit vector out of the owner
@@ -38,8 +38,7 @@ struct FaceGradient {
   std::vector<Vec3> skew;          ///< per local face: k
   std::vector<Vec3> tangential;    ///< c_V, aligned with mesh.face_points.index [1/m]
 
-  /// grad_t at face f; `vertex` holds `D` values a local point: entry (i, j) is the derivative of component j
-  /// along i.
+  /// grad_t at face f from `D` values per local point. Entry (i, j) is the derivative of component j along i.
   template <int D>
   Tensor<D> tangential_gradient(const mesh::Mesh& mesh, Index f, std::span<const double> vertex) const {
     Tensor<D> gradient = Tensor<D>::Zero();
@@ -52,15 +51,15 @@ struct FaceGradient {
   }
 };
 
-/// Least squares of quadratics around a centre, phi = 1, x_a, x_a x_b (a <= b), x = (place - centre) / reach, for the value there: near samples
-/// count more, by 1 / (0.05 + x^2). Terms that the samples do not determine become small, those of a direction that they do not
-/// span zero.
+/// Least-squares fit of quadratics around a center: 1, x_a, x_a x_b (a <= b) with x = (place - centre) /
+/// reach. Near samples have larger weights 1 / (0.05 + x^2). Undetermined terms become small, those of
+/// directions without samples zero.
 class NearQuadratic {
  public:
-  /// `reach` [m]: the largest distance of a sample; `values` a sample.
+  /// `reach` [m] is the largest distance of a sample, `values` the number of values per sample.
   NearQuadratic(int dim, const Vec3& centre, double reach, int values);
   void add(const Vec3& place, std::span<const double> values);
-  /// Row i: what the term i of each value counts.
+  /// Coefficients of the fit; row i holds term i of each value.
   Eigen::MatrixXd solve() const;
   Eigen::VectorXd terms(const Vec3& place) const;
 
@@ -71,11 +70,11 @@ class NearQuadratic {
   Eigen::MatrixXd of_, right_;
 };
 
-/// Mean gradient of each owned cell by Gauss's theorem from values and gradients at points, which give a
-/// quadratic on every edge; quadrilaterals are cut into triangles around the mean of their corners. Exact for
-/// quadratic fields on any (also warped) cell; for linear ones with slopes that are the same everywhere.
-/// `values`: mesh.dim components a local point; `slopes`: their gradients there; ghosts up to date. Entry
-/// (i, j) of a gradient is the derivative of component j along i, in the reference configuration.
+/// Mean gradient of each owned cell by Gauss's theorem from values and gradients at points, which define a
+/// quadratic on every edge. Quadrilaterals are split into triangles around the mean of their corners. Exact
+/// for quadratic fields on any (also warped) cell. `values` has mesh.dim components per local point, `slopes`
+/// their gradients, with ghosts up to date. Entry (i, j) is the derivative of component j along i in the
+/// reference configuration.
 std::vector<Tensor3> gradients_from_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                            std::span<const double> values, std::span<const Tensor3> slopes);
 

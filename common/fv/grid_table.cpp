@@ -34,7 +34,7 @@ Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>&
     if (found == known.end())
       throw Error("{}: unknown column '{}'. {}", place, name, base::did_you_mean(name, known, "columns"));
     const auto at = static_cast<std::size_t>(found - known.begin());
-    // A header in other units would be taken for what it is not.
+    // A header in other units would be misinterpreted.
     const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
     if (head[i].find('[') != std::string::npos && unit != wanted)
       throw Error("{}: the column '{}' is in '{}'; only {} is accepted here.", place, name, unit, wanted);
@@ -51,7 +51,7 @@ Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>&
   return columns;
 }
 
-/// Numbers row by row, one for each column of the file.
+/// Numbers row by row, one per column of the file.
 struct Rows {
   std::size_t width = 0;
   std::vector<double> values;

@@ -11,21 +11,21 @@
 
 namespace couplet::fv {
 
-/// Values given on a full grid of some of x, y, z [m] and t [s]; linear along each axis in between
-/// (multilinear), so exact for fields that are.
+/// Values on a full grid of some of x, y, z [m] and t [s] with multilinear interpolation, which is exact for
+/// multilinear fields.
 class GridTable {
  public:
   enum class Outside {
-    clamp,  ///< the ends hold beyond the ends
-    error,  ///< a value outside is an Error
+    clamp,  ///< extrapolates the end values as constants
+    error,  ///< throws Error for a value outside
   };
-  /// A CSV file: the first line names its columns, axes ("x", "y", "z", "t"; units in brackets must be m, s and
-  /// m/s) and `values`; one line a place of the grid, in any order. Throws Error naming file and line: unknown or
-  /// missing columns, what is no number, places twice or missing.
+  /// Reads a CSV file. The first line names the columns: axes ("x", "y", "z", "t"; units in brackets must be
+  /// m, s and m/s) and `values`. Each further line is a grid point, in any order. Throws Error with file and
+  /// line for unknown or missing columns, invalid numbers, and duplicate or missing points.
   static GridTable read(const std::filesystem::path& file, const std::vector<std::string>& values,
                         Outside outside);
 
-  /// One number a value column. Throws Error with Outside::error.
+  /// Interpolates one number per value column. Throws Error with Outside::error.
   void evaluate(const Vec3& x, double t, std::span<double> values) const;
   bool uses_time() const { return !axes_[3].empty(); }
 
@@ -33,7 +33,7 @@ class GridTable {
   static constexpr int n_axes = 4;
   std::string file_;
   Outside outside_ = Outside::clamp;
-  std::array<std::vector<double>, n_axes> axes_;  // of x, y, z, t; empty: none
+  std::array<std::vector<double>, n_axes> axes_;  // of x, y, z, t; empty if absent
   std::vector<double> data_;                      // t fastest, then z, y, x; n_values_ each
   std::size_t n_values_ = 0;
 };

@@ -9,9 +9,9 @@
 namespace couplet::fv {
 namespace {
 
-// Of the step, for the difference quotient: its error is 1e-6 of a second order scheme's.
+// Fraction of the step for the difference quotient, whose error is 1e-6 of a second-order scheme's.
 constexpr double backwards = 1e-3;
-// Of starting_velocities(): a small displacement over the length, and the times tried for it [s].
+// Parameters of starting_velocities(): a small displacement relative to the length, and trial times [s].
 constexpr double small = 1e-6, shortest = 1e-12, longest = 1;
 
 std::vector<Expression> expressions(const std::vector<config::ExpressionText>& texts, int dim,
@@ -98,7 +98,7 @@ PrescribedMotion::PrescribedMotion(const MotionParameters& parameters, int dim)
   for (const Expression& e : translation_) refuse(e, "translation");
 }
 
-/// 1 - 10 q^3 + 15 q^4 - 6 q^5 between the radii: no kink at either.
+/// Blending function 1 - 10 q^3 + 15 q^4 - 6 q^5 between the radii, smooth at both.
 double PrescribedMotion::share(const Vec3& x) const {
   if (!parameters_.outer_radius) return 1;
   const double inner = parameters_.inner_radius, outer = *parameters_.outer_radius;
@@ -139,8 +139,8 @@ std::vector<Vec3> PrescribedMotion::velocities(std::span<const Vec3> reference, 
   return now;
 }
 
-/// Of second order from t, t + h and t + 2 h, where h displaces a point by a millionth of the length. What is still there
-/// with h/10 is a velocity of the start; that of a motion that grows from rest, as t^a with a > 1, is smaller then.
+/// Uses a second-order difference of t, t + h and t + 2 h, where h displaces a point by a millionth of the
+/// length. A true starting velocity remains with h/10, but decreases for growth from rest as t^a, a > 1.
 std::vector<Vec3> PrescribedMotion::starting_velocities(std::span<const Vec3> reference, double t,
                                                         double length) const {
   const std::vector<Vec3> start = places(reference, t);

@@ -15,9 +15,9 @@
 namespace couplet::fv {
 namespace {
 
-constexpr std::size_t most_rows = 1000000;  // each costs 24 bytes in every key that names the file
+constexpr std::size_t most_rows = 1000000;  // 24 bytes each in every key that names the file
 
-/// Number (from 0) of the column that is wanted, of `n`.
+/// Index (from 0) of the requested column, out of `n`.
 std::size_t find_column(const std::filesystem::path& file, const std::vector<std::string>& names,
                         const std::string& column, std::size_t n) {
   if (const auto number = csv::number_of(column); number && *number == std::floor(*number)) {
@@ -46,7 +46,7 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
                             : base::did_you_mean(column, names, "columns"));
 }
 
-/// Throws Error where a name ends in a unit in round brackets: such a unit would not be read.
+/// Throws Error if a name ends with a unit in round brackets, which would be ignored.
 void check_brackets(const csv::CsvReader& rows, const std::string& name) {
   const std::size_t open = name.rfind('(');
   if (!name.ends_with(')') || open == std::string::npos) return;
@@ -54,7 +54,7 @@ void check_brackets(const csv::CsvReader& rows, const std::string& name) {
   try {
     base::parse_unit(unit);
   } catch (const Error&) {
-    return;  // as y(t)
+    return;  // e.g. y(t)
   }
   if (!unit.empty() && !csv::number_of(unit))
     throw Error("{}: '{}' has its unit in round brackets, where it is not read. Write '{}[{}]'.",

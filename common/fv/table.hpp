@@ -11,24 +11,24 @@
 
 namespace couplet::fv {
 
-/// A piecewise linear function of one variable.
+/// Piecewise linear function of one variable.
 class Table final {
  public:
   enum class Outside {
-    clamp,  ///< the first and last values hold beyond the ends
-    error,  ///< a value outside the ends is an Error
+    clamp,  ///< extrapolates the first and last values as constants
+    error,  ///< throws Error for a value outside the ends
   };
-  /// `at` must grow. `where` names the table in messages. Throws Error.
+  /// `at` must increase. `where` names the table in messages. Throws Error.
   Table(std::vector<double> at, std::vector<double> values, Outside outside, std::string where);
 
   double operator()(double at) const;
-  /// Integral from `from` to `to`, exact for the piecewise linear function (clamped ends go on as constants).
+  /// Integral from `from` to `to`, exact for the piecewise linear function with constant extrapolation.
   double integral(double from, double to) const;
-  /// Integral from the first place to `at`, never an Error.
+  /// Integral from the first position to `at`; never throws.
   double antiderivative(double at) const;
   const std::vector<double>& at() const { return at_; }
   const std::vector<double>& values() const { return values_; }
-  /// What the header of its file says of its columns' units; empty: nothing. The numbers are as in the file.
+  /// Units in the header of the file, or empty. The numbers are as in the file.
   struct Units {
     std::string axis, value;
   };
@@ -46,30 +46,28 @@ class Table final {
   Units units_;
 };
 
-/// A table from a CSV file (common/csv), plain or gzip; the first line may hold names. The first column is the
-/// axis, which grows; `column`: name (with or without "[unit]") or number
-/// (from 1) of the values.
+/// Reads a table from a CSV file (common/csv), plain or gzip, optionally with column names. The first column
+/// is the increasing axis. `column` is the name (with or without "[unit]") or number (from 1) of the values.
 /// Throws Error with file:line.
 Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside);
 
-/// What is wrong at a place of an expression.
+/// Problem at a position of an expression.
 struct TextProblem {
   std::size_t at = 0;  ///< position in the text, from 0
   std::string what;
-  bool is_sentence = false;  ///< says all by itself: the table, not the text, is wrong
+  bool is_sentence = false;  ///< the message is complete, because the table is wrong and not the text
 };
 
-/// Finds the calls table(variable, [clamp|error,] x0, y0, x1, y1, ...) and table(variable, [clamp|error,]
-/// "file.csv"[, column]) and puts tabNN(variable) in their place, padded with blanks so that positions stay.
-/// Table number NN is appended to `tables`. Throws TextProblem; also where a file's header names a unit other than
-/// that of the variable or of the value that it stands for.
+/// Replaces the calls table(variable, [clamp|error,] x0, y0, x1, y1, ...) and table(variable, [clamp|error,]
+/// "file.csv"[, column]) by tabNN(variable), padded with blanks to keep positions. Appends table number NN to
+/// `tables`. Throws TextProblem, also if the unit in a file's header does not match.
 std::string take_tables(const std::string& text, std::deque<Table>& tables);
 
-/// A material property: a number, or a table of the temperature T: "table(T, 300, 210e9, 600, 180e9)".
+/// Material property: a number, or a table of the temperature T: "table(T, 300, 210e9, 600, 180e9)".
 class Property final {
  public:
   Property(double constant = 0) : constant_(constant) {}  // NOLINT: a number is a property
-  /// Throws Error naming `where`.
+  /// Throws Error with `where`.
   Property(const config::ExpressionText& text, const std::string& where);
 
   bool is_constant() const { return table_.empty(); }
@@ -77,20 +75,20 @@ class Property final {
   double integral(double from, double to) const {
     return is_constant() ? constant_ * (to - from) : table_[0].integral(from, to);
   }
-  /// An integral from some fixed temperature on: differences of it are what counts.
+  /// Integral from an arbitrary fixed temperature; only differences are meaningful.
   double antiderivative(double temperature) const {
     return is_constant() ? constant_ * temperature : table_[0].antiderivative(temperature);
   }
-  /// Smallest and largest value it can take.
+  /// Smallest and largest value of the property.
   double lowest() const;
   double highest() const;
 
  private:
   double constant_ = 0;
-  std::vector<Table> table_;  // none: constant
+  std::vector<Table> table_;  // empty if constant
 };
 
-/// What is wrong with the text of a property that must stay above `above`; empty: nothing.
+/// Problem of the text of a property that must stay above `above`. Empty if it is valid.
 std::string problem_of_property(const config::ExpressionText& text, double above);
 
 }  // namespace couplet::fv

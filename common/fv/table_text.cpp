@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables inside the text of expressions.
+// Tables in the text of expressions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr std::size_t most_tables = 100;  // two digits in tabNN
 
 bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Start of the last call of table(, behind which no other can hide; npos: none.
+/// Start of the last call of table(, which contains no other call, or npos.
 std::size_t last_call(const std::string& text) {
   for (std::size_t at = text.rfind(name); at != std::string::npos;) {
     const std::size_t after = text.find_first_not_of(' ', at + name.size());
@@ -37,7 +37,7 @@ struct Argument {
   std::string text;
 };
 
-/// The arguments of the call whose '(' is at `open`; `close` becomes the place of its ')'.
+/// Arguments of the call whose '(' is at `open`. Sets `close` to the position of its ')'.
 std::vector<Argument> arguments_of(const std::string& text, std::size_t open, std::size_t& close) {
   std::vector<Argument> arguments;
   std::size_t first = open + 1;
@@ -100,7 +100,7 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   }
 }
 
-/// Factor and zero of a header's unit; empty where it is none that we know ("[-]", "[cells]").
+/// Factor and offset of a header's unit. Empty for unknown ones ("[-]", "[cells]").
 std::optional<base::Unit> unit_of(const std::string& text) {
   try {
     return base::parse_unit(text);
@@ -109,8 +109,8 @@ std::optional<base::Unit> unit_of(const std::string& text) {
   }
 }
 
-/// A file's numbers are taken as they stand. Where they meet a bare variable, or are the whole value, nothing can
-/// bring another unit of the header to SI: such a file would be read as what it is not.
+/// Rejects a header unit that cannot be converted to SI. The numbers of a file are used unchanged, so they
+/// must be in SI if the variable is bare or the table is the whole value.
 void check_units(const Table& table, const std::string& variable, bool is_whole_value, std::size_t at) {
   static const std::map<std::string, std::string> unit_of_variable{{"x", "m"}, {"y", "m"}, {"z", "m"},
                                                                    {"r", "m"}, {"t", "s"}, {"T", "K"}};

@@ -48,13 +48,12 @@ std::vector<GlobalIndex> number_nodes(const mesh::Mesh& mesh, std::span<const In
 
 namespace {
 
-// Directions the nodes do not span: eigenvalues of sum r r^T below this part of the largest (r are unit
-// vectors, so that a cell of aspect ratio 1e5 still counts as spanning).
+// Relative eigenvalue of sum r r^T below which nodes do not span a direction (r are unit vectors, so a cell
+// of aspect ratio 1e5 still spans it).
 constexpr double spanned = 1e-12;
-// No weighted mean of the nodes reaches the point: the weights cancel to this part of sum 1/d.
+// Relative cancellation of the weights (to sum 1/d) at which no weighted mean of the nodes reaches the point.
 constexpr double reachable = 1e-8;
-// The weighted mean of the nodes misses the point by this part of their distance: linear fields are not
-// exact.
+// Relative distance of the weighted mean from the point above which linear fields are not exact.
 constexpr double exact = 1e-6;
 
 /// Least-norm solution of M lambda = -s.
@@ -81,7 +80,7 @@ Vec3 solve_lambda(const Tensor3& m, const Vec3& s, int dim) {
 
 Vec3 VertexSums::lambda(int dim, const Tensor3* within) const {
   if (!within) return solve_lambda(m, s, dim);
-  // Across symmetry planes M is filled up with a diagonal: s has no part there, so lambda gets none.
+  // Adds a diagonal across symmetry planes, where s and therefore lambda vanish.
   return solve_lambda(m + 0.5 * m.trace() * (Tensor3::Identity() - *within), s, dim);
 }
 
@@ -90,18 +89,18 @@ bool VertexWeightSums::cancels(const VertexSums& nodes) const {
 }
 
 bool VertexWeightSums::meets(const VertexSums& nodes, const Tensor3* within) const {
-  // inverse_distance / count is one over the distance of the nodes.
+  // inverse_distance / count is the mean inverse distance of the nodes.
   const double off = within ? (*within * miss).norm() : miss.norm();
   return off * nodes.inverse_distance <= exact * nodes.count * std::abs(sum);
 }
 
 namespace {
 
-// Ratio of the eigenvalues of the mean of n n^T over the symmetry faces of a patch around a vertex, tan^2 of
-// half the angle between two normals: below the first (1 degree) the faces are one plane, above the second
-// (40 degrees) two.
+// Eigenvalue ratios of the mean of n n^T over symmetry faces of a patch at a vertex, tan^2 of half the angle
+// between two normals. Below the first (1 degree) the faces form one plane, above the second (40 degrees)
+// two.
 constexpr double one_plane = 1e-4, two_planes = 0.13;
-// Planes of different patches whose normals differ by less than this (0.06 degrees) are one.
+// Planes of different patches with normals closer than this (0.06 degrees) are one plane.
 constexpr double new_direction = 1e-3;
 
 VertexInterpolation::ByFace by_face(const mesh::Mesh& mesh, std::span<const PatchStencil> stencils) {
@@ -111,7 +110,7 @@ VertexInterpolation::ByFace by_face(const mesh::Mesh& mesh, std::span<const Patc
   return result;
 }
 
-/// The directions across the planes of one symmetry patch at a vertex, from the mean of n n^T.
+/// Normals of one symmetry patch at a vertex, from the mean of n n^T.
 struct Planes {
   std::vector<Vec3> normals;
   bool bent = false;  // neither flat nor an edge
@@ -128,7 +127,7 @@ Planes planes_of(const Tensor3& mean) {
   return planes;
 }
 
-/// Takes the direction n away from a projector.
+/// Removes the direction n from a projector.
 void take_away(const Vec3& n, Tensor3& projector) {
   const Vec3 across = projector * n;
   if (across.norm() < new_direction) return;
@@ -194,7 +193,7 @@ void VertexInterpolation::gather_rows(const Around& around, const ByFace& bounda
   weight_.assign(node_.size(), 0);
 }
 
-/// The nodes around all points of the cells at this point, of the materials that meet here.
+/// Collects the nodes around all points of the cells at this point, of the materials that meet here.
 void VertexInterpolation::gather_wide_row(Index point, const Around& around, const ByFace& boundary) {
   const std::span<const int> material = boundary.material_of_cell;
   const auto cells = around.cells[point];
@@ -215,7 +214,7 @@ void VertexInterpolation::gather_wide_row(Index point, const Around& around, con
   node_.erase(std::unique(first, node_.end()), node_.end());
 }
 
-/// Sorts the nodes of the point whose row is being made, and notes where those of each material end.
+/// Sorts the nodes of the current row by material and records the end of each.
 void VertexInterpolation::group_by_material(Index point, std::span<const int> material_of_cell) {
   const auto material = [&](Index node) {
     return material_of_cell[node < n_cells_ ? node : mesh_->owner[mesh_->n_interior + node - n_cells_]];
@@ -276,10 +275,11 @@ void VertexInterpolation::update(const mesh::Geometry& geometry) {
   }
 }
 
-/// Weights of the nodes [first, last) of a row, of sum 1; says whether they are exact for linear fields.
+/// Computes normalized weights of the nodes [first, last) of a row. Returns true if they are exact for linear
+/// fields.
 bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int64_t last,
                                        const mesh::Geometry& geometry, const Vec3& at) {
-  // Weights of unit vectors may cancel; those of least squares are the least there are.
+  // Unit-vector weights may cancel. Least-squares weights are the smallest possible.
   if (!mesh_->is_wide(point)) {
     const bool is_exact = fill_weights(point, first, last, geometry, at, false);
     if (magnification({weight_.data() + first, std::size_t(last - first)}) <= mesh::longest_reach)
@@ -288,8 +288,7 @@ bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int
   return fill_weights(point, first, last, geometry, at, true);
 }
 
-/// `least_squares`: lambda times the nodes' distances instead of their directions, the least weights there
-/// are.
+/// `least_squares` scales lambda by the nodes' distances, which gives the smallest possible weights.
 bool VertexInterpolation::fill_weights(Index point, std::int64_t first, std::int64_t last,
                                        const mesh::Geometry& geometry, const Vec3& at, bool least_squares) {
   const VertexWeights kind = least_squares ? VertexWeights::least_squares : VertexWeights::inverse_distance;
@@ -298,13 +297,13 @@ bool VertexInterpolation::fill_weights(Index point, std::int64_t first, std::int
     return at - (node_[i] < n_cells_ ? geometry.cell_centre[node_[i]]
                                      : geometry.face_centre[mesh_->n_interior + node_[i] - n_cells_]);
   };
-  // d is the full distance, also at symmetry planes, where r keeps its part within the planes only.
+  // d is the full distance, even at symmetry planes, where r only keeps its in-plane part.
   VertexSums nodes;
   for (auto i = first; i < last; ++i) nodes.add(from(i), kind, within);
   const Vec3 lambda = nodes.lambda(mesh_->dim, within);
   VertexWeightSums all;
   for (auto i = first; i < last; ++i) {
-    // (2.50) with its erratum; lambda lies within the planes.
+    // (2.50) with its erratum; lambda lies in the planes.
     weight_[i] = vertex_weight(from(i), lambda, kind);
     all.add(weight_[i], from(i));
   }

@@ -14,23 +14,24 @@ namespace couplet::fv {
 /// Flux faces of each owned cell.
 mesh::Csr flux_faces_of_cells(const mesh::Mesh& mesh);
 
-/// Global number of each local node (cells, then boundary faces) as an unknown, -1: none. A rank numbers its
-/// owned cells, then these boundary faces of its own; a bonded face has the number of its twin. Collective.
+/// Global number of each local node (cells, then boundary faces) as an unknown, or -1. A rank numbers its
+/// owned cells, then its boundary faces with an unknown. A bonded face has the number of its twin.
+/// Collective.
 std::vector<GlobalIndex> number_nodes(const mesh::Mesh& mesh, std::span<const Index> faces_with_unknown);
 
-/// How the weights of a point's nodes are found, thesis (2.48)-(2.51), see VertexInterpolation:
+/// Kinds of weights for a point's nodes, thesis (2.48)-(2.51), see VertexInterpolation:
 ///   w_i = (1 + lambda . r_i) / d_i,   r_i = (x_V - x_i) / d_i,   sum_i r_i r_i^T lambda = - sum_i r_i
-/// `least_squares`: lambda . r_i d_i in place of lambda . r_i. All sums are over the nodes, so that they may be taken in parts
-/// (over ranks, or over the copies of a point on periodic patches).
+/// `least_squares` replaces lambda . r_i by lambda . r_i d_i. All sums are over the nodes and may be taken in
+/// parts (over ranks, or over the copies of a point on periodic patches).
 enum class VertexWeights { inverse_distance, least_squares };
 
-/// The sums that lambda follows from.
+/// Sums that determine lambda.
 struct VertexSums {
   Tensor3 m = Tensor3::Zero();
   Vec3 s = Vec3::Zero();
   double inverse_distance = 0, count = 0;
 
-  /// `from`: x_V - x_i [m]; only the part of its direction in `within` counts.
+  /// Adds a node at distance `from` = x_V - x_i [m]. Only the part of its direction in `within` counts.
   void add(const Vec3& from, VertexWeights kind, const Tensor3* within) {
     const double d = from.norm();
     inverse_distance += 1 / d;
@@ -40,11 +41,11 @@ struct VertexSums {
     m += (kind == VertexWeights::least_squares ? d : 1) * r * r.transpose();
     s += r;
   }
-  /// Least-norm solution, within `within`.
+  /// Least-norm solution in the subspace `within`.
   Vec3 lambda(int dim, const Tensor3* within) const;
 };
 
-/// What the weights, not yet of sum 1, make together.
+/// Sums of the unnormalized weights.
 struct VertexWeightSums {
   double sum = 0, squares = 0;
   Vec3 miss = Vec3::Zero();  ///< weighted mean of the x_V - x_i, times the sum
@@ -54,9 +55,9 @@ struct VertexWeightSums {
     squares += weight * weight;
     miss += weight * from;
   }
-  /// The weights cancel: no weighted mean of the nodes reaches the point, and the plain inverse distance serves.
+  /// Returns true if no weighted mean of the nodes reaches the point, so that plain inverse distance is used.
   bool cancels(const VertexSums& nodes) const;
-  /// The weighted mean of the nodes is the point: linear fields are met.
+  /// Returns true if the weighted mean of the nodes is the point, so that linear fields are exact.
   bool meets(const VertexSums& nodes, const Tensor3* within) const;
 };
 
@@ -65,57 +66,54 @@ inline double vertex_weight(const Vec3& from, const Vec3& lambda, VertexWeights 
   return (1 + lambda.dot(from) / (kind == VertexWeights::least_squares ? 1 : d)) / d;
 }
 
-/// How the values at the vertices of a patch are found.
+/// Stencil for values at the vertices of a patch.
 enum class PatchStencil {
   open,      ///< cells and boundary faces around the vertex (traction, free surface, interface)
-  fixed,     ///< the surrounding faces of fixed patches only (Dirichlet)
+  fixed,     ///< only surrounding faces of fixed patches (Dirichlet)
   symmetry,  ///< cells mirrored at the patch; the patch's own faces carry no value
 };
 
-/// Values at mesh points from the nodes around them: cell centres and boundary face centres.
+/// Values at mesh points from the surrounding nodes: cell centers and boundary face centers.
 ///
-/// Modified inverse distance, thesis (2.48)-(2.51) with the erratum of (2.50): w_i = (1 + lambda . r_i) /
-/// d_i, where r_i = (x_V - x_i) / d_i and sum_i r_i r_i^T lambda = - sum_i r_i; exact for linear fields
-/// whenever the nodes span the space. Where they do not, lambda is the least-norm solution (exact along the
-/// directions that are spanned), and where no weighted mean of the nodes can reach the point at all, the
-/// plain inverse distance is taken. Where these weights magnify, n sum w^2 > 40, lambda . r_i d_i takes the
-/// place of lambda . r_i: weighted least squares, whose weights are the least there are; at Mesh::wide_points
-/// over the nodes around all points of the point's cells.
+/// Modified inverse distance, thesis (2.48)-(2.51) with the erratum of (2.50):
+///   w_i = (1 + lambda . r_i) / d_i,   r_i = (x_V - x_i) / d_i,   sum_i r_i r_i^T lambda = - sum_i r_i
+/// It is exact for linear fields if the nodes span the space. Otherwise lambda is the least-norm solution
+/// (exact along the spanned directions), or the plain inverse distance is used if no weighted mean reaches
+/// the point. If n sum w^2 > 40, lambda . r_i d_i replaces lambda . r_i: least-squares weights, which are the
+/// smallest possible. At Mesh::wide_points they use the nodes around all points of the point's cells.
 ///
-/// At symmetry planes the mirrored nodes are not stored: their weight equals that of the node itself, so that
-/// it is enough to look for lambda within the planes, and to remove a vector's component across them (see
-/// project()).
+/// At symmetry planes mirrored nodes need not be stored, since their weights equal those of the nodes. It
+/// suffices to restrict lambda to the planes and to remove a vector's component across them (see project()).
 ///
-/// Where several materials meet at a vertex, each has its own weights for its own nodes (its cells, and the
-/// faces of these), and the value is the mean of the materials': exact for fields that are linear in each of
-/// them.
+/// Each material at a vertex has its own weights for its own nodes, and the value is the mean over the
+/// materials. This is exact for fields that are linear in each of them.
 ///
-/// Node numbers: local cell i is node i, boundary face b (entry of mesh.boundary) is node
-/// mesh.cells.n_local() + b. Rows exist for the points of owned cells (those whose whole surroundings are on
-/// this rank); others are empty.
+/// Local cell i is node i, boundary face b (entry of mesh.boundary) is node mesh.cells.n_local() + b. Only
+/// points of owned cells, whose whole surroundings are on this rank, have rows.
 class VertexInterpolation {
  public:
-  /// n sum w^2 of the weights of a point: 1 in the midst of n nodes, 9 at the edge of hexahedra, 28 at a
-  /// corner.
+  /// Magnification n sum w^2 of the weights of a point: 1 at the center of n nodes, 9 at the edge of
+  /// hexahedra, 28 at a corner.
   static double magnification(std::span<const double> weights) {
     double squares = 0;
     for (const double w : weights) squares += w * w;
     return double(weights.size()) * squares;
   }
 
-  /// `stencils`: one a patch. Keeps the mesh by reference, and nothing of the geometry but the weights.
+  /// `stencils` has one entry per patch. Keeps a reference to the mesh; of the geometry only the weights are
+  /// stored.
   VertexInterpolation(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                       std::span<const PatchStencil> stencils);
-  /// One stencil a local boundary face; `material_of_cell`: per local cell, empty: one material.
+  /// One stencil per local boundary face. `material_of_cell` is per local cell, or empty for one material.
   struct ByFace {
     std::vector<PatchStencil> stencil;
     std::span<const int> material_of_cell;
-    /// Rows of the points of boundary faces (bonded ones, too) alone; those of others depend on no stencil.
+    /// Builds only the rows of points on boundary faces (including bonded ones). Others depend on no stencil.
     bool surface_only = false;
   };
   VertexInterpolation(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const ByFace& boundary);
 
-  /// The weights for another placement of the points. Allocates nothing.
+  /// Recomputes the weights for new point positions without allocation.
   void update(const mesh::Geometry& geometry);
 
   std::span<const Index> nodes(Index point) const {
@@ -124,19 +122,19 @@ class VertexInterpolation {
   std::span<const double> weights(Index point) const {
     return {weight_.data() + offset_[point], std::size_t(offset_[point + 1] - offset_[point])};
   }
-  /// The point lies on a fixed patch: its row holds faces of fixed patches; whoever knows better sets the
-  /// value itself.
+  /// Returns true if the point lies on a fixed patch. Its row contains faces of fixed patches; callers may
+  /// set a more accurate value.
   bool is_fixed(Index point) const { return fixed_[point] != 0; }
-  /// I minus the directions across the symmetry planes the point lies on; I where there are none.
+  /// Projector I minus the normals of the symmetry planes at the point, or I.
   const Tensor3& projector(Index point) const { return projectors_[projector_of_[point]]; }
   bool on_symmetry(Index point) const { return projector_of_[point] != 0; }
-  /// Points whose value is not exact for linear fields: the nodes around them do not span the space.
-  /// Ascending; for the placement of the last update(). Owned points only.
+  /// Owned points whose value is not exact for linear fields, because their nodes do not span the space.
+  /// Ascending; for the positions of the last update().
   const std::vector<Index>& inexact_points() const { return inexact_; }
-  /// A symmetry patch is neither flat nor does it have an edge at these points.
+  /// Points at which a symmetry patch is curved (neither flat nor at an edge).
   const std::vector<Index>& bent_points() const { return bent_; }
 
-  /// Values at this point: `cells` and `boundary` hold `components` a node. No projection.
+  /// Values at this point from `components` per node in `cells` and `boundary`, without projection.
   template <int Components>
   Vec<Components> scalar_at(Index point, std::span<const double> cells,
                             std::span<const double> boundary) const {
@@ -149,7 +147,7 @@ class VertexInterpolation {
     }
     return value;
   }
-  /// A vector field: the same, and no component across symmetry planes.
+  /// Values of a vector field at this point, without components across symmetry planes.
   template <int D>
   Vec<D> vector_at(Index point, std::span<const double> cells, std::span<const double> boundary) const {
     const Vec<D> value = scalar_at<D>(point, cells, boundary);
@@ -172,10 +170,10 @@ class VertexInterpolation {
   Index n_cells_;
   std::vector<std::int64_t> offset_;
   std::vector<Index> node_;
-  std::vector<std::int64_t>
-      ends_;  // where the nodes of each material end, of points with several materials ...
-  std::vector<Index>
-      ends_first_;  // ... and per point its first entry there, -1: one material; empty: one in all
+  // End of the nodes of each material, for points with several materials.
+  std::vector<std::int64_t> ends_;
+  // First entry of each point in ends_, or -1 for one material; empty if there is only one in total.
+  std::vector<Index> ends_first_;
   std::vector<Index> inexact_, bent_;
   std::vector<double> weight_;
   std::vector<std::uint8_t> fixed_;

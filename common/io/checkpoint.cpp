@@ -35,7 +35,7 @@ struct CheckpointWriter::State {
     hdf5::write_table(id, layout_path(name), hdf5::distribute_rows(comm, 1, 2), layout);
   }
 
-  /// Entries of this rank that are not what the file will give back.
+  /// Stores entries of this rank that the file would not restore.
   void write_copies(const parallel::GlobalOrder& order, const std::string& name,
                     std::span<const double> values, std::span<const double> block, std::size_t width) const {
     const std::vector<double> back = order.from_block(block, width);
@@ -100,7 +100,7 @@ CheckpointWriter::CheckpointWriter(StateInMemory& memory) : memory_(&memory) {}
 
 CheckpointWriter::~CheckpointWriter() {
   if (memory_ || state_->id < 0) return;
-  // Closing a file is collective: never while unwinding, when the other ranks may be elsewhere.
+  // Closing a file is collective. It must not happen during unwinding, when the other ranks may be elsewhere.
   if (std::uncaught_exceptions() > state_->exceptions) {
     state_->id.release();
     return;

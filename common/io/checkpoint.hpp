@@ -18,7 +18,7 @@
 
 namespace couplet::io {
 
-/// A state kept in memory, each rank its own part: what a checkpoint writer puts in, a reader gets out.
+/// State kept in memory, each rank its own part. A checkpoint writer fills it and a reader reads it back.
 class StateInMemory {
  public:
   void clear() { arrays_.clear(); }
@@ -29,8 +29,8 @@ class StateInMemory {
   std::map<std::string, std::vector<double>> arrays_;
 };
 
-/// The entries that a field has values of: cells, points or faces of the mesh that the file is on, or others in an order of
-/// their own, by reference.
+/// Location of a field's values: cells, points or faces of the mesh, or entries in an order of their own,
+/// which is held by reference.
 class FieldEntries {
  public:
   FieldEntries(mesh::Entries entries) : entries_(entries) {}
@@ -44,31 +44,31 @@ class FieldEntries {
   const parallel::GlobalOrder* order_ = nullptr;
 };
 
-/// One participant's state at an accepted time, one HDF5 file, which any number of ranks can read: fields stand in it by the
-/// numbers of cells, points and faces. On equal ranks all comes back bit for bit. Written under a temporary name, flushed
-/// and renamed in close(), so the last good file is never lost. All calls are collective.
+/// State of one participant at an accepted time in one HDF5 file, readable by any number of ranks. Fields are
+/// stored by mesh numbers. The same number of ranks restores them bit for bit. close() flushes and renames a
+/// temporary file, so the last good file is never lost. All calls are collective.
 class CheckpointWriter {
  public:
   CheckpointWriter(MPI_Comm comm, const std::filesystem::path& file);
-  /// No file: into memory.
+  /// Writes to memory instead of a file.
   explicit CheckpointWriter(StateInMemory& memory);
   ~CheckpointWriter();
   CheckpointWriter(const CheckpointWriter&) = delete;
 
-  /// The mesh of the fields that follow; it must outlive the writer.
+  /// Sets the mesh of the fields that follow. It must outlive the writer.
   void on(const mesh::Mesh& mesh);
-  /// A field, a whole number of values per entry; empty (on all ranks): there is none. Where a rank's copy of an entry that
-  /// another one owns differs from the owner's, it is kept for equal ranks.
+  /// Writes a field with a whole number of values per entry. It may be empty on all ranks. A ghost value that
+  /// differs from its owner's value is kept for the same number of ranks.
   void write(const FieldEntries& entries, const std::string& name, std::span<const double> values);
-  /// The same on all ranks (rank 0's counts).
+  /// Writes values that are the same on all ranks (those of rank 0).
   void write_common(const std::string& name, std::span<const double> values);
   void write_scalar(const std::string& name, double value);
-  /// Each rank's part of sums over all.
+  /// Writes this rank's contribution to sums over all ranks.
   void write_sums(const std::string& name, std::span<const double> values);
-  /// Each rank's own: another number of ranks is refused.
+  /// Writes values of this rank. They can only be read by the same number of ranks.
   void write(const std::string& name, std::span<const double> values);
   void close();
-  /// Of those who write; a state in memory is each rank's own.
+  /// Communicator of the writing ranks. In memory each rank is on its own.
   MPI_Comm comm() const;
 
  private:
@@ -77,12 +77,12 @@ class CheckpointWriter {
   StateInMemory* memory_ = nullptr;
 };
 
-/// What --check can say of a checkpoint: what CheckpointReader refuses. Empty: nothing.
+/// Reason why CheckpointReader would reject the file, for --check. Empty if it is valid.
 std::string problem_of_checkpoint(const std::filesystem::path& file);
 
-/// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, of another mesh, missing array or
-/// another size than expected. Each rank reads its block of a field alone, then the values go to where they belong; all calls
-/// are collective.
+/// Reads a checkpoint. Throws Error with the file and the reason if it is missing, truncated, not a
+/// checkpoint or of another mesh, or if an array is missing or has another size. Each rank reads its block of
+/// a field, then the values are sent to their ranks. All calls are collective.
 class CheckpointReader {
  public:
   CheckpointReader(MPI_Comm comm, const std::filesystem::path& file);
@@ -90,52 +90,52 @@ class CheckpointReader {
   ~CheckpointReader();
   CheckpointReader(const CheckpointReader&) = delete;
 
-  /// The mesh of the fields that follow, which must be the one they were written on; it must outlive the reader.
+  /// Sets the mesh on which the following fields were written. It must outlive the reader.
   void on(const mesh::Mesh& mesh);
-  /// Of those who read; a state in memory is each rank's own.
+  /// Communicator of the reading ranks. In memory each rank is on its own.
   MPI_Comm comm() const;
-  /// Whether as many ranks wrote it as read it, each with the same part of the mesh.
+  /// Returns true if as many ranks wrote the file as read it, each with the same part of the mesh.
   bool on_same_ranks() const;
 
-  /// Fills `values`: there must be as many per entry.
+  /// Fills `values`, which must have the size of the saved field.
   void read(const FieldEntries& entries, const std::string& name, std::span<double> values);
-  /// As many values as were written per entry, maybe none.
+  /// Returns as many values per entry as were written, possibly none.
   std::vector<double> read(const FieldEntries& entries, const std::string& name);
-  /// `width` values per entry, or none at all.
+  /// Returns `width` values per entry, or none at all.
   std::vector<double> read_or_none(const FieldEntries& entries, const std::string& name, std::size_t width);
   void read_common(const std::string& name, std::span<double> values);
   std::vector<double> read_common(const std::string& name);
   double read_scalar(const std::string& name);
-  /// A whole number from 0 to `most`.
+  /// Reads a whole number from 0 to `most`.
   std::size_t read_count(const std::string& name, std::size_t most);
-  /// This rank's part on equal ranks; else all of it on rank 0, and zeros on the others.
+  /// Reads this rank's contribution. On another number of ranks, rank 0 gets the sum, the others zeros.
   void read_sums(const std::string& name, std::span<double> values);
-  /// What this rank wrote, of just that size. Throws Error if another number of ranks wrote it.
+  /// Reads the values this rank wrote. Throws Error for another size or another number of ranks.
   void read(const std::string& name, std::span<double> values);
-  /// As many values as this rank wrote.
+  /// Reads all values that this rank wrote.
   std::vector<double> read(const std::string& name);
 
  private:
   struct State;
   std::unique_ptr<State> state_;
   const std::vector<double>& in_memory(const std::string& name) const;
-  /// Copies all of what was read. Throws Error if it is of another size.
+  /// Copies `all` to `values`. Throws Error if the sizes differ.
   void fill(const std::string& name, std::span<double> values, const std::vector<double>& all) const;
   const StateInMemory* memory_ = nullptr;
 };
 
-/// Saves or loads a state by one list: what the list names is written to a checkpoint, or read from it into
-/// the same variables. All calls are collective.
+/// Saves or loads a state by one list of variables, which is either written to a checkpoint or read from it.
+/// All calls are collective.
 class Archive final {
  public:
   explicit Archive(CheckpointWriter& out) : out_(&out) {}
   explicit Archive(CheckpointReader& in) : in_(&in) {}
 
   bool reads() const { return in_ != nullptr; }
-  /// Put before each name that follows, so that parts of a state may use the same names.
+  /// Sets a prefix for the names that follow, so that parts of a state may use the same names.
   void set_prefix(std::string prefix) { prefix_ = std::move(prefix); }
 
-  /// Values that are the same on all ranks (see base::Numbers for their types).
+  /// Archives values that are the same on all ranks (see base::Numbers for their types).
   template <class... T>
   void common(const std::string& name, T&... values) {
     if (out_) {
@@ -150,14 +150,14 @@ class Archive final {
     }
   }
 
-  /// Each rank's part of sums over all ranks.
+  /// Archives each rank's contribution to sums over all ranks.
   void sums(const std::string& name, std::span<double> values) {
     if (out_)
       out_->write_sums(prefix_ + name, values);
     else
       in_->read_sums(prefix_ + name, values);
   }
-  /// `width` values per entry, or none at all.
+  /// Archives a field with `width` values per entry, or none at all.
   void field(const FieldEntries& entries, const std::string& name, std::vector<double>& values,
              std::size_t width) {
     if (out_)

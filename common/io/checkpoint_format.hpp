@@ -10,13 +10,13 @@
 namespace couplet::io {
 
 constexpr const char* checkpoint_format = "couplet checkpoint";
-// 3: errors of steps, net heat of a tank's report, what the pressure preconditioner was made from. 4: order of the errors.
-// 5: fields by the numbers of cells, points and faces, for any number of ranks. 6: the scheme of a coupling that chooses it.
-// 7: what diagnostics remember of the run.
+// Version 3 added the errors of steps, the net heat of a tank's report and the source of the pressure
+// preconditioner. 4: order of the errors. 5: fields by the numbers of cells, points and faces. 6: the scheme
+// that a coupling chose. 7: the memory of diagnostics.
 constexpr int checkpoint_version = 7;
 
-// arrays/NAME with layout/NAME: values rank by rank; count and checksum of each rank's.
-// fields/NAME with checks/NAME: rows by the entries' numbers; rows, values per row, checksum over all ranks' rows.
+// arrays/NAME with layout/NAME: values rank by rank; count and checksum of each rank.
+// fields/NAME with checks/NAME: rows by the entries' numbers; rows, values per row, checksum over all ranks.
 // copies/NAME (an array): position and value of a rank's entries that differ from their owner's.
 inline std::string array_path(const std::string& name) { return "arrays/" + name; }
 inline std::string layout_path(const std::string& name) { return "layout/" + name; }
@@ -25,13 +25,13 @@ inline std::string check_path(const std::string& name) { return "checks/" + name
 inline std::string scalar_path(const std::string& name) { return "scalars/" + name; }
 inline std::string copies_of(const std::string& name) { return "copies/" + name; }
 constexpr const char* mesh_table = "mesh";
-constexpr const char* shares_table = "shares";  // of each rank: mesh::share_of_rank
+constexpr const char* shares_table = "shares";  // mesh::share_of_rank() of each rank
 
 inline std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-/// FNV-1a over the bit patterns: cheap, and any flipped bit of an array is noticed when it is read.
+/// FNV-1a hash of the bit patterns. It is cheap and detects any flipped bit of an array.
 inline std::int64_t checksum(std::span<const double> values) {
   std::uint64_t hash = 14695981039346656037ull;
   for (const double value : values) {
@@ -41,7 +41,7 @@ inline std::int64_t checksum(std::span<const double> values) {
   return std::bit_cast<std::int64_t>(hash);
 }
 
-/// Of values that begin at place `first` of a whole: the sum of it over all parts does not depend on the parts.
+/// Checksum of the part of an array from `first` on. The sum over all parts is independent of the partition.
 inline std::uint64_t part_of_checksum(std::span<const double> values, std::uint64_t first) {
   std::uint64_t sum = 0;
   for (const double value : values) {

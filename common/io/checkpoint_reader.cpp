@@ -75,7 +75,7 @@ int ranks_that_wrote(const hdf5::Reader& in) {
   return int(written);
 }
 
-/// Refuses a file whose stamp is not that of the set it lies in.
+/// Throws Error for a file with another stamp than its set.
 void examine_stamp(const hdf5::Reader& in) {
   const auto set = read_checkpoint_set(folder_of(in.file()));
   if (!set || in.text("/", "set", 1024) == set->stamp.text()) return;
@@ -85,7 +85,7 @@ void examine_stamp(const hdf5::Reader& in) {
       in.file().string(), set->stamp.step, set->stamp.time, set->stamp.run);
 }
 
-/// All of the file but the values, which HDF5 copies as they are.
+/// Checks everything except the values, which HDF5 copies unchanged.
 void examine_content(const hdf5::Reader& in) {
   if (!in.has_attribute("/", "format") || in.text("/", "format") != checkpoint_format)
     throw Error("'{}' is an HDF5 file, but not a checkpoint.", in.file().string());
@@ -101,7 +101,7 @@ void examine_content(const hdf5::Reader& in) {
   for (const std::string& name : in.leaves("scalars")) scalar_on_file(in, name);
 }
 
-/// Refuses a file that is damaged. Its digest is compared before HDF5 sees it.
+/// Throws Error for a damaged file. Compares its digest before HDF5 reads it.
 void examine_checkpoint(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw Error("The checkpoint '{}' does not exist.", file.string());
   if (const std::string problem = problem_in_set(file); !problem.empty()) throw Error(problem);
@@ -123,7 +123,7 @@ struct CheckpointReader::State {
   MPI_Comm comm;
   hdf5::Reader in;
   int ranks = 0;            // that wrote it
-  bool same_share = false;  // of the mesh, on all ranks; of a state without a mesh: as many ranks
+  bool same_share = false;  // of the mesh, on all ranks; without a mesh: as many ranks
   std::optional<mesh::OrderOfEntries> orders{};
 
   [[noreturn]] void missing(const std::string& name) const {
@@ -138,7 +138,7 @@ struct CheckpointReader::State {
         in.file().string(), name, where);
   }
 
-  /// What rank `from` wrote, read by this rank.
+  /// Reads the array of rank `from` on this rank.
   std::vector<double> array_of(const std::string& name, int from) const {
     return parallel::on_all(comm, [&] {
       if (!in.has(array_path(name)) || !in.has(layout_path(name))) missing(name);
@@ -166,7 +166,7 @@ struct CheckpointReader::State {
     return array_of(name, parallel::comm_rank(comm));
   }
 
-  /// What a rank had in place of what the owner has.
+  /// Restores values of a rank that differ from the owner's.
   void put_copies(const std::string& name, std::vector<double>& values) const {
     if (!same_share || ranks == 1 || !in.has(array_path(copies_of(name)))) return;
     const std::vector<double> copies = own_array(copies_of(name));
@@ -224,7 +224,7 @@ CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& f
   });
 }
 
-// The file was opened by this rank alone, so closing it is local.
+// Only this rank opened the file, so closing it is local.
 CheckpointReader::~CheckpointReader() = default;
 
 CheckpointReader::CheckpointReader(const StateInMemory& memory) : memory_(&memory) {}

@@ -29,7 +29,7 @@ std::string read_text(const fs::path& file) {
   return text.str();
 }
 
-/// Whether a run of ours writes files of this name into a set.
+/// Returns true if a run writes files of this name into a set.
 bool is_ours(const fs::path& file) {
   const std::string name = file.filename().string();
   if (fs::is_symlink(file) || !fs::is_regular_file(file)) return false;
@@ -37,8 +37,8 @@ bool is_ours(const fs::path& file) {
          name.ends_with(".h5.part");
 }
 
-/// A folder, not a link to one, that holds a set or the beginnings of one. Sets of the time before `set.txt`
-/// hold nothing but files of HDF5.
+/// Returns true for a folder (not a link) with a complete or partial set. Sets older than `set.txt` contain
+/// only HDF5 files.
 bool holds_a_set(const fs::path& folder) {
   if (fs::is_symlink(folder) || !fs::is_directory(folder)) return false;
   for (const char* name : {list_name, pending_name})
@@ -47,7 +47,7 @@ bool holds_a_set(const fs::path& folder) {
   return std::all_of(entries, end, [](const fs::directory_entry& e) { return is_ours(e.path()); });
 }
 
-/// What the list names below its folder, and nothing else: a damaged list must not lead out of it.
+/// Files listed below the folder. Others are ignored, since a damaged list must not lead out of it.
 std::vector<fs::path> listed(const fs::path& folder) {
   std::vector<fs::path> files;
   try {
@@ -56,7 +56,7 @@ std::vector<fs::path> listed(const fs::path& folder) {
         const fs::path name = fs::path(file.name).lexically_normal();
         if (name.is_relative() && !name.empty() && *name.begin() != "..") files.push_back(folder / name);
       }
-  } catch (const Error&) {  // damaged: ours alone go
+  } catch (const Error&) {  // damaged: only our own files are removed
   }
   return files;
 }
@@ -69,7 +69,7 @@ void remove_empty_folders(const fs::path& folder) {
   for (auto it = below.rbegin(); it != below.rend(); ++it) fs::remove(*it, not_empty);
 }
 
-/// The list goes first: what is left of a set that is being taken away is no set.
+/// Removes the list first, so that a partially removed set is not valid.
 void clear(const fs::path& folder) {
   std::vector<fs::path> ours = listed(folder);
   fs::remove(folder / list_name);
@@ -90,7 +90,7 @@ bool parse(std::string_view word, T& value, int base) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
-/// Nothing if the text is not what finish_checkpoint_set writes.
+/// Parses the text of finish_checkpoint_set. Returns nothing for any other text.
 std::optional<CheckpointSet> parse_list(const std::string& text) {
   const std::size_t at = text.rfind("digest ");
   if (at == std::string::npos || !text.starts_with(first_line) || with_digest(text.substr(0, at)) != text)
@@ -111,7 +111,7 @@ std::optional<CheckpointSet> parse_list(const std::string& text) {
       const auto [end, error] =
           std::from_chars(words[1].data(), words[1].data() + words[1].size(), set.stamp.time);
       good = error == std::errc();
-    } else if (words.size() >= 4 && words[0] == "file") {  // the name comes last: it may hold blanks
+    } else if (words.size() >= 4 && words[0] == "file") {  // the name is last because it may contain blanks
       CheckpointSet::File file;
       good = parse(words[1], file.size, 10) && parse(words[2], file.digest, 16);
       file.name = base::join({words.begin() + 3, words.end()}, " ");
@@ -151,7 +151,7 @@ std::string CheckpointStamp::text() const {
 std::uint64_t digest_of_file(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error("The file '{}' cannot be read.", file.string());
-  // FNV-1a over 64-bit words, each step one to one: two files of one size that differ in a single word never agree.
+  // FNV-1a over 64-bit words. Each step is bijective, so a change of a single word changes the digest.
   std::uint64_t hash = 14695981039346656037ull;
   std::vector<char> block(1 << 20);
   while (stream) {
@@ -219,7 +219,7 @@ fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& sta
   if (failed) throw Error("Cannot create the checkpoint folder {}: {}.", folder.string(), failed.message());
   try {
     clear(folder);
-    if (!fs::is_empty(folder)) {  // somebody else's files
+    if (!fs::is_empty(folder)) {  // files of others
       folder = parent / fmt::format("step-{:08d}-{}", stamp.step, stamp.run);
       fs::create_directories(folder);
       clear(folder);
@@ -231,7 +231,7 @@ fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& sta
   return folder;
 }
 
-// The folder was empty when the set was begun: all that is in it belongs to the set.
+// The folder was empty at the start, so all files in it belong to the set.
 void finish_checkpoint_set(const fs::path& folder, const CheckpointStamp& stamp,
                            const std::vector<std::string>& continues) {
   std::string text = fmt::format("{}\n{}", first_line, stamp.text());

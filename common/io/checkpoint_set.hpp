@@ -11,7 +11,7 @@
 
 namespace couplet::io {
 
-/// Which accepted state a checkpoint holds: the same words stand in every file of the set.
+/// Identifies the accepted state of a checkpoint. Every file of a set contains the same stamp.
 struct CheckpointStamp {
   std::string run;       ///< id of the run that wrote it
   GlobalIndex step = 0;  ///< steps accepted
@@ -19,9 +19,9 @@ struct CheckpointStamp {
   std::string text() const;
 };
 
-/// A folder with the files of all programs of a run at one accepted time, those that guest programs write in their own
-/// formats, too. `set.txt` lists them with their sizes and digests and is written last: a folder that has it is complete. While the files are being written there
-/// is `set.part` in its place, from which each program takes the stamp for its own file.
+/// Folder with the files of all programs of a run at one accepted time, including those that guest programs
+/// write in their own formats. `set.txt` lists them with sizes and digests. It is written last, so a folder
+/// that contains it is complete. Until then `set.part` holds the stamp for the files of each program.
 struct CheckpointSet {
   CheckpointStamp stamp;
   struct File {
@@ -30,40 +30,40 @@ struct CheckpointSet {
     std::uint64_t digest = 0;
   };
   std::vector<File> files;  ///< names relative to the folder
-  std::vector<std::string>
-      continues;  ///< ids of the runs before, whose sets this run goes on from and takes over
+  /// Ids of the earlier runs that this run resumes and whose sets it takes over.
+  std::vector<std::string> continues;
 };
 
-/// Digest over all bytes of a file: any change of one 64-bit word changes it. Throws Error if the file cannot be
+/// Digest of all bytes of a file, which changes with any 64-bit word. Throws Error if the file cannot be
 /// read.
 std::uint64_t digest_of_file(const std::filesystem::path& file);
 
-/// Reads `set.txt`; nothing if there is none. Throws Error if it is damaged.
+/// Reads `set.txt`. Returns nothing if there is none. Throws Error if it is damaged.
 std::optional<CheckpointSet> read_checkpoint_set(const std::filesystem::path& folder);
-/// The stamp of the set that is being written into this folder; empty if there is none.
+/// Stamp of the set that is being written into this folder. Empty if there is none.
 std::string stamp_being_written(const std::filesystem::path& folder);
-/// What is wrong with one file of the set in its folder: not listed, another size, another digest; empty if nothing, or
-/// if the folder holds no set. Throws Error if `set.txt` is damaged.
+/// Reason why a file of a set is invalid: not listed, or another size or digest. Empty if it is valid or the
+/// folder holds no set. Throws Error if `set.txt` is damaged.
 std::string problem_in_set(const std::filesystem::path& file);
 
-/// Makes `parent`/step-<step> ready for a new set and gives its path. An earlier set there is taken away first; a
-/// folder or a link that no run of ours made is left alone, and a name with the run's id behind it is taken. Throws
-/// Error if the folder cannot be made.
+/// Prepares `parent`/step-<step> for a new set and returns its path. Removes an earlier set of ours there. If
+/// anything else has that name, it is kept and the run's id is appended to the new name. Throws Error if the
+/// folder cannot be created.
 std::filesystem::path begin_checkpoint_set(const std::filesystem::path& parent, const CheckpointStamp& stamp);
-/// All files are there: lists them and puts `set.txt` in place. Throws Error on failure.
+/// Lists all files of the complete set in `set.txt`. Throws Error on failure.
 void finish_checkpoint_set(const std::filesystem::path& folder, const CheckpointStamp& stamp,
                            const std::vector<std::string>& continues = {});
 
-/// A complete set found below a folder.
+/// Complete set found below a folder.
 struct FoundSet {
   std::filesystem::path folder;
   CheckpointStamp stamp;
 };
-/// Complete sets in the folders step-* of `parent`, by time, then step. What cannot be read is left out.
+/// Complete sets in the folders step-* of `parent`, sorted by time, then step. Unreadable sets are omitted.
 std::vector<FoundSet> checkpoint_sets(const std::filesystem::path& parent);
-/// Takes away the files of this set, those of guest programs, too, and the folder if nothing else is in it.
+/// Removes the files of this set, including those of guest programs, and the folder if it is then empty.
 void remove_checkpoint_set(const std::filesystem::path& folder);
-/// Takes away what runs that ended while they wrote have left in `parent`; gives the folders.
+/// Removes incomplete sets of interrupted runs from `parent` and returns their folders.
 std::vector<std::filesystem::path> clear_incomplete_sets(const std::filesystem::path& parent);
 
 }  // namespace couplet::io

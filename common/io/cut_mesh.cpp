@@ -29,10 +29,10 @@ constexpr const char *points_table = "points", *kind_table = "cells/kind", *firs
                      *element_patch_table = "boundary/patch";
 constexpr std::size_t longest_name = 256;  // of zones and patches
 
-/// Points of a boundary element, -1 where it has fewer.
+/// Number of points of a boundary element; missing ones are -1.
 std::uint64_t element_width(int dim) { return dim == 2 ? 2 : 4; }
 
-/// Sum over the values of a table, each mixed with its place, so that ranks may add up their rows.
+/// Sum over the values of a table, each mixed with its position, so that ranks may add their sums.
 template <class T>
 std::uint64_t digest_of(std::span<const T> values, std::uint64_t first) {
   std::uint64_t sum = 0;
@@ -59,7 +59,7 @@ class CutMeshWriter {
  public:
   CutMeshWriter(MPI_Comm comm, hdf5::Handle& file) : comm_(comm), file_(file) {}
 
-  /// `count` rows of `width` values each of this rank; the digest goes to the table.
+  /// Writes `count` rows of `width` values of this rank and stores the digest with the table.
   template <class T>
   void table(const char* name, std::span<const T> values, std::uint64_t width) {
     const hdf5::Rows rows = hdf5::distribute_rows(comm_, values.size() / width, width);
@@ -110,7 +110,7 @@ void write_boundary(CutMeshWriter& to, const mesh::MeshBlock& block) {
 constexpr const char* cut_mesh = "cut mesh";
 constexpr const char* advice_on_cut = "Write it again with 'couplet mesh cut'.";
 
-/// A whole number of an attribute, at most `most`.
+/// Reads a whole number of at most `most` from an attribute.
 std::uint64_t whole_number(const hdf5::Reader& in, const char* name, double most) {
   const double value = in.number("/", name);
   if (!(value >= 0) || value > most || value != std::floor(value))
@@ -119,7 +119,7 @@ std::uint64_t whole_number(const hdf5::Reader& in, const char* name, double most
   return static_cast<std::uint64_t>(value);
 }
 
-/// Refuses what is no cut mesh of this version.
+/// Opens a cut mesh of this version. Throws Error for any other file.
 hdf5::Reader open_cut_mesh(const std::filesystem::path& file) {
   hdf5::Reader in(file, cut_mesh, advice_on_cut);
   if (!in.has_attribute("/", cut::version_name))
@@ -139,7 +139,7 @@ std::vector<std::string> names_of(const hdf5::Reader& in, const std::string& kin
   return names;
 }
 
-/// Reads the block of one rank; the digests of its rows are summed up for all ranks to compare.
+/// Reads the block of one rank. Digests of its rows are summed over all ranks for comparison.
 class CutMeshBlock {
  public:
   CutMeshBlock(const std::filesystem::path& file, int rank, int ranks)
@@ -155,7 +155,7 @@ class CutMeshBlock {
     return std::move(block_);
   }
 
-  /// Of each table that was read: its name, the digest of this rank's rows, and what all should give.
+  /// Name of a table that was read, digest of this rank's rows, and expected sum.
   struct Digest {
     const char* table;
     std::uint64_t here;

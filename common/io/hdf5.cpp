@@ -15,7 +15,7 @@ herr_t keep_first_reason(unsigned, const H5E_error2_t* entry, void* text) {
   return 0;
 }
 
-// Throws with HDF5's own reason when `id` is negative.
+// Throws Error with HDF5's reason if `id` is negative.
 Handle checked(hid_t id, herr_t (*close)(hid_t), const char* action, const std::string& what) {
   if (id < 0) throw Error("HDF5 could not {} '{}' ({}).", action, what, reason());
   return {id, close};
@@ -57,15 +57,15 @@ Handle memory_space(const Rows& rows) {
   return space;
 }
 
-// Whether the file of this object was opened by several ranks together.
+// Returns true if several ranks opened the file of this object together.
 bool is_shared(hid_t object) {
   const Handle file(H5Iget_file_id(object), H5Fclose);
   const Handle access(H5Fget_access_plist(file), H5Pclose);
   return H5Pget_driver(access) == H5FD_MPIO;
 }
 
-/// Deflated tables lie in blocks of rows, whose bytes are sorted by their place in the number first: neighbours differ in the
-/// last ones alone.
+/// Layout of a table. Compressed tables are stored in blocks of rows with sorted bytes (shuffle), since
+/// neighboring values differ only in their last bytes.
 Handle layout_of(const Rows& rows) {
   constexpr std::uint64_t block = 1 << 15;  // values
   Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -137,7 +137,7 @@ void remove(hid_t place, const std::string& path) {
 
 bool exists(hid_t place, const std::string& path) {
   const Quiet quiet;
-  // H5Lexists wants every group on the way to exist.
+  // H5Lexists requires every parent group to exist.
   for (std::size_t slash = path.find('/', 1); slash != std::string::npos; slash = path.find('/', slash + 1))
     if (H5Lexists(place, path.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
   return H5Lexists(place, path.c_str(), H5P_DEFAULT) > 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-/// A thin cover over the HDF5 C interface: handles that close themselves, failures that become Error; what is written.
-/// Reading is hdf5_reader.hpp's. Only files of this name call HDF5.
+/// Thin wrapper of the HDF5 C interface for writing, with handles that close themselves and failures that
+/// become Error. hdf5_reader.hpp reads. Only hdf5*.cpp call HDF5.
 
 #include <hdf5.h>
 #include <mpi.h>
@@ -17,7 +17,7 @@
 
 namespace couplet::io::hdf5 {
 
-/// Keeps HDF5 from printing its error stack while alive: the first reason goes into our own message instead.
+/// Suppresses HDF5's error stack while alive. Our own message quotes its first reason instead.
 class Quiet final {
  public:
   Quiet();
@@ -29,10 +29,10 @@ class Quiet final {
   void* data_ = nullptr;
 };
 
-/// The innermost entry of HDF5's error stack, e.g. "truncated file: eof = 96, ...".
+/// Innermost entry of HDF5's error stack, e.g. "truncated file: eof = 96, ...".
 std::string reason();
 
-/// An id with its closing function. Closing anything but a file is local to the rank, so it is safe while
+/// Id with its closing function. Closing anything but a file is local to the rank and therefore safe during
 /// unwinding.
 class Handle final {
  public:
@@ -49,7 +49,7 @@ class Handle final {
     if (id_ >= 0) close_(id_);
     id_ = -1;
   }
-  /// Gives the id up without closing it.
+  /// Releases the id without closing it.
   hid_t release() { return std::exchange(id_, -1); }
   operator hid_t() const { return id_; }
 
@@ -58,74 +58,73 @@ class Handle final {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// Collective over comm. Throws Error naming the file.
+/// Creates a file. Throws Error with its name. Collective over comm.
 Handle create_file(MPI_Comm comm, const std::filesystem::path& file);
 Handle open_file_to_write(MPI_Comm comm, const std::filesystem::path& file);
-/// Closes a file that was written, with all that is still on its way. Throws Error with HDF5's reason. Collective.
+/// Closes a written file after flushing it. Throws Error with HDF5's reason. Collective.
 void close_file(Handle& file);
 
-/// Whether a file that this program is writing has it.
+/// Returns true if a file that this program is writing contains `path`.
 bool exists(hid_t place, const std::string& path);
-/// Collective when the file was opened by several ranks; groups on the way are made.
+/// Creates a group and its parents. Collective if several ranks opened the file.
 Handle make_group(hid_t place, const std::string& path);
-/// A table that this program has written, for its attributes.
+/// Opens a table that this program has written, to add attributes.
 Handle open_written(hid_t place, const std::string& table);
 void remove(hid_t place, const std::string& path);
 
-/// Rows of a distributed table that this rank holds: [first, first + count) of total, `width` values each.
+/// Rows [first, first + count) of a distributed table that this rank holds, with `width` values each.
 struct Rows {
   std::uint64_t first = 0, count = 0, total = 0, width = 1;
-  int compression = 0;  ///< level of deflate; 0: the table is one block
+  int compression = 0;  ///< level of deflate; 0 writes the table as one block
 };
-/// The rows of this rank when every rank brings `count`. Collective.
+/// Rows of this rank if every rank contributes `count`. Collective.
 Rows distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width);
 
-/// One table of doubles or 64-bit integers, written by all ranks together (collective). Width 1 makes a 1-D
-/// table.
+/// Writes a table of doubles or 64-bit integers from all ranks. Width 1 makes a 1-D table. Collective.
 void write_table(hid_t place, const std::string& path, const Rows& rows, const double* values);
 void write_table(hid_t place, const std::string& path, const Rows& rows, const std::int64_t* values);
-/// The same value on all ranks (collective).
+/// Writes an attribute with the same value on all ranks. Collective.
 void write_attribute(hid_t object, const std::string& name, double value);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
 
-/// The one reader of HDF5: a file is foreign until each of its values has been asked for by rank, type and largest
-/// size. What is something else is refused with an Error that names the file, the object, what was found and what was
-/// expected. No way leads out of the file: soft, external and user-defined links, external storage and virtual tables
-/// are refused, filters other than deflate, shuffle and fletcher32 (HDF5 would load a library for them) too. A table is
-/// at most as large as the file that holds it; a compressed one may be larger by `most_expansion`.
+/// Reader of HDF5 files. It treats a file as foreign: each value is requested by rank, type and largest size.
+/// Anything else throws an Error with file, object, found and expected content. Soft, external and
+/// user-defined links, external storage and virtual tables are rejected. So are filters other than deflate,
+/// shuffle and fletcher32, for which HDF5 would load a library. A compressed table may exceed its file size
+/// by `most_expansion`.
 class Reader final {
  public:
-  static constexpr std::uint64_t most_expansion = 64u
-                                                  << 20;  ///< [bytes], of a compressed table; also of a chunk
+  /// Limit on the size of a compressed table beyond that of the file, and of a chunk [bytes].
+  static constexpr std::uint64_t most_expansion = 64u << 20;
   static constexpr std::uint64_t largest_table = 1ull << 36;  ///< values of one table
 
-  /// On this rank alone; any number of ranks may do so at once. Messages say "The <what> '<file>' cannot be used: ...
-  /// <advice>".
+  /// Opens the file on this rank; any number of ranks may do so at once. Messages say "The <what> '<file>'
+  /// cannot be used: ... <advice>".
   Reader(std::filesystem::path file, std::string what, std::string advice = "");
 
   const std::filesystem::path& file() const { return file_; }
   [[noreturn]] void refuse(const std::string& why) const;
 
   bool has(const std::string& path) const;
-  /// Of the object at `path` ("/": the file itself).
+  /// Checks for an attribute of the object at `path` ("/" is the file itself).
   bool has_attribute(const std::string& path, const std::string& name) const;
-  /// One number, of an integer or floating type.
+  /// Reads one number of an integer or floating-point type.
   double number(const std::string& path, const std::string& name) const;
-  /// One text of a fixed length of at most `longest` bytes.
+  /// Reads one text of fixed length, at most `longest` bytes.
   std::string text(const std::string& path, const std::string& name, std::size_t longest = 256) const;
 
-  /// Rows of a table whose rows have `width` values; of width 1 it may also have one dimension.
+  /// Number of rows of a table whose rows have `width` values. With width 1 it may also be one-dimensional.
   std::uint64_t rows(const std::string& path, std::uint64_t width) const;
-  /// Rows [first, first + count) of a table that must be total x width, of numbers; the integers are read from integers
-  /// only.
+  /// Reads rows [first, first + count) of a numeric table that must be total x width. Integers are read only
+  /// from integers.
   void read(const std::string& path, const Rows& rows, double* values) const;
   void read(const std::string& path, const Rows& rows, std::int64_t* values) const;
-  /// A whole table of n rows.
+  /// Reads a whole table of n rows.
   std::vector<double> table(const std::string& path, std::uint64_t n, std::uint64_t width) const;
 
-  /// Names of the members of a group, in alphabetical order; none if there is no such group. At most `most`.
+  /// Names of the members of a group in alphabetical order, at most `most`. Empty if there is no such group.
   std::vector<std::string> members(const std::string& group, std::size_t most = 100000) const;
-  /// Paths, below `group`, of all that is not a group there or in the groups below it; at most `most`.
+  /// Paths relative to `group` of everything below it that is not a group, at most `most`.
   std::vector<std::string> leaves(const std::string& group, std::size_t most = 100000) const;
 
  private:
@@ -144,7 +143,7 @@ class Reader final {
 
   std::filesystem::path file_;
   std::string what_, advice_;
-  std::uint64_t bytes_ = 0;  // of the file
+  std::uint64_t bytes_ = 0;  // size of the file
   Handle id_;
 };
 

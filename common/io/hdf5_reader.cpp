@@ -13,7 +13,7 @@
 namespace couplet::io::hdf5 {
 namespace {
 
-/// Dimensions of a dataspace: none of a single value. Not sound: an empty one, or one of more than four.
+/// Dimensions of a dataspace; a single value has none. Not sound if empty or with more than four dimensions.
 struct Shape {
   bool sound = false;
   std::vector<std::uint64_t> size;
@@ -21,7 +21,7 @@ struct Shape {
   bool is_one_value() const;
 };
 
-/// A standard type of numbers, of either order of bytes; all others are refused.
+/// Checks for a standard numeric type in either byte order. All others are rejected.
 bool is_integer(hid_t type) {
   const std::size_t size = H5Tget_size(type);
   return H5Tget_class(type) == H5T_INTEGER && H5Tget_precision(type) == 8 * size &&
@@ -34,7 +34,7 @@ bool is_real(hid_t type) {
   return false;
 }
 
-/// For messages: "float64", "text of 14 bytes", "a compound type".
+/// Name of a type for messages: "float64", "text of 14 bytes", "a compound type".
 std::string name_of(hid_t type) {
   const std::size_t size = H5Tget_size(type);
   if (is_integer(type)) return fmt::format("{}int{}", H5Tget_sign(type) == H5T_SGN_NONE ? "u" : "", 8 * size);
@@ -87,7 +87,7 @@ Shape shape_of(hid_t space) {
   return shape;
 }
 
-constexpr std::size_t deepest = 16;  // groups within groups
+constexpr std::size_t deepest = 16;  // nested groups
 
 const char* name_of_link(H5L_type_t type) {
   return type == H5L_TYPE_SOFT       ? "a soft link"
@@ -122,7 +122,7 @@ void Reader::refuse(const std::string& why) const {
               advice_);
 }
 
-// The object at `path`, one hard link after the other; a handle that is not valid if there is none.
+// Opens the object at `path` by hard links. The handle is invalid if there is none.
 Handle Reader::find(const std::string& path) const {
   const Quiet quiet;
   Handle at(H5Oopen(id_, "/", H5P_DEFAULT), H5Oclose);
@@ -199,7 +199,7 @@ std::string Reader::text(const std::string& path, const std::string& name, std::
   std::string text(size, '\0');
   if (H5Aread(found, type, text.data()) < 0)
     refuse(fmt::format("cannot read the attribute '{}' of '{}' ({})", name, path, reason()));
-  text.resize(text.find_last_not_of('\0') + 1);  // what pads it
+  text.resize(text.find_last_not_of('\0') + 1);  // padding
   return text;
 }
 
@@ -219,7 +219,7 @@ void Reader::check_filters(const std::string& path, const Handle& storage) const
   }
 }
 
-// Where its values are stored, and that there is not more of them than the file can hold.
+// Checks where the values are stored and that they fit into the file.
 void Reader::check_storage(const std::string& path, const Table& table) const {
   const Handle storage(H5Dget_create_plist(table.id), H5Pclose);
   if (storage < 0) refuse(fmt::format("the storage of the table '{}' is damaged ({})", path, reason()));
@@ -297,7 +297,7 @@ void Reader::read(const std::string& path, const Table& table, const Rows& rows,
   const hsize_t start[2] = {rows.first, 0}, count[2] = {rows.count, rows.width},
                 size[1] = {rows.count * rows.width};
   const Handle memory(H5Screate_simple(1, size, nullptr), H5Sclose);
-  // Its own number of dimensions is 1 or 2, as has been checked.
+  // The number of dimensions is 1 or 2, as checked before.
   if (H5Sselect_hyperslab(table.space, H5S_SELECT_SET, start, nullptr, count, nullptr) < 0 ||
       H5Dread(table.id, type, memory, table.space, H5P_DEFAULT, values) < 0)
     refuse(fmt::format("cannot read the table '{}' ({})", path, reason()));

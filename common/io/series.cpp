@@ -15,20 +15,20 @@
 namespace couplet::io {
 namespace {
 
-// A series grows with the run: its length is no sign of a foreign file. A crash may leave zeros in its last row.
+// The length of a series is unlimited, since it grows with the run. A crash may leave zeros in its last row.
 constexpr csv::Limits of_series{.bytes = std::numeric_limits<std::uint64_t>::max(),
                                 .line = std::size_t(1) << 20,
                                 .lines = std::numeric_limits<std::size_t>::max(),
                                 .text_only = false};
 
-// The time of a complete row: a number, and as many columns as the head has. A row cut by a crash has none.
+// Time of a complete row, whose number of columns matches the header. A truncated row has none.
 std::optional<double> time_of(std::string_view line, std::size_t n_columns,
                               std::vector<std::string_view>& cells) {
   csv::split_cells(line, ',', cells);
   return cells.size() == n_columns ? csv::number_of(cells[0]) : std::nullopt;
 }
 
-// The rows of the old file, behind its head; nothing where there are none.
+// Opens the rows of an existing file behind its header. nullptr if there are none.
 std::unique_ptr<csv::LineReader> rows_of(const std::filesystem::path& file, const std::string& head) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return nullptr;
@@ -43,7 +43,7 @@ std::unique_ptr<csv::LineReader> rows_of(const std::filesystem::path& file, cons
 }
 
 void copy_rows(csv::LineReader& old, std::size_t n_columns, double restart_time, std::ostream& out) {
-  // Accepted times are sums of steps: equal to round-off only.
+  // Accepted times are sums of steps and therefore equal only to round-off.
   const double last = restart_time + 1e-9 * std::abs(restart_time);
   std::vector<std::string_view> cells;
   for (std::string_view line; old.next(line);) {
@@ -77,7 +77,7 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
 void Series::row(std::span<const double> values) {
   if (values.size() != n_columns_)
     throw Error("A series row has {} values, but its header has {} columns.", values.size(), n_columns_);
-  // The shortest text that reads back as the same number.
+  // The default format is the shortest text that restores the same number.
   file_ << fmt::format("{}\n", fmt::join(values, ","));
   file_.flush();
   if (!file_) throw Error("Cannot write a series row. Is the disk full?");

@@ -10,9 +10,9 @@
 
 namespace couplet::io {
 
-/// A CSV time series: first line "time [s],name [unit],...", one line a row, flushed after each. To be made
-/// on one rank. `columns` holds all columns, the time first: {"time [s]", "tip x [m]"}; a row has as many
-/// values. On restart rows later than restart_time are dropped and the rest is kept.
+/// CSV time series: first line "time [s],name [unit],...", then one line per row, flushed after each. Create
+/// it on one rank. `columns` includes the time: {"time [s]", "tip x [m]"}. A row has as many values. On
+/// restart rows later than `restart_time` are dropped.
 class Series {
  public:
   Series(const std::filesystem::path& file, const std::vector<std::string>& columns,

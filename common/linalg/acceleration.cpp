@@ -43,8 +43,8 @@ void Accelerator::aitken(std::span<double> u, std::span<const double> step) {
   }
 }
 
-// With the differences dU, dF of the last m iterates and steps: u <- u + f - (dU + dF) g, where g minimises
-// |f - dF g|.
+// Uses differences dU, dF of the last m iterates and steps: u <- u + f - (dU + dF) g, where g minimizes |f -
+// dF g|.
 void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
   const std::size_t n = u.size();
   if (steps_ > 1) {
@@ -72,7 +72,7 @@ void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, comm_);
   Eigen::MatrixXd gram = sums.leftCols(m);
   gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-  // Scaled to ones on the diagonal; directions that repeat others are left out by the rank of the factors.
+  // The diagonal is scaled to ones. The rank of the factors excludes linearly dependent directions.
   const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;

@@ -8,25 +8,25 @@
 
 namespace couplet::linalg {
 
-/// How a fixed-point iteration u <- u + f(u) is helped on.
+/// Acceleration of a fixed-point iteration u <- u + f(u).
 struct Acceleration {
   enum class Type {
     none,
     aitken,    ///< thesis (2.70)-(2.72) with erratum: after every n-th step
-    anderson,  ///< [walker2011]: the combination of the last m steps with the least residual
+    anderson,  ///< [walker2011]: the combination of the last m steps with the smallest residual
   };
   Type type = Type::none;
   int every = 5;    ///< n of Aitken
   int history = 5;  ///< m of Anderson
 };
 
-/// One iteration's unknowns after another. Collective.
+/// Accelerates the unknowns of an iteration. Collective.
 class Accelerator {
  public:
   Accelerator(MPI_Comm comm, std::size_t n, const Acceleration& options);
 
   void restart();
-  /// u: where `step` = f(u) was found; becomes the next iterate.
+  /// Computes the next iterate from `u` and `step` = f(u).
   void advance(std::span<double> u, std::span<const double> step);
 
  private:

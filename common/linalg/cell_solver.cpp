@@ -15,18 +15,18 @@ namespace {
 
 using Cycle = AggregationMultigrid<float>;
 
-// Sums of rows over their diagonals: of round-off, so that x is known up to a constant; of what is small beside the faces
-// and yet all that holds a constant, which multigrid in single precision would lose (a closed fluid that hardly compresses).
+// Ratios of row sum and diagonal. The first is round-off: x is known up to a constant. The second is small
+// but determines a constant that multigrid in single precision would lose (a closed, stiff fluid).
 constexpr double round_off = 1e-13, little = 1e-5;
 
-/// Rows of the owned cells, neighbors ascending. Two faces between the same cells are one entry; faces without a value are
-/// none.
+/// Rows of the owned cells with ascending neighbors. Faces between the same cells are merged, zero ones
+/// omitted.
 Cycle::Rows rows_of(const CellGraph& graph, std::span<const double> diagonal, std::span<const double> faces) {
   const Index owned = graph.cells.n_owned();
   std::vector<std::vector<std::pair<Index, double>>> all(owned);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const Index a = graph.owner[f], b = graph.neighbour[f];
-    if (faces[f] == 0 || a == b) continue;  // periodic, one cell across: no difference
+    if (faces[f] == 0 || a == b) continue;  // periodic with one cell across: no difference
     if (a < owned) all[a].emplace_back(b, faces[f]);
     if (b < owned) all[b].emplace_back(a, faces[f]);
   }
@@ -56,7 +56,7 @@ CellSolver::CellSolver(std::string what, const CellGraph& graph, const Beside& b
   if (kind == Preconditioner::multigrid) solver_.set_preconditioner([this] { return make_cycle(); });
 }
 
-// Triplets: the diagonal of each owned cell first, then the neighbors face by face, then what is coupled beside.
+// Triplets: the diagonal of each owned cell, then the neighbors by face, then further couplings.
 SparseMatrix CellSolver::make_matrix(const Beside& beside) {
   const parallel::IndexMap& cells = graph_.cells;
   const Index owned = cells.n_owned();
@@ -92,7 +92,7 @@ void CellSolver::fill(std::span<const double> diagonal, std::span<const double> 
   solver_.matrix_changed();
 }
 
-/// A V-cycle in single precision. If next to nothing holds a constant, constants are answered beside it, by 1/(1.A 1).
+/// V-cycle in single precision. If a constant is almost undetermined, it is solved separately by 1/(1.A 1).
 LinearMap CellSolver::make_cycle() const {
   std::vector<double> sums = diagonal_;
   const Index owned = graph_.cells.n_owned();

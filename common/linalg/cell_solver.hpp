@@ -17,14 +17,14 @@ struct CellGraph {
   std::span<const Index> owner, neighbour;
 };
 
-/// Entries that a matrix has beside those of the mesh, in rows of owned cells. Symmetric as a whole.
+/// Matrix entries beside those of the mesh, in rows of owned cells. Symmetric as a whole.
 struct Beside {
   std::span<const Index> row;
   std::span<const GlobalIndex> column;
 };
 
-/// Conjugate gradients for a symmetric positive (semi-)definite system with one unknown per cell. The places of its entries
-/// are fixed.
+/// Conjugate gradients for a symmetric positive (semi-)definite system with one unknown per cell and a fixed
+/// sparsity pattern.
 class CellSolver {
  public:
   enum class Preconditioner {

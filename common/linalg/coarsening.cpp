@@ -11,7 +11,7 @@ namespace couplet::linalg {
 namespace {
 
 constexpr Index largest_coarsest = 60;
-// A neighbour is strong when |a_ij| is at least this part of the largest in its row or in the other's.
+// A neighbor is strong if |a_ij| is at least this fraction of the largest in either row.
 constexpr float strong = 0.5F;
 // Damping of the prolongation smoother: 4/3 over the largest eigenvalue of D^-1 A, which is below 2.
 constexpr float omega = 0.66F;
@@ -23,7 +23,7 @@ float total(const Number& v) {
   return sum;
 }
 
-/// For each entry whether it is strong; those of other ranks never are.
+/// Flags strong entries. Those of other ranks are never strong.
 template <class Rows>
 std::vector<std::uint8_t> strong_entries(const Rows& a) {
   std::vector<float> largest(a.size(), 0);
@@ -38,8 +38,8 @@ std::vector<std::uint8_t> strong_entries(const Rows& a) {
   return result;
 }
 
-/// Aggregates: roots take their whole strong neighbourhood where all of it is free; what remains joins a
-/// neighbour. Rows without entries have none (-1): a sweep solves them.
+/// Builds aggregates. A root takes its strong neighborhood if that is free; remaining rows join a neighbor.
+/// Rows without entries have none (-1), because a sweep solves them.
 template <class Rows>
 std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_strong, Index& n_aggregates) {
   std::vector<Index> of(a.size(), -1);
@@ -70,7 +70,7 @@ std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_
 
 }  // namespace
 
-/// Of P: the rows of the ghosts, whose columns are rows of other ranks on the coarser level, ghosts there.
+/// Rows of P for the ghosts. Their columns are coarse rows of other ranks, which are ghosts there.
 template <class Number>
 struct AggregationMultigrid<Number>::GhostRows {
   std::vector<Index> offset{0}, index;
@@ -78,7 +78,7 @@ struct AggregationMultigrid<Number>::GhostRows {
   std::unique_ptr<parallel::IndexMap> map;  // of the coarser level
 };
 
-/// Adds a level; false where the last is coarse enough, or cannot be made coarser.
+/// Adds a level. Returns false if the last one is coarse enough or cannot be coarsened.
 template <class Number>
 bool AggregationMultigrid<Number>::coarsen() {
   Level& fine = levels_.back();
@@ -96,7 +96,7 @@ bool AggregationMultigrid<Number>::coarsen() {
   return true;
 }
 
-// P = (I - omega D^-1 A) P_0, weak neighbours lumped on the diagonal of A so that constants stay constants.
+// P = (I - omega D^-1 A) P_0 with weak neighbors lumped on the diagonal of A, which preserves constants.
 template <class Number>
 void AggregationMultigrid<Number>::prolong(Level& fine, const std::vector<Index>& of,
                                            const std::vector<std::uint8_t>& is_strong) {
@@ -116,7 +116,7 @@ void AggregationMultigrid<Number>::prolong(Level& fine, const std::vector<Index>
     Lanes diagonal = a.diagonal[i];
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
       if (!is_strong[e]) diagonal += a.value[e];
-    // A row that is hardly coupled within its rank is not smoothed, so that it, too, sums up to 1.
+    // A row that is hardly coupled within its rank is not smoothed, so that its sum is 1, too.
     const auto is_held = diagonal > 1e-3F * a.diagonal[i];
     const Lanes none{}, one = none + 1.0F;
     if (of[i] >= 0) add(of[i], is_held ? one - omega : one);
@@ -143,7 +143,7 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
   for (Index i = 0; i < n; ++i) most = std::max(most, fine.p_offset[i + 1] - fine.p_offset[i]);
   most = static_cast<Index>(parallel::max(comm_, double(most)));
   std::vector<std::vector<Entry>> of_ghost(std::size_t(n_local - n));
-  // One entry of all rows at a time, which takes the least room.
+  // Exchanges one entry per row at a time to save memory.
   std::vector<Entry> entries(n_local);
   for (Index k = 0; k < most; ++k) {
     for (Index i = 0; i < n; ++i) {
@@ -175,7 +175,7 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
   std::vector<int> owner;
   std::vector<Index> there;
   for (const GlobalIndex c : columns) {
-    // The last rank that begins at or before it: those without rows begin where the next does.
+    // Finds the last rank that begins at or before it. Ranks without rows begin where the next one does.
     owner.push_back(static_cast<int>(std::ranges::upper_bound(firsts, c) - firsts.begin()) - 1);
     there.push_back(static_cast<Index>(c - firsts[owner.back()]));
   }
@@ -183,7 +183,7 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
   return ghosts;
 }
 
-// P^T A P, one coarse row after the other.
+// Computes P^T A P row by row.
 template <class Number>
 auto AggregationMultigrid<Number>::galerkin(const Level& fine, Index n_coarse, const GhostRows& ghosts)
     -> Rows {

@@ -11,9 +11,9 @@ namespace couplet::linalg {
 namespace {
 
 constexpr std::size_t most_levels = 12;
-// Rows of all ranks that are factored where they could not be made fewer, which are those of many ranks.
+// Largest coarsest level that is factorized if it cannot be coarsened further (on many ranks).
 constexpr GlobalIndex largest_dense = 1000;
-/// Neighbours ascending, by insertion: rows are short and nearly in order.
+/// Sorts neighbors by insertion, since rows are short and nearly sorted.
 template <class Rows>
 void sort_rows(Rows& a) {
   for (Index i = 0; i < a.size(); ++i)
@@ -35,7 +35,7 @@ AggregationMultigrid<Number>::AggregationMultigrid(Rows rows, const Options& opt
   while (levels_.size() < most_levels && coarsen()) {
   }
   factor_coarsest();
-  // What the sweeps use is the inverse.
+  // The sweeps only use the inverse.
   for (Level& level : levels_) level.a.diagonal = std::vector<Lanes>();
 }
 
@@ -71,7 +71,7 @@ void AggregationMultigrid<Number>::factor_coarsest() {
   const Level& level = levels_.back();
   const Rows& a = level.a;
   const GlobalIndex n = parallel::sum(comm_, GlobalIndex(a.size()));
-  if (n > largest_dense) return;  // could not be made smaller: smoothing must do
+  if (n > largest_dense) return;  // cannot be coarsened, so only smoothing is applied
   first_coarsest_ = static_cast<Index>(parallel::exclusive_scan(comm_, a.size()));
   struct Entry {
     Index row, column;
@@ -115,7 +115,7 @@ void AggregationMultigrid<Number>::solve_coarsest(Level& level) const {
   }
 }
 
-/// x = (D + L)^-1 b.
+/// Computes x = (D + L)^-1 b.
 template <class Number>
 void AggregationMultigrid<Number>::smooth_forward(Level& level) {
   const Index *offset = level.a.offset.data(), *middle = level.middle.data(), *index = level.a.index.data();
@@ -128,7 +128,7 @@ void AggregationMultigrid<Number>::smooth_forward(Level& level) {
   }
 }
 
-/// P^T (b - A x) = - P^T U x after smooth_forward().
+/// Computes P^T (b - A x) = - P^T U x after smooth_forward().
 template <class Number>
 void AggregationMultigrid<Number>::restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const {
   const Index *offset = fine.a.offset.data(), *middle = fine.middle.data(), *index = fine.a.index.data();
@@ -143,7 +143,7 @@ void AggregationMultigrid<Number>::restrict_residual(const Level& fine, std::vec
   }
 }
 
-/// One Gauss-Seidel sweep from the last row to the first.
+/// Performs one Gauss-Seidel sweep from the last row to the first.
 template <class Number>
 void AggregationMultigrid<Number>::smooth_backward(Level& level) {
   const Index *offset = level.a.offset.data(), *index = level.a.index.data();
@@ -178,7 +178,7 @@ void AggregationMultigrid<Number>::cycle() {
 template <class Number>
 void AggregationMultigrid<Number>::apply(std::span<const double> b, std::span<double> x, int components) {
   Level& finest = levels_.front();
-  // Single precision holds the shape of b, its size goes around it.
+  // Scales b so that its magnitude does not exceed the range of single precision.
   double largest = 0;
   for (Index i = 0; i < finest.a.size() * components; ++i) largest = std::max(largest, std::abs(b[i]));
   if (comm_ != MPI_COMM_SELF) largest = parallel::max(comm_, largest);

@@ -21,21 +21,21 @@ inline float lane(const FourFloats& v, int l) { return v[l]; }
 inline void set_lane(float& v, int, float value) { v = value; }
 inline void set_lane(FourFloats& v, int l, float value) { v[l] = value; }
 
-/// One smoothed-aggregation V-cycle for scalar M-matrices that share one graph, in single precision: a preconditioner. `Number`:
-/// FourFloats for up to four matrices at once (the components of a vector field, in one register: a cycle moves a fifth of what four
-/// separate hierarchies in double precision would), or float for one.
+/// Smoothed-aggregation V-cycle in single precision as a preconditioner, for scalar M-matrices with one
+/// graph. `Number` is float, or FourFloats for up to four matrices (the components of a vector field in one
+/// register, which moves a fifth of the data of four separate hierarchies in double precision).
 ///
-/// With other ranks: aggregates and Gauss-Seidel sweeps are each rank's own, residuals and Galerkin products know the
-/// couplings between them, and the coarsest level is gathered, so that a cycle is hardly weaker on many ranks than on one.
-/// Two messages a level. On plate B 0.34 of the time of PETSc's best in its place, ML (benchmarks/linalg).
+/// In parallel, aggregates and Gauss-Seidel sweeps are local to a rank. Residuals and Galerkin products
+/// include couplings between ranks, and the coarsest level is gathered, so a cycle is almost as effective as
+/// on one rank. It needs two messages per level. Plate B takes 0.34 of the time with ML (benchmarks/linalg).
 template <class Number>
 class AggregationMultigrid {
  public:
   static constexpr int lanes = sizeof(Number) / sizeof(float);
   using Lanes = Number;
 
-  /// Symmetric rows without their diagonals: neighbours `index`, `value` = a_ij <= 0. Neighbours on other ranks are the
-  /// ghosts of Options::map.
+  /// Symmetric rows without diagonals: `value` = a_ij <= 0 for the neighbors `index`. Neighbors on other
+  /// ranks are the ghosts of Options::map.
   struct Rows {
     std::vector<Index> offset{0}, index;
     std::vector<Lanes> value;
@@ -44,30 +44,30 @@ class AggregationMultigrid {
   };
 
   struct Options {
-    /// Of the correction by each coarser level; 1 where the rows are those of the operator itself.
+    /// Factor of the correction by each coarser level. 1 if the rows are those of the operator itself.
     float coarse_factor = 1;
-    const parallel::IndexMap* map = nullptr;  ///< of the rows, by reference; none: no rank knows of another
+    const parallel::IndexMap* map = nullptr;  ///< of the rows, by reference; nullptr if ranks are not coupled
     MPI_Comm comm = MPI_COMM_SELF;            ///< of the map
-    /// All rows sum up to nothing, or nearly: the coarsest level gives no constant.
+    /// All row sums are (nearly) zero, so the coarsest level gives no constant.
     bool closed = false;
   };
-  /// Collective over the ranks of the map.
+  /// Builds the hierarchy. Collective over the ranks of the map.
   explicit AggregationMultigrid(Rows rows) : AggregationMultigrid(std::move(rows), Options{}) {}
   AggregationMultigrid(Rows rows, const Options& options);
 
-  /// x = V(b) with `components` values a row. Collective.
+  /// Computes x = V(b) with `components` values per row. Collective.
   void apply(std::span<const double> b, std::span<double> x, int components);
 
  private:
   struct Level {
     Rows a;
-    const parallel::IndexMap* map = nullptr;      // of x; none: no ghosts
+    const parallel::IndexMap* map = nullptr;      // of x; nullptr without ghosts
     std::unique_ptr<parallel::IndexMap> own_map;  // of the coarser levels
-    std::vector<Index> middle;  // of each row: its first neighbour with a larger number, ghosts among them
+    std::vector<Index> middle;  // of each row: its first neighbor with a larger number, including ghosts
     std::vector<Lanes> inverse_diagonal;
     std::vector<Index> p_offset, p_index;  // prolongation to this level from the next
     std::vector<Lanes> p_value;
-    std::vector<Lanes> x, b;  // x: of ghosts, too
+    std::vector<Lanes> x, b;  // x includes ghosts
     void update_ghosts();
   };
   struct GhostRows;
@@ -87,8 +87,8 @@ class AggregationMultigrid {
   bool closed_;
   MPI_Comm comm_;
   std::vector<Level> levels_;
-  std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component, of the rows of all ranks
-  Index first_coarsest_ = 0;                           // of this rank among them
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one per component, of the rows of all ranks
+  Index first_coarsest_ = 0;                           // first row of this rank among them
 };
 
 using ComponentMultigrid = AggregationMultigrid<FourFloats>;

@@ -19,7 +19,7 @@ namespace {
 
 using Call = std::function<void(double* work, int n_work, int& info)>;
 
-/// LAPACK first says how much room it wants.
+/// Queries LAPACK for the size of its workspace, then calls it.
 void with_room(const char* name, int n, const Call& call) {
   int info = 0;
   double wanted = 0;

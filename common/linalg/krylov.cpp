@@ -20,12 +20,12 @@ namespace {
 
 struct Goal {
   double residual;
-  int most;  // iterations
+  int most;  // maximum number of iterations
 };
 
-/// Preconditioned conjugate gradients [hestenes1952] in the flexible form of Polak and Ribiere, which forgives a
-/// preconditioner that rounds to single precision. Moves `x` and its residual `r`; stops at a curvature that is not positive,
-/// as Newton's method relies on (PETSc's KSPFCG goes on, and KSPCG is not flexible). Returns the number of iterations.
+/// Preconditioned conjugate gradients [hestenes1952] in the flexible form of Polak and Ribiere, which
+/// tolerates a single-precision preconditioner. Updates `x` and its residual `r`. Stops at nonpositive
+/// curvature, as Newton's method requires (KSPFCG continues, KSPCG is not flexible). Returns the iterations.
 int conjugate_gradients(MPI_Comm comm, const LinearMap& apply, const LinearMap& precondition,
                         std::span<double> r, std::span<double> x, const Goal& goal) {
   const std::size_t n = r.size();
@@ -53,8 +53,8 @@ int conjugate_gradients(MPI_Comm comm, const LinearMap& apply, const LinearMap& 
   return goal.most;
 }
 
-/// BiCGStab [vandervorst1992], preconditioned from the right. Moves `x` and its residual `r` and returns the number of
-/// iterations. PETSc's KSPBCGS in its place led Newton's method another way: a step of bent-beam had to be halved.
+/// BiCGStab [vandervorst1992] with right preconditioning. Updates `x` and its residual `r` and returns the
+/// number of iterations. With PETSc's KSPBCGS a step of bent-beam had to be halved.
 int bicgstab(MPI_Comm comm, const LinearMap& apply, const LinearMap& precondition, std::span<double> r,
              std::span<double> x, const Goal& goal) {
   const std::size_t n = r.size();
@@ -91,7 +91,7 @@ int bicgstab(MPI_Comm comm, const LinearMap& apply, const LinearMap& preconditio
   return goal.most;
 }
 
-// A residual below so many times the difference that rounding makes in A x is as small as it gets.
+// A residual below this multiple of the round-off in A x cannot be reduced further.
 constexpr double at_rounding = 10;
 
 }  // namespace
@@ -111,14 +111,14 @@ void KrylovSolver::forget_vectors() {
   gmres_.reset();
 }
 
-/// r = b - A x and its norm.
+/// Computes r = b - A x and returns its norm.
 double KrylovSolver::true_residual(std::span<const double> b, std::span<const double> x) {
   apply_(x, r_);
   for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b[i] - r_[i];
   return std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]);
 }
 
-/// Norm of A (3 x) / 3 - A x: nothing else than what rounding leaves undetermined.
+/// Norm of A (3 x) / 3 - A x, which is pure round-off.
 double KrylovSolver::rounding(std::span<const double> x) {
   std::vector<double> thrice(n_), of_thrice(n_), once(n_);
   for (std::size_t i = 0; i < n_; ++i) thrice[i] = 3 * x[i];
@@ -134,10 +134,10 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   SolveStatistics statistics;
   r_.resize(n_);
   const double size = std::sqrt(over_ranks<1>(comm_, {dot_here(b, b)})[0]);
-  // Below that the squares of what is left underflow, and no norm is right any more: a motion that has died away.
+  // Below 1e-150 squares underflow, so norms are not reliable (a motion that has decayed).
   const double wanted = std::max({options.relative_tolerance * size, options.absolute_tolerance, 1e-150});
   statistics.residual = true_residual(b, x);
-  // Every comparison with a NaN is false, so that it would count as converged.
+  // Comparisons with NaN are false, so that NaN would count as converged.
   if (!std::isfinite(size) || !std::isfinite(statistics.residual))
     throw SolveFailure("The Krylov solver for {}: {} is not finite.", what_,
                        std::isfinite(size) ? "the initial guess" : "the right-hand side");
@@ -147,7 +147,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
     is_true = statistics.residual <= wanted;
     if (is_true) statistics.residual = true_residual(b, x);
   }
-  // A restart that gains nothing means that rounding, not the method, sets the limit.
+  // A restart without progress means that round-off, not the method, is the limit.
   double before = std::numeric_limits<double>::infinity();
   bool is_hard = options.is_hard;
   while (!(statistics.residual <= wanted)) {
@@ -168,7 +168,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
                                : "BiCGStab",
           statistics.residual / size, options.relative_tolerance, statistics.iterations,
           options.max_iterations, stuck ? " and a restart does not help" : "");
-    // A start that is nearly there already would end a hair further on, which is not what "gains nothing" means.
+    // Aims lower near the goal, so that a small reduction does not count as no progress.
     const bool is_near = std::isfinite(before) && statistics.residual < 2 * wanted;
     const double aim = is_near ? wanted / 2 : wanted;
     before = statistics.residual;
@@ -186,7 +186,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
     const bool keep = options.is_symmetric && is_true && statistics.iterations - earlier <= options.carried;
     statistics.residual = keep ? std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) : true_residual(b, x);
     if (is_bicgstab && !(statistics.residual <= before)) {
-      // A correction that leaves more than it found is undone: GMRES starts where BiCGStab did.
+      // Discards a correction that increased the residual. GMRES starts where BiCGStab did.
       std::ranges::copy(start_of_it, x.begin());
       statistics.residual = true_residual(b, x);
     }
@@ -197,7 +197,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   return statistics;
 }
 
-/// Counts two applications as an iteration, as BiCGStab makes two in one.
+/// Counts two applications as one iteration, as in BiCGStab.
 int KrylovSolver::run_gmres(std::span<double> x, double wanted, int most, bool continues) {
   if (!is_announced_ && continues) log::info("{}: BiCGStab was not enough; GMRES continues", what_);
   is_announced_ = true;

@@ -21,29 +21,29 @@ struct KrylovOptions {
   int max_iterations = 500;
   bool is_symmetric = false;  ///< A and the preconditioner are symmetric and positive: conjugate gradients
   bool is_hard = false;       ///< known to be slow for BiCGStab: GMRES from the start
-  /// Up to this number of iterations, conjugate gradients' own residual counts as the true one.
+  /// Number of iterations up to which the recursive residual of conjugate gradients is trusted.
   int carried = 0;
   double absolute_tolerance = 0;  ///< of |b - A x|
   int patience = 50;              ///< iterations of BiCGStab after which GMRES takes over
 };
 
-/// Conjugate gradients, BiCGStab and PETSc's GMRES for operators that are only applied, with rules about residuals. BiCGStab is preconditioned from
-/// the right; where it has not converged after KrylovOptions::patience, GMRES goes on, which needs more memory and tolerates
-/// more. Symmetric positive pairs take conjugate gradients. The residual that is judged is the true one, b - A x: the
-/// recurrence drifts away from it on long runs, so it is computed anew when the recurrence has reached the tolerance (except
-/// for KrylovOptions::carried), and the iteration begins again from there if it has not. A residual that is only what
-/// rounding leaves in A x counts as reached.
+/// Conjugate gradients, BiCGStab and PETSc's GMRES for matrix-free operators. Symmetric positive pairs use
+/// conjugate gradients. Others use BiCGStab with right preconditioning, then GMRES after
+/// KrylovOptions::patience iterations, which is more robust but needs more memory. Convergence is judged by
+/// the true residual b - A x, from which the recurrence drifts. When the recurrence reaches the tolerance,
+/// the residual is recomputed (except for KrylovOptions::carried), and the iteration restarts if necessary. A
+/// residual at the round-off of A x counts as converged.
 class KrylovSolver {
  public:
-  /// `what` names the unknown in messages. `n`: rows of this rank.
+  /// `what` names the unknown in messages. `n` is the number of rows of this rank.
   KrylovSolver(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition);
   ~KrylovSolver();
 
-  /// `x` holds the guess on entry, which `projection`, if there is one, moves on. Throws SolveFailure if the
-  /// tolerance was not reached. Collective.
+  /// Solves from the guess in `x`, which `projection` improves if given. Throws SolveFailure if the tolerance
+  /// is not reached. Collective.
   SolveStatistics solve(std::span<const double> b, std::span<double> x, const KrylovOptions& options,
                         ResidualProjection* projection = nullptr);
-  /// Gives the memory of its vectors back until the next solve.
+  /// Frees its vectors until the next solve.
   void forget_vectors();
 
  private:

@@ -21,11 +21,11 @@ bool is_direct(LinearMethod method) {
          method == LinearMethod::direct_planar;
 }
 
-// Fresh factors cost about as much as this many iterations save over a few dozen solves.
+// New factors cost about as much as this many iterations save over a few dozen solves.
 constexpr int most_with_old_factors = 8;
 
-// PETSc's own factorisation has no dense kernels: it wins on small matrices (low overhead), MUMPS on large
-// ones.
+// PETSc's own factorization has no dense kernels. It is faster on small matrices (low overhead), MUMPS on
+// large ones.
 constexpr GlobalIndex largest_for_petsc = 12000;
 
 void choose_petsc_factors(PC pc, bool symmetric) {
@@ -34,8 +34,8 @@ void choose_petsc_factors(PC pc, bool symmetric) {
   petsc_check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
 }
 
-// Small systems on several ranks are factorised whole on each: less latency than a distributed solve, and the
-// same bits in every run, where MUMPS adds in the order in which messages happen to arrive.
+// Replicates the factorization of small systems on every rank. It has less latency than a distributed solve
+// and gives reproducible bits, whereas MUMPS sums in order of message arrival.
 void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
   PetscInt rows = 0;
   petsc_check(MatGetSize(matrix.petsc(), &rows, nullptr));
@@ -54,10 +54,10 @@ void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
   choose_petsc_factors(factors, symmetric);
 }
 
-// ML's smoothed aggregation with one symmetric SOR sweep: the best packaged preconditioner on FV Laplacians.
-// The spectral radius in its prolongation smoother is bounded by the matrix norm: ML's other estimate starts from
-// random vectors whose sequence goes on from set-up to set-up, so that a run that was stopped would not go on
-// with the same bits (2 % more iterations on the thin plate's fluid).
+// ML's smoothed aggregation with one symmetric SOR sweep, the best packaged preconditioner for FV Laplacians.
+// The matrix norm bounds the spectral radius in its prolongation smoother. ML's other estimate uses random
+// vectors that continue from setup to setup, so a restarted run would not be reproducible (2 % more
+// iterations on the thin plate's fluid).
 void choose_ml(PC pc) {
   petsc_check(PCSetType(pc, PCML));
   petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_ksp_type", "richardson"));
@@ -68,15 +68,15 @@ void choose_ml(PC pc) {
   petsc_check(PCSetFromOptions(pc));
 }
 
-/// CHOLMOD's simplicial LDL^T: its two triangular solves cost a seventh of MUMPS's on a 2-D mesh. The
-/// supernodal form factorizes faster, but with supernodes this thin solves more slowly.
+/// Selects CHOLMOD's simplicial LDL^T, whose triangular solves cost a seventh of MUMPS's on a 2-D mesh. The
+/// supernodal form factorizes faster but solves more slowly with such thin supernodes.
 void choose_cholmod(PC pc) {
   petsc_check(PetscOptionsSetValue(nullptr, "-mat_cholmod_supernodal_switch", "1e10"));
   petsc_check(PCSetType(pc, PCCHOLESKY));
   petsc_check(PCFactorSetMatSolverType(pc, MATSOLVERCHOLMOD));
 }
 
-/// Sets the Krylov method and the preconditioner that a name stands for.
+/// Sets the Krylov method and preconditioner of a LinearMethod.
 void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod method) {
   switch (method) {
     case LinearMethod::direct:
@@ -89,7 +89,7 @@ void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod meth
     case LinearMethod::cg_direct:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
-      // One unknown per cell: a fluid's step takes 0.84 of one with CHOLMOD's factors and a fifth of one with MUMPS's.
+      // With one unknown per cell, a fluid step takes 0.84 of CHOLMOD's time and a fifth of that of MUMPS.
       return parallel::comm_size(matrix.comm()) == 1 ? choose_petsc_factors(pc, true)
                                                      : choose_factors(pc, matrix, true);
     case LinearMethod::cg_multigrid:
@@ -175,7 +175,7 @@ void LinearSolver::make_preconditioner() {
   if (make_) inverse_ = make_();
   petsc_check(KSPSetReusePreconditioner(ksp_, PETSC_FALSE));
   petsc_check(KSPSetOperators(ksp_, matrix_->petsc(), matrix_->petsc()));
-  const log::LongWork work;  // may factorize for long without a sign of life
+  const log::LongWork work;  // factorization may take long without a sign of life
   petsc_check(KSPSetUp(ksp_));
 }
 
@@ -195,7 +195,7 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
   SolveStatistics statistics;
   KSPConvergedReason reason = attempt(b, x, relative_tolerance, absolute_tolerance, statistics);
   if (reason < 0 && !rebuild_) {
-    // The kept preconditioner no longer fits the matrix: one more try with a fresh one.
+    // The kept preconditioner no longer fits the matrix, so the solve is repeated with a new one.
     rebuild_ = true;
     std::fill(x.begin(), x.end(), 0.0);
     reason = attempt(b, x, relative_tolerance, absolute_tolerance, statistics);
@@ -226,7 +226,7 @@ double LinearSolver::true_residual(std::span<const double> b, std::span<const do
   return norm(residual);
 }
 
-/// One solve. A result that is not finite counts as not converged.
+/// Performs one solve. A result that is not finite counts as not converged.
 KSPConvergedReason LinearSolver::attempt(std::span<const double> b, std::span<double> x,
                                          double relative_tolerance, double absolute_tolerance,
                                          SolveStatistics& statistics) {

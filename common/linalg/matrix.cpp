@@ -19,7 +19,7 @@ SparseMatrix::SparseMatrix(MPI_Comm comm, GlobalIndex n_owned_rows, std::vector<
   petsc_check(MatSetType(matrix_, MATAIJ));
   petsc_check(MatSetBlockSize(matrix_, block_size));
   std::vector<PetscInt> i(row.begin(), row.end());
-  std::vector<GlobalIndex>().swap(row);  // what follows needs much memory for a moment
+  std::vector<GlobalIndex>().swap(row);  // frees memory before the peak below
   std::vector<PetscInt> j(column.begin(), column.end());
   std::vector<GlobalIndex>().swap(column);
   petsc_check(MatSetPreallocationCOO(matrix_, static_cast<PetscCount>(i.size()), i.data(), j.data()));
@@ -27,7 +27,7 @@ SparseMatrix::SparseMatrix(MPI_Comm comm, GlobalIndex n_owned_rows, std::vector<
 }
 
 SparseMatrix::~SparseMatrix() {
-  // Destroying PETSc objects is collective: leave them to the end of the process when unwinding.
+  // Destroying PETSc objects is collective. During unwinding they are left to the end of the process.
   if (!matrix_ || std::uncaught_exceptions() > 0) return;
   MatDestroy(&matrix_);
   VecDestroy(&x_);

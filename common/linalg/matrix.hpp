@@ -14,8 +14,7 @@
 
 namespace couplet::linalg {
 
-/// Sum of the products over this rank's entries, in several partial sums, so that additions do not wait for
-/// each other.
+/// Local dot product with several partial sums, so that additions do not wait for each other.
 inline double dot_here(std::span<const double> a, std::span<const double> b) {
   std::array<double, 8> sum{};
   std::size_t i = 0;
@@ -25,30 +24,30 @@ inline double dot_here(std::span<const double> a, std::span<const double> b) {
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
-/// Sums over all ranks. Collective.
+/// Sums of the values over all ranks. Collective.
 template <std::size_t N>
 std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
   MPI_Allreduce(MPI_IN_PLACE, local.data(), N, MPI_DOUBLE, MPI_SUM, comm);
   return local;
 }
 
-/// y = F(x) on the rows of this rank. Collective.
+/// Linear map y = F(x) on the rows of this rank. Collective.
 using LinearMap = std::function<void(std::span<const double> x, std::span<double> y)>;
 
-/// Rows of a PETSc matrix from triplets whose places are fixed once; values are refilled without any search
+/// PETSc matrix from triplets with fixed positions. Values are refilled without searching
 /// (MatSetPreallocationCOO). Row and column numbers are global unknowns: entry * components + component.
 class SparseMatrix {
  public:
-  /// `row`, `column`: one per triplet; repeated places add up. Only owned rows may appear. Collective.
+  /// `row` and `column` are per triplet; duplicates are added. Only owned rows are allowed. Collective.
   SparseMatrix(MPI_Comm comm, GlobalIndex n_owned_rows, std::vector<GlobalIndex> row,
                std::vector<GlobalIndex> column, int block_size = 1);
   ~SparseMatrix();
   SparseMatrix(SparseMatrix&& other) noexcept;
   SparseMatrix& operator=(SparseMatrix&&) = delete;
 
-  /// One value per triplet, in the order of the constructor. Collective.
+  /// Sets one value per triplet, in the order of the constructor. Collective.
   void fill(std::span<const double> values);
-  /// y = A x on the owned rows. Collective.
+  /// Computes y = A x on the owned rows. Collective.
   void multiply(std::span<const double> x, std::span<double> y) const;
   Mat petsc() const { return matrix_; }
   MPI_Comm comm() const { return comm_; }

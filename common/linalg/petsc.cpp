@@ -12,9 +12,9 @@
 
 namespace couplet::linalg {
 
-// PETSc installs no signal handlers: it starts while the program runs, and removing them again (PetscPopSignalHandler) would
-// take the program's own with them, and with these the stop that saves its state. Errors become exceptions (petsc_check.hpp);
-// PETSc itself stays silent.
+// PETSc installs no signal handlers. It starts while the program runs, so removing them later
+// (PetscPopSignalHandler) would also remove the program's own, which save the state on a stop. Errors become
+// exceptions (petsc_check()); PETSc prints nothing.
 PetscEnvironment::PetscEnvironment(MPI_Comm program) {
   PETSC_COMM_WORLD = program;
   PetscErrorCode code = PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
@@ -24,7 +24,7 @@ PetscEnvironment::PetscEnvironment(MPI_Comm program) {
 }
 
 PetscEnvironment::~PetscEnvironment() {
-  // PetscFinalize is collective: never during unwinding.
+  // PetscFinalize is collective and must not be called during unwinding.
   if (std::uncaught_exceptions() == 0) PetscFinalize();
 }
 
@@ -34,7 +34,7 @@ std::shared_ptr<void> petsc_environment(MPI_Comm program) {
 
 namespace {
 
-// Iterations between restarts: GMRES has to resolve a few dozen eigenvalues far from the others.
+// Iterations between restarts. GMRES must resolve a few dozen separated eigenvalues.
 constexpr PetscInt before_restart = 100;
 
 PetscErrorCode iteration_is_alive(KSP, PetscInt, PetscReal, void*) {
@@ -53,7 +53,7 @@ PetscGmres::PetscGmres(MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap 
   petsc_check(KSPSetOperators(ksp_, matrix_, matrix_));
   petsc_check(KSPSetType(ksp_, KSPFGMRES));
   petsc_check(KSPSetPCSide(ksp_, PC_RIGHT));
-  // One eigenvalue of 1e9, where a preconditioner is nearly singular, costs a single orthogonalisation all its digits.
+  // An eigenvalue of 1e9 of a nearly singular preconditioner destroys a single orthogonalization.
   petsc_check(KSPGMRESSetCGSRefinementType(ksp_, KSP_GMRES_CGS_REFINE_IFNEEDED));
   petsc_check(KSPGMRESSetRestart(ksp_, before_restart));
   PC pc = nullptr;

@@ -17,7 +17,7 @@
 
 namespace couplet::linalg {
 
-/// Turns a PETSc error code into an Error that names PETSc's own message and our source line.
+/// Converts a PETSc error code to an Error with PETSc's message and our source line.
 inline void petsc_check(PetscErrorCode code, std::source_location where = std::source_location::current()) {
   if (code == 0) return;
   const char* text = nullptr;
@@ -27,8 +27,8 @@ inline void petsc_check(PetscErrorCode code, std::source_location where = std::s
                      specific ? specific : "no detail", where.file_name(), where.line());
 }
 
-/// PETSc on the communicator of one program. MPI must be up before and stay up until after.
-/// PETSC_COMM_WORLD is set before PetscInitialize; PETSc's own signal handlers stay off.
+/// PETSc on the communicator of one program, within the lifetime of MPI. Sets PETSC_COMM_WORLD before
+/// PetscInitialize and disables PETSc's signal handlers.
 class PetscEnvironment {
  public:
   explicit PetscEnvironment(MPI_Comm program);
@@ -37,10 +37,10 @@ class PetscEnvironment {
   PetscEnvironment& operator=(const PetscEnvironment&) = delete;
 };
 
-/// One that lives as long as what is returned: for Program::environment.
+/// Creates an environment that lives as long as the returned pointer, for Program::environment.
 std::shared_ptr<void> petsc_environment(MPI_Comm program);
 
-/// An operator for PETSc, and the first exception that came out of it: none may pass through PETSc's frames.
+/// Operator for PETSc that stores its first exception, because none may pass through PETSc's frames.
 struct ShellOperator {
   const LinearMap* apply = nullptr;
   std::exception_ptr* failure = nullptr;
@@ -57,7 +57,7 @@ struct ShellOperator {
     } catch (...) {
       *failure = std::current_exception();
     }
-    // After a failure the iteration goes on with something finite until it ends; its result is thrown away.
+    // After a failure the iteration needs finite values until it ends. Its result is discarded.
     if (*failure) std::copy_n(in, n, out);
     VecRestoreArray(y, &out);
     VecRestoreArrayRead(x, &in);
@@ -77,7 +77,7 @@ inline PetscErrorCode precondition_shell(PC pc, ::Vec x, ::Vec y) {
   return (*op)(x, y);
 }
 
-/// `op` by reference.
+/// Creates a shell matrix that keeps a reference to `op`.
 inline Mat shell_matrix(MPI_Comm comm, std::size_t n_owned, ShellOperator& op) {
   Mat mat = nullptr;
   const auto n = static_cast<PetscInt>(n_owned);
@@ -92,20 +92,20 @@ inline Mat symmetric_shell(MPI_Comm comm, std::size_t n_owned, ShellOperator& op
   return mat;
 }
 
-/// PETSc's flexible GMRES [saad1993] on an operator and a preconditioner that are only applied, the latter perhaps in single
-/// precision. A few eigenvalues far from the others, on which BiCGStab spends hundreds of iterations, cost it a few dozen; it
-/// keeps two vectors per iteration until it restarts after 100.
+/// PETSc's flexible GMRES [saad1993] with a matrix-free operator and preconditioner, possibly in single
+/// precision. It needs a few dozen iterations for a few separated eigenvalues, on which BiCGStab needs
+/// hundreds. It stores two vectors per iteration and restarts after 100.
 class PetscGmres {
  public:
-  /// `n`: rows of this rank. Collective.
+  /// `n` is the number of rows of this rank. Collective.
   PetscGmres(MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition);
   ~PetscGmres();
   PetscGmres(const PetscGmres&) = delete;
   PetscGmres& operator=(const PetscGmres&) = delete;
 
-  /// Moves `x`, of residual `r`, until the residual is below `wanted` by the recurrence, the method breaks down or has made
-  /// `most` iterations; returns how many it made. A correction that is not finite is left out. Throws what the operator or the
-  /// preconditioner throws. Collective.
+  /// Improves `x` with residual `r` until the recursive residual is below `wanted`, the method breaks down or
+  /// `most` iterations are made. Returns their number. A correction that is not finite is omitted. Rethrows
+  /// exceptions of operator and preconditioner. Collective.
   int run(std::span<const double> r, std::span<double> x, double wanted, int most);
 
  private:

@@ -12,9 +12,9 @@
 namespace couplet::linalg {
 namespace {
 
-// Combinations whose image is below this share of the largest are noise of earlier tolerances (squared).
+// Squared relative size of an image below which a combination is noise of earlier tolerances.
 constexpr double noise = 1e-12;
-// Relative difference of images that rounding may make where corrections are small beside the solution.
+// Relative difference of images that round-off may cause if corrections are small compared to the solution.
 constexpr double same_operator = 1e-3;
 
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, ResidualProjection::most,
@@ -32,7 +32,7 @@ bool ResidualProjection::project(std::span<double> r, std::span<double> x) {
   std::array<double, most> along{};
   for (int k = 0; k < n; ++k) along[k] = dot_here(kept_[k].image, r);
   MPI_Allreduce(MPI_IN_PLACE, along.data(), n, MPI_DOUBLE, MPI_SUM, comm_);
-  // Images of unit length: the newest corrections may be much smaller than the oldest.
+  // Images are scaled to unit length, because new corrections may be much smaller than old ones.
   SmallVector scale(n), b(n);
   for (int k = 0; k < n; ++k) {
     scale[k] = gram_(k, k) > 0 ? 1 / std::sqrt(gram_(k, k)) : 0;

@@ -11,33 +11,33 @@
 
 namespace couplet::linalg {
 
-/// First guess for one matrix and one right-hand side after another: of the corrections that earlier solves
-/// made to their guesses, the combination that leaves the least residual [fischer1998]. The corrections kept
-/// are those of accepted solves only, so that a solve that is done again starts from the same place.
+/// Initial guess for a sequence of right-hand sides with one matrix: the combination of earlier corrections
+/// with the smallest residual [fischer1998]. Only corrections of accepted solves are kept, so a repeated
+/// solve starts from the same guess.
 class ResidualProjection {
  public:
   static constexpr int most = 16;
 
-  /// `depth`: corrections kept, 1 to `most`.
+  /// `depth` is the number of corrections to keep, 1 to `most`.
   ResidualProjection(MPI_Comm comm, int depth) : comm_(comm), depth_(depth) {}
 
-  /// Takes the guess `x` and its residual `r`, rows of this rank, and moves both. Returns whether it did.
-  /// Collective.
+  /// Improves the guess `x` and its residual `r` on the rows of this rank. Returns false if nothing was
+  /// changed. Collective.
   bool project(std::span<double> r, std::span<double> x);
-  /// The solve ended at `x` with the residual `r`.
+  /// Records that the solve ended at `x` with the residual `r`.
   void finish(std::span<const double> r, std::span<const double> x);
-  /// Keeps the correction of the last solve in place of the oldest. Collective.
+  /// Replaces the oldest correction by that of the last solve. Collective.
   void accept();
 
-  /// Nothing is kept; the same on all ranks.
+  /// Returns true if there are no corrections, consistently on all ranks.
   bool is_empty() const { return kept_.empty(); }
-  /// For checkpoints: how many there are and their products, the same on all ranks; the vectors themselves, rows of this
-  /// rank, correction and image by turns.
+  /// State for checkpoints. products() holds number and products, the same on all ranks. vectors() holds
+  /// corrections and images in turn, on the rows of this rank.
   std::vector<double> products() const;
   std::vector<std::span<const double>> vectors() const;
-  /// How many vectors belong to such products.
+  /// Number of vectors that belong to such products.
   static std::size_t vectors_of(std::span<const double> products);
-  /// `apply`: A. Forgets all if they were made by another operator or there are more than are kept.
+  /// Restores the state. `apply` is A. Discards everything if another operator made it or there are too many.
   /// Collective.
   void set_values(std::span<const double> products, std::vector<std::vector<double>> vectors,
                   const LinearMap& apply);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr PetscInt largest_whole = 60000;
 
-/// a - s b, to be destroyed.
+/// Matrix a - s b, destroyed with the object.
 class Shifted {
  public:
   Shifted(Mat a, Mat b, double s) {
@@ -53,9 +53,9 @@ SymmetricFactors::SymmetricFactors(Mat a) {
 
 void SymmetricFactors::factorise(Mat a) {
   petsc_check(MatGetFactor(a, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors_));
-  petsc_check(MatMumpsSetIcntl(factors_, 24, 1));  // the count of pivots asks for it
-  petsc_check(MatMumpsSetIcntl(factors_, 14,
-                               100));  // room in per cent: pivots of two rows need more than was foreseen
+  petsc_check(MatMumpsSetIcntl(factors_, 24, 1));  // required to count negative pivots
+  // Additional memory [%], since pivots of two rows need more than predicted.
+  petsc_check(MatMumpsSetIcntl(factors_, 14, 100));
   MatFactorInfo info;
   petsc_check(MatFactorInfoInitialize(&info));
   petsc_check(MatCholeskyFactorSymbolic(factors_, a, nullptr, &info));

@@ -9,21 +9,21 @@
 
 namespace couplet::linalg {
 
-/// L D L^T of a symmetric matrix that need not be positive (MUMPS, pivots of one or two rows). Those of up to 60 000 rows
-/// are factorised whole on every rank: less latency, and the same bits in every run.
+/// L D L^T factors of a symmetric, possibly indefinite matrix (MUMPS, pivots of one or two rows). Up to 60
+/// 000 rows are factorized on every rank, for lower latency and reproducible bits.
 class SymmetricFactors {
  public:
-  /// Throws SolveFailure. Collective.
+  /// Factorizes the matrix. Throws SolveFailure. Collective.
   explicit SymmetricFactors(const SparseMatrix& matrix) : SymmetricFactors(matrix.petsc()) {}
-  /// Factors of a - s b.
+  /// Factorizes a - s b.
   SymmetricFactors(const SparseMatrix& a, const SparseMatrix& b, double s);
   ~SymmetricFactors();
   SymmetricFactors(const SymmetricFactors&) = delete;
   SymmetricFactors& operator=(const SymmetricFactors&) = delete;
 
-  /// x = A^-1 b on the owned rows. Throws SolveFailure if it is not finite. Collective.
+  /// Computes x = A^-1 b on the owned rows. Throws SolveFailure if it is not finite. Collective.
   void solve(std::span<const double> b, std::span<double> x) const;
-  /// Eigenvalues of the matrix below zero, by Sylvester's law of inertia.
+  /// Number of negative eigenvalues, by Sylvester's law of inertia.
   GlobalIndex negative_pivots() const { return negative_; }
 
  private:
@@ -32,7 +32,7 @@ class SymmetricFactors {
 
   Mat factors_ = nullptr;
   ::Vec b_ = nullptr, x_ = nullptr;  // of the owned rows
-  VecScatter to_all_ = nullptr;      // of a matrix that is whole on every rank
+  VecScatter to_all_ = nullptr;      // for a matrix replicated on every rank
   ::Vec whole_b_ = nullptr, whole_x_ = nullptr;
   PetscInt first_ = 0;  // of the owned rows
   GlobalIndex negative_ = 0;

@@ -15,7 +15,7 @@
 namespace couplet::log {
 namespace {
 
-/// Errors go to standard error alone.
+/// Writes to standard output, except errors, which only go to standard error.
 class BelowError final : public spdlog::sinks::stdout_sink_mt {
  public:
   void log(const spdlog::details::log_msg& message) override {
@@ -23,7 +23,7 @@ class BelowError final : public spdlog::sinks::stdout_sink_mt {
   }
 };
 
-/// "warning: " in front of warnings, "error: " in front of errors, nothing in front of ordinary lines.
+/// Adds "warning: " or "error: " before the message.
 class Kind final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
@@ -69,7 +69,7 @@ void setup(const std::string& participant, int rank, Verbosity verbosity, const 
   else
     logger->set_level(verbosity == Verbosity::normal && rank == 0 ? spdlog::level::info
                                                                   : spdlog::level::warn);
-  // Standard output is a pipe under mpirun; a line a step is worth its flush.
+  // Standard output is a pipe under mpirun. One flush per step is acceptable.
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(logger);
 }

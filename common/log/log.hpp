@@ -9,8 +9,8 @@ namespace couplet::log {
 
 enum class Verbosity { quiet, normal, verbose };
 
-/// Prefix "[fluid 0]". Below verbose only rank 0 speaks (warnings and errors: every rank); all go to stdout,
-/// errors to stderr. `file`: also write there (rank 0), empty for none.
+/// Sets up the log with prefix "[fluid 0]". Below verbose only rank 0 prints, but every rank prints warnings
+/// and errors. Lines go to stdout, errors to stderr. Rank 0 also writes to `file` unless it is empty.
 void setup(const std::string& participant, int rank, Verbosity verbosity, const std::string& file = "");
 
 using spdlog::debug;

@@ -27,15 +27,15 @@ namespace {
 
 constexpr int most_at_start = 9, most_of_several = 5, most_later = 7, most_rows = 4, widest = 100;
 
-int screen_descriptor = STDOUT_FILENO;  // of the terminal whose width counts
-bool drives = false;                    // makes the steps of its job
+int screen_descriptor = STDOUT_FILENO;  // of the terminal that determines the width
+bool drives = false;                    // this program drives the steps of its job
 
 std::string content_of(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The launcher above this process by its number, 0 where there is none on this machine.
+/// Process id of the launcher above this process, or 0 if there is none on this machine.
 long launcher() {
   constexpr std::array names{"mpirun", "mpiexec", "orterun", "prterun"};
   long process = getppid();
@@ -49,7 +49,7 @@ long launcher() {
   return 0;
 }
 
-/// Whether the launcher hands on what programs print as it is, to a terminal of its own.
+/// Returns true if the launcher forwards output unchanged to a terminal of its own.
 bool launcher_has_terminal() {
   const long process = launcher();
   if (process == 0) return false;
@@ -73,7 +73,7 @@ std::size_t width() {
   return std::size_t(known ? std::min<int>(size.ws_col, widest) : 80) - 1;
 }
 
-/// Bytes of the first `columns` characters of UTF-8.
+/// Number of bytes of the first `columns` UTF-8 characters.
 std::size_t bytes_of(std::string_view text, std::size_t columns) {
   std::size_t n = 0;
   for (; n < text.size(); ++n)
@@ -95,13 +95,13 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
  private:
   void sink_it_(const spdlog::details::log_msg& message) override {
     const std::string_view text(message.payload.data(), message.payload.size());
-    if (message.level >= spdlog::level::err) return clear();  // standard error has it
+    if (message.level >= spdlog::level::err) return clear();  // printed to standard error
     if (message.level == spdlog::level::warn) {
       const std::string_view name(message.logger_name.data(), message.logger_name.size());
       return above(is_shared_ ? fmt::format("[{}] warning: {}", name, text)
                               : fmt::format("warning: {}", text));
     }
-    if (!is_driver_) {  // who it is, and no more: one program has the status line
+    if (!is_driver_) {  // prints one line, since another program has the status line
       if (told_++ == 0) print(shortened(text));
       return;
     }
@@ -123,7 +123,7 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
   }
   void flush_() override { std::fflush(stdout); }
 
-  /// "t=1/2 s  step 10  ..." with the steps a second since the first.
+  /// Renews the status "t=1/2 s  step 10  ..." with the steps per second since the first.
   void renew(std::string_view text) {
     const auto now = std::chrono::steady_clock::now();
     status_ = text;
@@ -143,14 +143,14 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
                      fmt::format("  {:.3g} steps/s", double(step - first_) / seconds));
     }
     steps_ = true;
-    if (!to_go.empty()) {  // before what each part took: the end may not fit
+    if (!to_go.empty()) {  // before the costs of parts, since the end may not fit
       const std::size_t rate = status_.find(" steps/s");
       status_.insert(std::min(status_.size(), rate != status_.npos ? rate + 8 : status_.find("  ", at)),
                      "  to go " + to_go);
     }
     fmt::print("\r\033[K{}", shortened(status_));
   }
-  /// Cuts "  ETA 3 s" out of the status; gives the time.
+  /// Removes "  ETA 3 s" from the status and returns the time.
   std::string take_time_to_go() {
     const std::size_t at = status_.find("ETA ");
     if (at == status_.npos) return "";
@@ -165,12 +165,12 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
     status_.clear();
     std::fflush(stdout);
   }
-  /// Another program may have left its status on the line.
+  /// Clears the line, where another program may have left its status.
   void print(std::string_view line) {
     fmt::print("{}{}\n", status_.empty() && !(is_shared_ && told_ > 1) ? "" : "\r\033[K", line);
   }
 
-  /// Broken at blanks; the status stays below.
+  /// Prints a text broken at blanks above the status.
   void above(std::string_view text) {
     for (std::string indent; !text.empty(); indent = "  ") {
       std::size_t n = bytes_of(text, width() - indent.size());
@@ -181,7 +181,7 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
     }
     if (!status_.empty()) fmt::print("{}", shortened(status_));
   }
-  /// Head, the largest rows and the sum.
+  /// Prints the head, the largest rows and the sum.
   void table(std::string_view text) {
     clear();
     while (text.ends_with('\n')) text.remove_suffix(1);
@@ -196,7 +196,7 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
   std::string status_;
   bool is_shared_, is_driver_;
   int told_ = 0;
-  long first_ = 0;  // step, and when it was done
+  long first_ = 0;  // first step, and when it was completed
   std::chrono::steady_clock::time_point begun_;
   bool steps_ = false;
 };

@@ -10,31 +10,30 @@
 
 namespace couplet::log {
 
-/// Where standard output leads to: a file or pipe, a terminal of this process, or the terminal of the mpirun that
-/// started it, which the programs of a job share (where mpirun marks or files their lines: none).
+/// Destination of standard output: a file or pipe (none), a terminal of this process (own), or the terminal
+/// of the mpirun that started it, shared by the job. It is none if mpirun tags or redirects lines.
 enum class Screen { none, own, shared };
 Screen screen();
 
-/// For people: at the start at most ten lines of one width, then one line that renews itself with findings above
-/// it, at the end what the run found and spent. What it leaves out stands in the log file. At most 100 columns.
-/// On a shared terminal the program that makes the steps has the status line; the others print a line at their
+/// Sink for terminals. It prints at most ten lines at the start, then a status line with findings above it,
+/// and finally results and costs. The log file holds the rest. Lines have at most 100 columns. On a shared
+/// terminal only the program that drives the steps has the status line. The others print one line at their
 /// start and their warnings.
 spdlog::sink_ptr terminal_sink(Screen screen, bool is_first_rank);
 
-/// Before the log is set up: whether this program makes the steps of its job.
+/// Sets if this program drives the steps of its job. Call it before the log is set up.
 void set_driver(bool is_driver);
 
-/// The last line, on a terminal alone: where results lie, and which file there has all lines.
+/// Prints the last line, only on a terminal: the location of the results and the file with all lines.
 void tell_where(const std::string& folder, const std::string& file);
 
-/// "0.4 s", "42 s", "3 min 20 s", "3 h 12 min", "2 d 5 h".
+/// Formats "0.4 s", "42 s", "3 min 20 s", "3 h 12 min", "2 d 5 h".
 std::string format_duration(double seconds);
 
-/// "ETA 3 h 12 min" if the rest runs as fast as what was done of `total` in `wall_seconds`; empty while
-/// nothing was done.
+/// Text "ETA 3 h 12 min", extrapolated from `done` of `total` in `wall_seconds`. Empty while `done` is 0.
 std::string eta(double done, double total, double wall_seconds);
 
-/// Seconds and calls by name; waiting time is a row of its own ("waiting for coupler").
+/// Accumulated seconds and calls by name. Waiting time has a row of its own ("waiting for coupler").
 class Timers {
  public:
   struct Entry {
@@ -47,7 +46,7 @@ class Timers {
     ++e.calls;
   }
   const std::map<std::string, Entry>& entries() const { return entries_; }
-  /// Table with share of `total` seconds, largest first.
+  /// Table with shares of `total` seconds, largest first.
   std::string table(const std::string& title, double total) const;
 
  private:
@@ -69,21 +68,21 @@ class ScopedTimer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The timers of this process.
+/// Timers of this process.
 Timers& timers();
 
-/// Where the watch over a job (common/app/watch/watch) hears that this process is alive.
+/// Signs of life of this process for the watch over a job (common/app/watch/watch).
 struct LifeSigns {
-  std::atomic<double>* last = nullptr;    ///< time of the last sign [s], machine's steady clock
-  std::atomic<int>* long_work = nullptr;  ///< above 0: within LongWork
+  std::atomic<double>* last = nullptr;    ///< time of the last sign [s], steady clock of the machine
+  std::atomic<int>* long_work = nullptr;  ///< above 0 within LongWork
 };
 void listen_for_life(LifeSigns signs);
 
-/// A sign of life out of work that may take long: an iteration of a solver, a field written. Costs 30 ns.
+/// Gives a sign of life within long work: an iteration of a solver, a field written. Takes 30 ns.
 void alive();
 
-/// Work that can give no sign while it lasts (a factorisation, a mesh being made by another program): until the end of
-/// the scope the processor time of the process and of its children is the sign.
+/// Work that cannot give signs of life (a factorization, another program that makes a mesh). Until the end of
+/// the scope, processor time of the process and its children counts as a sign.
 class LongWork {
  public:
   LongWork();

@@ -11,9 +11,9 @@
 namespace couplet::mesh {
 namespace {
 
-constexpr GlobalIndex most_faces = 8;  // of a cell, and more
+constexpr GlobalIndex most_faces = 8;  // more than the faces of any cell
 
-/// Which of the owner's faces an interior face is, in the order of the cell's shape.
+/// Position of an interior face among the owner's faces, in the order of the cell's shape.
 GlobalIndex place_at_owner(const Mesh& mesh, Index face) {
   const Index cell = mesh.owner[face];
   const CellShape& shape = shape_of(mesh.cell_type[cell]);
@@ -30,7 +30,7 @@ GlobalIndex place_at_owner(const Mesh& mesh, Index face) {
   throw Error("A face of the mesh has other points than the cell that owns it.");
 }
 
-/// Interior faces first, then, if they are wanted, boundary faces.
+/// Order of interior faces, optionally followed by boundary faces.
 parallel::GlobalOrder order_of_faces(const Mesh& mesh, bool with_boundary) {
   std::vector<GlobalIndex> ids;
   std::vector<char> owned;
@@ -112,7 +112,7 @@ const parallel::GlobalOrder& OrderOfEntries::of(Entries entries) {
   return *order;
 }
 
-/// Sums of what each owned cell and boundary face is, so that neither ranks nor their order matter.
+/// The digest is a sum over owned cells and boundary faces, which does not depend on the partition.
 std::array<std::int64_t, 4> identity_of(const Mesh& mesh) {
   std::uint64_t digest = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {

@@ -11,9 +11,9 @@
 
 namespace couplet::mesh {
 
-/// What a field has values of, in the order in which a rank has them. `cells`, `points` and `boundary` are with their
-/// ghosts, `owned_cells` and `owned_boundary` without; `interior_faces` and `flux_faces` are those of Mesh, of which
-/// neighbouring ranks share the faces between their cells; the rank of a face's owner owns it.
+/// Entities on which a field has values, in the local order. `cells`, `points` and `boundary` include ghosts;
+/// `owned_cells` and `owned_boundary` do not. `interior_faces` and `flux_faces` are those of Mesh.
+/// Neighboring ranks share the faces between their cells, which belong to the rank of the face's owner cell.
 enum class Entries : std::uint8_t {
   cells,
   owned_cells,
@@ -27,11 +27,11 @@ constexpr std::size_t n_kinds_of_entries = 7;
 
 std::size_t count_of(const Mesh& mesh, Entries entries);
 
-/// Orders of the entries of a mesh that do not depend on the number of ranks: by their numbers in the mesh file, faces
-/// between cells by the cell that owns them. Each is made when it is first asked for (collective) and kept.
+/// Orders of mesh entities that do not depend on the number of ranks. They follow the numbers in the mesh
+/// file; interior faces follow their owner cells. Each order is created on first use (collective).
 class OrderOfEntries {
  public:
-  /// By reference.
+  /// Keeps a reference to `mesh`.
   explicit OrderOfEntries(const Mesh& mesh) : mesh_(&mesh) {}
   const Mesh& mesh() const { return *mesh_; }
   const parallel::GlobalOrder& of(Entries entries);
@@ -41,10 +41,10 @@ class OrderOfEntries {
   std::array<std::optional<parallel::GlobalOrder>, n_kinds_of_entries> orders_;
 };
 
-/// Which mesh this is: numbers of cells, points and boundary faces, and a digest of how they hang together; the same on
-/// any number of ranks. Collective.
+/// Fingerprint of a mesh: numbers of cells, points and boundary faces, and a digest of the connectivity. It
+/// does not depend on the number of ranks. Collective.
 std::array<std::int64_t, 4> identity_of(const Mesh& mesh);
-/// Which cells, points and boundary faces this rank has, and in which order.
+/// Digest of the cells, points and boundary faces of this rank and of their order.
 std::uint64_t share_of_rank(const Mesh& mesh);
 
 }  // namespace couplet::mesh

@@ -17,7 +17,7 @@ namespace couplet::mesh {
 
 namespace {
 
-/// Points on a grid, and for each grid cell its corners in hexahedron (or quadrilateral) order.
+/// Points of a grid, and the corners of each grid cell in hexahedron (or quadrilateral) order.
 class Grid {
  public:
   Grid(const std::array<int, 3>& n, const Vec3& lower, const Vec3& upper, int dim) : n_(n), dim_(dim) {
@@ -55,7 +55,7 @@ class Grid {
   int dim_;
 };
 
-/// A cell in a grid cell: its points among the corners in the order of a hexahedron or quadrilateral, 8 is the center.
+/// Cell within a grid cell. Its points are corners in hexahedron or quadrilateral order, or 8 for the center.
 struct Cut {
   CellType type;
   std::array<int, 8> points;
@@ -67,11 +67,12 @@ constexpr Cut whole_quadrilateral[]{{CellType::quadrilateral, {0, 1, 2, 3}}};
 constexpr Cut two_triangles[]{{CellType::triangle, {0, 1, 2}}, {CellType::triangle, {0, 2, 3}}};
 constexpr Cut whole_hexahedron[]{{CellType::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}}};
 constexpr Cut two_prisms[]{{CellType::prism, {0, 1, 2, 4, 5, 6}}, {CellType::prism, {0, 2, 3, 4, 6, 7}}};
-// Kuhn's cut along the diagonal 0-6: the same in every grid cell, so neighbors agree.
+// Kuhn's subdivision along the diagonal 0-6 is the same in every grid cell, so neighbors agree.
 constexpr Cut six_tetrahedra[]{{CellType::tetrahedron, {0, 1, 2, 6}}, {CellType::tetrahedron, {0, 2, 3, 6}},
                                {CellType::tetrahedron, {0, 3, 7, 6}}, {CellType::tetrahedron, {0, 7, 4, 6}},
                                {CellType::tetrahedron, {0, 4, 5, 6}}, {CellType::tetrahedron, {0, 5, 1, 6}}};
-// From the center: pyramids on the side faces; top and bottom as pyramids or, beside prisms, as two tetrahedra each.
+// Cells around the center: pyramids on the sides; pyramids at top and bottom or, beside prisms, two
+// tetrahedra each.
 constexpr Cut star_sides[]{{CellType::pyramid, {0, 4, 5, 1, center}},
                            {CellType::pyramid, {1, 5, 6, 2, center}},
                            {CellType::pyramid, {2, 6, 7, 3, center}},
@@ -83,8 +84,8 @@ constexpr Cut cut_star_ends[]{{CellType::tetrahedron, {0, 1, 2, center}},
                               {CellType::tetrahedron, {4, 6, 5, center}},
                               {CellType::tetrahedron, {4, 7, 6, center}}};
 
-/// The cells of a grid cell; the second part is that of a star. `mixed`: columns of hexahedra, of prisms with stars in every second
-/// layer, and of stars: all four types, conforming.
+/// Cells of a grid cell; the second part is that of a star. `mixed` has columns of hexahedra, of prisms with
+/// stars in every second layer, and of stars, so that it contains all four types and is conforming.
 std::array<Cuts, 2> cuts_of(BoxCells cells, int i, int j, int k) {
   switch (cells) {
     case BoxCells::quadrilaterals:
@@ -162,7 +163,7 @@ RawMesh make_box(BoxCells cells, const std::array<int, 3>& n, const Vec3& lower,
 void perturb_interior(RawMesh& raw, double amount, unsigned seed) {
   std::vector<char> fixed(raw.points.size(), 0);
   for (const Index p : raw.boundary_points.index) fixed[p] = 1;
-  // Local spacing: distance to the nearest point of the same cells.
+  // Local spacing is the distance to the nearest point of the same cells.
   std::vector<double> spacing(raw.points.size(), std::numeric_limits<double>::max());
   for (Index c = 0; c < raw.cell_points.size(); ++c)
     for (const Index p : raw.cell_points[c])
@@ -180,8 +181,7 @@ namespace {
 
 double* flat(std::vector<Vec3>& values) { return values.empty() ? nullptr : values.front().data(); }
 
-/// The triangles of a face: one, or two on either side of the diagonal through the point with the smallest
-/// point_id.
+/// Triangles of a face: one, or two separated by the diagonal through the point with the smallest point_id.
 struct Triangles {
   int count;
   std::array<std::array<Index, 3>, 2> corner;
@@ -197,7 +197,7 @@ Triangles triangles_of(const Mesh& mesh, Index face) {
   return {2, {{{at(0), at(1), at(2)}, {at(0), at(2), at(3)}}}};
 }
 
-/// Adds the cone between `apex` and the triangle (a, b, c) to a cell's volume and first moment about `apex`.
+/// Adds the cone of `apex` and triangle (a, b, c) to a cell's volume and first moment about `apex`.
 void add_cone(double sign, const Vec3& apex, const Vec3& a, const Vec3& b, const Vec3& c, double& volume,
               Vec3& moment) {
   const Vec3 u = a - apex, v = b - apex, w = c - apex;
@@ -264,7 +264,7 @@ Geometry compute_geometry(const Mesh& mesh, std::vector<Vec3> points) {
   g.cell_centre.assign(n, Vec3::Zero());
   g.face_area.resize(mesh.n_faces());
   g.face_centre.resize(mesh.n_faces());
-  // Cones from a point inside each cell keep round-off small far from the origin.
+  // Cones from a point inside each cell limit round-off far from the origin.
   std::vector<Vec3> apex(n, Vec3::Zero());
   for (Index c = 0; c < n; ++c) {
     for (const Index p : mesh.cell_points[c]) apex[c] += g.points[p];
@@ -273,7 +273,7 @@ Geometry compute_geometry(const Mesh& mesh, std::vector<Vec3> points) {
   mesh.dim == 2 ? faces_2d(mesh, apex, g) : faces_3d(mesh, apex, g);
   for (Index c = 0; c < n; ++c)
     g.cell_centre[c] = g.volume[c] == 0 ? apex[c] : Vec3(apex[c] + g.cell_centre[c] / g.volume[c]);
-  // Not all faces of a ghost are here: its owner knows.
+  // A ghost may lack faces on this rank, so its values come from the owner.
   mesh.cells.update_ghosts(std::span<double>(g.volume));
   mesh.cells.update_ghosts(std::span<double>(flat(g.cell_centre), 3 * std::size_t(n)), 3);
   return g;
@@ -282,7 +282,7 @@ Geometry compute_geometry(const Mesh& mesh, std::vector<Vec3> points) {
 std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to) {
   std::vector<double> swept(mesh.n_faces(), 0);
   if (mesh.dim == 2) {
-    // The edge vector is linear in time, so its mean is that of the middle position; the mean velocity is
+    // The edge vector is linear in time, so its mean is at the middle position. The mean velocity is
     // constant.
     for (Index f = 0; f < mesh.n_faces(); ++f) {
       const Index a = mesh.face_points[f][0], b = mesh.face_points[f][1];
@@ -295,7 +295,7 @@ std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, 
     return swept;
   }
   // Thesis (4.16)-(4.17): a triangle with edges e1(s) = e1 + s f1, e2(s) = e2 + s f2, 0 <= s <= 1, and mean
-  // displacement d sweeps d . integral of (e1 x e2)/2 ds; the integrand is quadratic in s.
+  // displacement d sweeps d . integral of (e1 x e2)/2 ds. The integrand is quadratic in s.
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     const Triangles t = triangles_of(mesh, f);
     for (int i = 0; i < t.count; ++i) {

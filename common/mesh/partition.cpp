@@ -37,19 +37,19 @@ Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> sec
 
 namespace {
 
-// Excess of a part over the mean, as PETSc's partitioner allows it.
+// Maximum excess of a part over the mean, as in PETSc's partitioner.
 constexpr double imbalance = 0.01;
 
 void check(int failed) {
   if (failed != 0) throw Error("Scotch could not divide the mesh.");
 }
 
-/// Rows of the graph that this rank has, into `parts` parts. Scotch's own calls take the arrays as they are, without const.
+/// Partitions this rank's rows of the graph into `parts`. Scotch's functions take arrays without const.
 std::vector<int> apply_ptscotch(MPI_Comm comm, GlobalIndex n_all, std::span<const Index> offset,
                                 std::span<const GlobalIndex> neighbours, int parts) {
-  // With several threads Scotch 7 gives another partition each time, and a restart would not be bit for bit.
+  // With several threads Scotch 7 is not deterministic, so a restart would not be bit for bit.
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
-  // Scotch goes on in its row of random numbers: a second mesh of a process would be shared out in another way.
+  // Resets Scotch's random numbers, so that a second mesh of a process is partitioned reproducibly.
   SCOTCH_randomReset();
   const auto n = static_cast<SCOTCH_Num>(offset.size()) - 1;
   std::vector<SCOTCH_Num> rows(offset.begin(), offset.end()), columns(neighbours.begin(), neighbours.end());
@@ -69,7 +69,7 @@ std::vector<int> apply_ptscotch(MPI_Comm comm, GlobalIndex n_all, std::span<cons
     check(SCOTCH_graphMap(&graph, &parts_of_all, &strategy, part.data()));
     SCOTCH_graphExit(&graph);
   } else if (!parallel::any(comm, n == n_all)) {
-    MPI_Comm own = MPI_COMM_NULL;  // Scotch keeps attributes at its communicator
+    MPI_Comm own = MPI_COMM_NULL;  // Scotch stores attributes at its communicator
     MPI_Comm_dup(comm, &own);
     SCOTCH_Dgraph graph;
     check(SCOTCH_dgraphInit(&graph, own));
@@ -103,7 +103,7 @@ std::vector<int> partition(MPI_Comm comm, std::span<const Index> offset,
 
 namespace {
 
-/// Nodes reachable from `start`, breadth first, neighbours by ascending degree; marks them with `stamp`.
+/// Nodes reachable from `start`, breadth first, neighbors by ascending degree. Marks them with `stamp`.
 void breadth_first(const Csr& graph, Index start, int stamp, std::vector<int>& mark,
                    std::vector<Index>& order) {
   order.assign(1, start);
@@ -131,7 +131,7 @@ std::vector<Index> reverse_cuthill_mckee(const Csr& graph) {
   std::vector<int> mark(n, 0);
   for (Index seed = 0; seed < n; ++seed) {
     if (mark[seed] != 0) continue;
-    // The last node of a breadth-first walk lies far out; two walks give a start near an end of the graph.
+    // The last node of a breadth-first search is far out. Two searches give a start near an end of the graph.
     breadth_first(graph, seed, 1, mark, component);
     breadth_first(graph, component.back(), 2, mark, component);
     breadth_first(graph, component.back(), 3, mark, component);

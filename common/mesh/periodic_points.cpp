@@ -12,7 +12,7 @@
 namespace couplet::mesh {
 namespace {
 
-/// The two sides of each point of the periodic faces that this rank sees.
+/// Both sides of each point of the periodic faces on this rank.
 std::vector<std::array<GlobalIndex, 2>> pairs_here(const Mesh& mesh, const Geometry& geometry) {
   std::vector<std::array<GlobalIndex, 2>> pairs;
   for (Index f = 0; f < mesh.n_interior; ++f) {
@@ -34,9 +34,9 @@ std::vector<std::array<GlobalIndex, 2>> pairs_here(const Mesh& mesh, const Geome
   return pairs;
 }
 
-/// From each point to the one with the least number among its copies.
+/// Maps each point to its copy with the smallest number.
 std::map<GlobalIndex, GlobalIndex> roots_of(const std::vector<std::array<GlobalIndex, 2>>& pairs) {
-  std::vector<GlobalIndex> points;  // in order, each once
+  std::vector<GlobalIndex> points;  // ascending, without duplicates
   for (const auto& pair : pairs) points.insert(points.end(), pair.begin(), pair.end());
   std::ranges::sort(points);
   points.erase(std::ranges::unique(points).begin(), points.end());
@@ -67,7 +67,7 @@ std::vector<std::array<std::string, 2>> periodic_pairs(const std::map<std::strin
 }
 
 PeriodicPoints::PeriodicPoints(const Mesh& mesh, const Geometry& geometry) : mesh_(mesh) {
-  if (!parallel::any(mesh.comm, !mesh.neighbour_shift.empty())) return;  // a rank without cells has none
+  if (!parallel::any(mesh.comm, !mesh.neighbour_shift.empty())) return;  // empty on a rank without cells
   const auto roots = roots_of(parallel::all_gather(mesh.comm, pairs_here(mesh, geometry)));
   std::map<GlobalIndex, Index> group_of;  // of the roots
   for (const auto& [point, root] : roots)

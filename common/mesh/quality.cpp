@@ -15,8 +15,8 @@
 namespace couplet::mesh {
 namespace {
 
-/// Stays within the cell's bounding box however it is turned over; the centroid of a cell without volume does
-/// not.
+/// Mean face center, which stays within the bounding box of any inverted cell. The centroid of a cell without
+/// volume does not.
 Vec3 mean_face_centre(const Mesh& mesh, const Geometry& geometry, Index cell) {
   Vec3 sum = Vec3::Zero();
   int n = 0;
@@ -28,7 +28,7 @@ Vec3 mean_face_centre(const Mesh& mesh, const Geometry& geometry, Index cell) {
   return sum / n;
 }
 
-/// The largest of all ranks and where it is.
+/// Largest value over all ranks with its location.
 struct Extreme {
   double value = 0;
   Vec3 at = Vec3::Zero();
@@ -107,7 +107,7 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
   CellTrouble worst{std::numeric_limits<GlobalIndex>::max(), Vec3::Zero(),
                     std::numeric_limits<double>::max()};
   const auto worse = [](const CellTrouble& a, const CellTrouble& b) {
-    // A volume that is not a number is worse than any.
+    // A volume that is not a number is worst.
     const auto key = [](const CellTrouble& t) {
       return std::pair(std::isnan(t.volume) ? -std::numeric_limits<double>::infinity() : t.volume, t.cell_id);
     };
@@ -128,7 +128,7 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
 
 namespace {
 
-/// The lowest cell of all ranks. Collective.
+/// Cell with the lowest number over all ranks. Collective.
 std::optional<CellTrouble> first_of(MPI_Comm comm, const std::vector<CellTrouble>& found) {
   const std::vector<CellTrouble> all = parallel::all_gather(comm, found);
   if (all.empty()) return std::nullopt;
@@ -137,8 +137,8 @@ std::optional<CellTrouble> first_of(MPI_Comm comm, const std::vector<CellTrouble
 
 Vec3 turn(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - b); }
 
-/// Of four corners none turns another way than the rest in a convex quadrilateral, one in a concave one, two
-/// in one that crosses itself.
+/// Returns true if the quadrilateral intersects itself. Then two of its corners have the opposite
+/// orientation, whereas a convex one has none and a concave one has one.
 bool crosses_itself(const std::array<Vec3, 4>& x) {
   const Vec3 first = turn(x[0], x[1], x[2]);
   int other = 0;
@@ -194,7 +194,7 @@ void check_and_report(const Mesh& mesh, const Geometry& geometry) {
         trouble->cell_id, text(trouble->centre));
   const MeshQuality q = measure_quality(mesh, geometry);
   if (parallel::comm_rank(mesh.comm) != 0) return;
-  // Of cells at right angles round-off has no place.
+  // Locations are omitted where all cells are orthogonal to round-off.
   const auto number_at = [&](double value, double least, const char* unit, const Vec3& at) {
     return value > least ? fmt::format("{:.3g}{} at {}", value, unit, text(at)) : fmt::format("0{}", unit);
   };

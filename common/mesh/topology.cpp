@@ -44,8 +44,7 @@ const char* name_of(CellType type) {
 
 namespace {
 
-/// Volume of a cell as its points stand, quadrilateral faces cut at their first point: good enough for a
-/// sign.
+/// Signed volume of a cell. Quadrilateral faces are split at their first point, which suffices for the sign.
 double signed_volume(const RawMesh& raw, Index cell) {
   const CellShape& shape = shape_of(raw.cell_type[cell]);
   const auto points = raw.cell_points[cell];
@@ -63,7 +62,7 @@ double signed_volume(const RawMesh& raw, Index cell) {
   return volume;
 }
 
-/// Diameter of the cell's bounding box: the scale below which a volume counts as none.
+/// Diameter of the cell's bounding box, relative to which a volume counts as zero.
 double extent(const RawMesh& raw, Index cell) {
   Vec3 low = raw.points[raw.cell_points[cell][0]], high = low;
   for (const Index p : raw.cell_points[cell]) {
@@ -83,7 +82,7 @@ FacePoints::FacePoints(const RawMesh& raw, Index cell, int face, int turn) {
 }
 
 std::string place(const Vec3& x, int dim) {
-  // + 0.0 turns -0 into 0
+  // Adding 0.0 converts -0 to 0.
   return dim == 2 ? fmt::format("({:.6g}, {:.6g})", x[0] + 0.0, x[1] + 0.0)
                   : fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0] + 0.0, x[1] + 0.0, x[2] + 0.0);
 }

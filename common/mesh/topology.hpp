@@ -15,14 +15,14 @@
 
 namespace couplet::mesh {
 
-/// Faces of a cell type as positions in the cell's point list, turning right-handed about the outward normal.
-/// Point order: VTK and gmsh agree on it (prism: the normal of points 0 1 2 looks towards points 3 4 5).
-/// 2-D: a face is an edge (a, b) whose outward normal is (dy, -dx) of b - a, for cells that turn
-/// anticlockwise.
+/// Faces of a cell type as positions in the cell's point list, oriented right-handed about the outward
+/// normal. Point order is that of VTK and gmsh. For a prism, the normal of points 0 1 2 points to points 3 4
+/// 5. In 2-D, a face is an edge (a, b) whose outward normal is (dy, -dx) of b - a, for counterclockwise
+/// cells.
 struct CellShape {
   int dim, n_points, n_faces;
   std::array<std::array<std::int8_t, 4>, 6> faces;  ///< -1: no such point
-  std::array<std::int8_t, 8> mirrored;  ///< point order that turns an inverted cell right side out
+  std::array<std::int8_t, 8> mirrored;              ///< point order that inverts an inverted cell
   int face_size(int face) const {
     if (dim == 2) return 2;
     return faces[face][3] < 0 ? 3 : 4;
@@ -32,7 +32,7 @@ struct CellShape {
 const CellShape& shape_of(CellType type);
 const char* name_of(CellType type);
 
-/// Points of face `face` of a cell in the order of its shape, the one at position `turn` first.
+/// Points of face `face` of a cell in the order of its shape, starting at position `turn`.
 struct FacePoints {
   std::array<Index, 4> points{};
   std::size_t n;
@@ -40,16 +40,16 @@ struct FacePoints {
   operator std::span<const Index>() const { return {points.data(), n}; }
 };
 
-/// A face as one of its cells has it.
+/// Face as seen from one of its cells.
 struct HalfFace {
-  /// Its points above the smallest one, ascending; the largest Index where there is none.
+  /// Points above the smallest one, ascending, padded with the largest Index.
   std::array<Index, 3> key;
   Index cell;
   int face;  ///< position in the cell's shape
 };
 
-/// Half faces in buckets by their smallest point: matching partners share a bucket, which is small, so that
-/// the sort is linear in the number of faces.
+/// Half faces in buckets by their smallest point. Matching partners share a small bucket, so sorting is
+/// linear in the number of faces.
 class HalfFaces {
  public:
   explicit HalfFaces(const RawMesh& raw) : raw_(raw) {
@@ -81,7 +81,7 @@ class HalfFaces {
 
   std::size_t size() const { return halves_.size(); }
 
-  /// Calls use(halves) for each face with the half faces it has, cells by ascending number.
+  /// Calls use(halves) for each face with its half faces, sorted by cell number.
   template <class Use>
   void for_each_face(Use&& use) {
     for (std::size_t p = 0; p + 1 < first_.size(); ++p) {
@@ -106,21 +106,20 @@ class HalfFaces {
   std::vector<HalfFace> halves_;
 };
 
-/// Faces of cells that no other cell shares, as boundary elements (for generators, which then name the
-/// patches).
+/// Faces that belong to only one cell, as boundary elements. Generators assign their patches.
 Csr outer_faces(const RawMesh& raw);
 
-/// Turns inverted cells (clockwise in 2-D) right side out. Throws Error for a cell without volume. `first`: the
-/// number of the first cell, for messages.
+/// Reorders inverted cells (clockwise in 2-D). Throws Error for a cell without volume. `first` is the number
+/// of the first cell, for messages.
 void orient_cells(RawMesh& raw, GlobalIndex first = 0);
 
-/// Throws Error for a point out of the plane z = 0 of a 2-D mesh whose points lie in a box of this diagonal.
+/// Throws Error for a point outside the plane z = 0 of a 2-D mesh with a bounding box of this diagonal.
 void check_plane(std::span<const Vec3> points, double diagonal);
 
-/// "(1, 2.5)" in 2-D, "(1, 2.5, 3)" in 3-D.
+/// Formats "(1, 2.5)" in 2-D, "(1, 2.5, 3)" in 3-D.
 std::string place(const Vec3& x, int dim);
 
-/// Which of the rows [first, size) hold each of `n_entries` entries: numbered from 0 at `first`, ascending.
+/// Rows of [first, size) that contain each of `n_entries` entries, numbered from 0 at `first`, ascending.
 inline Csr transpose(const Csr& rows, Index first, Index n_entries) {
   Csr result;
   result.offset.assign(n_entries + 1, 0);

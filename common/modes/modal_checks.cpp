@@ -11,8 +11,8 @@
 namespace couplet::modes {
 namespace {
 
-/// Modal mass and participation along each axis, as the surface alone shows them: sum of face_density A |phi|^2 and
-/// of face_density A phi (without face densities: the mass spread evenly over the surface).
+/// Modal mass and participation per axis, as visible on the surface: sums of face_density A |phi|^2 and
+/// face_density A phi. Without face densities the mass is distributed evenly over the surface.
 struct SurfaceSums {
   double modal_mass = 0, mass = 0;
   Vec3 participation = Vec3::Zero();
@@ -37,8 +37,8 @@ std::vector<SurfaceSums> surface_sums(const ModalModel& model) {
   return sums;
 }
 
-/// The mode whose shape at the faces is another one than at their vertices; -1: none. Shapes that turn within a face
-/// say nothing.
+/// Index of a mode whose face shape differs from that at the vertices, or -1. Shapes that vary strongly
+/// within a face are skipped.
 int mode_of_two_shapes(const ModalModel& model) {
   ModalModel by_vertices = model;
   average_faces(by_vertices);
@@ -58,8 +58,8 @@ int mode_of_two_shapes(const ModalModel& model) {
   return -1;
 }
 
-/// Of one mode: sum over the edges of the squared difference between their ends, over the sum of the squares there;
-/// `row(vertex, component)` is the row of the shapes.
+/// Roughness of a mode: sum over the edges of squared differences between their ends, relative to the sum of
+/// squares. `row(vertex, component)` is the row of the shapes.
 template <typename Row>
 double roughness(const ModalModel& model, std::size_t mode, Row row) {
   const std::size_t n = model.n_modes();
@@ -101,7 +101,7 @@ std::string impossible_in(const ModalModel& model) {
     return fmt::format(
         "the shape of mode {} at the faces ('shape/faces') is not the mean of the shape at their vertices",
         m + 1);
-  // Bessel: a uniform motion of the whole mass has at most its own length in the modes.
+  // Bessel's inequality: the norm of a uniform motion of the mass bounds its norm in the modes.
   for (int c = 0; c < 3; ++c) {
     double effective = 0;
     for (std::size_t m = 0; m < n; ++m) {
@@ -116,8 +116,8 @@ std::string impossible_in(const ModalModel& model) {
   return "";
 }
 
-/// Where the faces carry the whole mass, they show whether two modes are orthogonal: the cosine between them that is
-/// largest. A pair of the same mode has 1, thick bodies, whose inside is not seen, stay well below 0.5.
+/// Finds the largest cosine between two modes, which shows if they are orthogonal when the faces carry the
+/// whole mass. It is 1 for equal modes and well below 0.5 for thick bodies, whose inside is not visible.
 std::string overlap_problem_of(const ModalModel& model) {
   const std::size_t n = model.n_modes();
   const std::vector<Vec3> areas = face_areas(model);
@@ -144,7 +144,7 @@ std::string overlap_problem_of(const ModalModel& model) {
 
 std::string scale_problem_of(const ModalModel& model) {
   const std::vector<SurfaceSums> sums = surface_sums(model);
-  // With densities the surface stands for the mass near it; without them for as much as its share of the motion.
+  // With densities the surface represents the nearby mass, otherwise its share of the motion.
   const double most = model.face_density.empty() ? 1e4 : 10;
   double largest = 0;
   for (std::size_t m = 0; m < sums.size(); ++m) {
@@ -157,10 +157,10 @@ std::string scale_problem_of(const ModalModel& model) {
     if (model.face_density.empty() || sums[m].mass < 0.5 * model.mass) continue;
     for (int c = 0; c < 3; ++c) {
       const double told = model.participation[c * sums.size() + m], seen = sums[m].participation[c];
-      // Where the faces carry the whole mass they show the whole participation, up to half a thickness of slopes.
+      // If the faces carry the whole mass, they show the participation up to slopes over half the thickness.
       const bool whole = std::abs(sums[m].mass - model.mass) < 0.01 * model.mass;
       const bool apart = std::abs(told - seen) > 0.2 * std::sqrt(model.mass) + 0.3 * std::abs(told);
-      // Small ones are differences of large parts, which a surface need not show.
+      // Small values are differences of large contributions, which a surface need not show.
       const bool small = told * told < 0.05 * model.mass && seen * seen < 0.3 * model.mass;
       if (!(whole && apart) && (small || (seen / told > 0.3 && seen / told < 3))) continue;
       return fmt::format(
@@ -215,7 +215,7 @@ std::string problem_of(const ModalModel& model) {
 }
 
 std::string order_problem_of(const ModalModel& model) {
-  // The lowest mode that deforms is the smoothest; higher ones may alternate from vertex to vertex as they are.
+  // The lowest flexible mode is the smoothest. Higher ones may alternate between vertices.
   const auto lowest = std::size_t(std::ranges::find_if(model.frequency, [](double f) { return f > 0; }) -
                                   model.frequency.begin());
   if (lowest == model.n_modes()) return "";

@@ -9,35 +9,35 @@
 
 namespace couplet::modes {
 
-/// What is wrong with the sizes and values of a model; empty: nothing.
+/// Reason why sizes or values of a model are invalid, or empty.
 std::string problem_of(const ModalModel& model);
-/// Whether a sound model can belong to a structure: mass above 0, no shape without motion, effective masses within the
-/// mass. Empty: nothing is wrong.
+/// Reason why a valid model cannot belong to a structure, or empty. Checks for mass above 0, shapes with
+/// motion and effective masses within the mass.
 std::string impossible_in(const ModalModel& model);
-/// Whether two modes overlap, as far as faces that carry the whole mass show it. Empty: they do not.
+/// Reports two overlapping modes, as far as faces that carry the whole mass show it. Empty if there are none.
 std::string overlap_problem_of(const ModalModel& model);
-/// Whether its shapes can be mass-normalised, as far as the surface shows the mass (a factor of about three where
-/// `face_density` stands for half of the mass or more, of a hundred otherwise). Empty: they can.
+/// Reports shapes that cannot be mass-normalized, or is empty. The tolerance is a factor of about three if
+/// `face_density` covers half of the mass or more, and of a hundred otherwise.
 std::string scale_problem_of(const ModalModel& model);
-/// Whether the rows of the shapes go vertex by vertex: shapes read in another order are rough along the edges. Empty:
-/// they do.
+/// Reports rows of the shapes in another order than the vertices, because such shapes are rough along the
+/// edges. Empty if there are none.
 std::string order_problem_of(const ModalModel& model);
-/// Whether the faces make one surface: each with different vertices, every vertex in a face, neighbours turning alike.
-/// Empty: they do. The vertices that the faces name must exist.
+/// Reports faces that do not form a surface, or is empty. Each face must have distinct vertices, every vertex
+/// a face, and neighbors the same orientation. The vertices of the faces must exist.
 std::string surface_problem_of(const ModalModel& model);
 
-/// Volume behind the faces of a surface that has two sides, above 0 where the normals point out of it [m^3]: of a closed
-/// one by the divergence theorem, of an open one (a plate's clamped rim is not part of its surface) closed by the cone
-/// from the middle of its rim. None: a sheet, of which nothing tells the front from the back.
+/// Volume behind the faces of a two-sided surface, positive if the normals point outwards [m^3]. It follows
+/// from the divergence theorem. An open surface (without a plate's clamped rim) is closed by a cone from the
+/// center of its rim. Returns nothing for a sheet, whose front and back cannot be distinguished.
 std::optional<double> volume_behind(const ModalModel& model);
 
-/// Where the normals of a structure's surface must point: out of it, or, of the wall of a cavity, into what it encloses.
+/// Required direction of the normals: out of a structure, or into the cavity that a wall encloses.
 enum class Facing { outward, inward };
 
-/// Whether the faces of a surface point to the wrong side: neighbours that do not turn alike, and every part that hangs
-/// together (vertices of its own or not) by what lies before and behind its faces: an even number of other faces lies
-/// before a face of a body, an odd one behind it, so of two sheets each looks away from the other. Where these do not
-/// tell, volume_behind() of the part. Empty: all are right, or nothing tells (a sheet alone).
+/// Reports faces that point to the wrong side or are oriented inconsistently, or is empty. Each connected
+/// part is judged by the number of other faces in front of its faces (even for a body) and behind them (odd),
+/// so two sheets face away from each other. If this is inconclusive, volume_behind() of the part decides. A
+/// single sheet is accepted.
 std::string facing_problem_of(const ModalModel& model, Facing wanted = Facing::outward);
 
 }  // namespace couplet::modes

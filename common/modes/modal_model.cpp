@@ -35,7 +35,7 @@ RigidMotion rigid_motion(const ModalModel& model, std::size_t mode) {
     inertia += r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose();
     moment += r.cross(shape(v));
   }
-  // Of sizes known at run time: of a fixed 3x3 GCC 12 takes Eigen's AVX code for a read past its end.
+  // Dynamic sizes are used because GCC 12 reports a false out-of-bounds read in Eigen's AVX code for 3x3.
   motion.rotation = Eigen::MatrixXd(inertia).completeOrthogonalDecomposition().solve(Eigen::VectorXd(moment));
   double left = 0, all = 0;
   for (std::size_t v = 0; v < n_vertices; ++v) {
@@ -70,7 +70,7 @@ std::vector<Vec3> face_areas(const ModalModel& model) {
     const Vec3 a = model.vertices[v[2]] - model.vertices[v[0]];
     const Vec3 b = v.size() == 3 ? Vec3(model.vertices[v[2]] - model.vertices[v[1]])
                                  : Vec3(model.vertices[v[3]] - model.vertices[v[1]]);
-    // A triangle: (x2 - x0) x (x2 - x1) / 2 has the sign of (x1 - x0) x (x2 - x0) / 2.
+    // For a triangle (x2 - x0) x (x2 - x1) / 2 has the sign of (x1 - x0) x (x2 - x0) / 2.
     areas.push_back(v.size() == 3 ? Vec3(0.5 * (model.vertices[v[1]] - model.vertices[v[0]]).cross(a))
                                   : Vec3(0.5 * a.cross(b)));
   }
@@ -113,7 +113,7 @@ void write(const io::hdf5::Handle& id, const char* path, const std::vector<doubl
 
 constexpr const char* what = "modes file";
 constexpr const char* advice = "docs/formats.md describes the required content.";
-constexpr std::uint64_t most_modes = 2000;  // they are compared with each other
+constexpr std::uint64_t most_modes = 2000;  // all pairs are compared
 
 std::vector<std::int64_t> read_integers(const io::hdf5::Reader& file, const char* path) {
   const std::size_t n = file.rows(path, 1);
@@ -136,7 +136,7 @@ void read_faces(const io::hdf5::Reader& file, mesh::Csr& faces) {
   faces.index.assign(vertex.begin(), vertex.end());
 }
 
-/// All that is in the file, by itself sound or not.
+/// Reads the file without checking the model.
 ModalModel read_tables(const io::hdf5::Reader& file) {
   if (file.text("/", "format") != format_name) file.refuse("it is not a modes file");
   if (const double version = file.number("/", "version"); version != format_version)
@@ -216,7 +216,7 @@ std::string key_of_modes(const std::filesystem::path& file) {
   try {
     return io::hdf5::Reader(file, what).text("/", "key");
   } catch (const Error&) {
-    return "";  // damaged or of another kind: it is made anew
+    return "";  // damaged or of another kind: recreated
   }
 }
 

@@ -20,21 +20,21 @@ namespace {
 
 using linalg::petsc_check;
 
-// Modes asked for beyond those wanted: room to place the shift of the count between two eigenvalues.
+// Additional modes, so that the shift for counting can be placed between two eigenvalues.
 constexpr int extra = 4;
-// Of the eigenvalues of the inverse: of factors, of another solver and of ratios.
+// Relative tolerances of eigenvalues of the inverse, with factors or another solver.
 constexpr double with_factors = 1e-12, with_solver = 1e-9;
-// A mode that the first search hid lies below the last found by more than rounding.
+// A mode hidden from the first search lies below the last one by more than round-off.
 constexpr double hidden_below = 1e-6;
 
-/// SLEPc ends with PETSc.
+/// Starts SLEPc, which PETSc finalizes.
 void start_slepc() {
   if (SlepcInitializeCalled) return;
   petsc_check(SlepcInitializeNoArguments());
   petsc_check(PetscRegisterFinalize(SlepcFinalize));
 }
 
-/// One search of SLEPc, with its operators.
+/// One search by SLEPc with its operators.
 class Search {
  public:
   explicit Search(const Pencil& pencil) : n_(pencil.n), pencil_(pencil) {
@@ -56,7 +56,7 @@ class Search {
 
   EPS eps() const { return eps_; }
 
-  /// Solves by Krylov-Schur.
+  /// Selects Krylov-Schur.
   void set_method(EPSWhich which, STType transformation) {
     petsc_check(EPSSetType(eps_, EPSKRYLOVSCHUR));
     petsc_check(EPSSetWhichEigenpairs(eps_, which));
@@ -74,7 +74,7 @@ class Search {
     petsc_check(PCShellSetApply(pc, linalg::precondition_shell));
   }
 
-  /// Searches beside these.
+  /// Excludes known modes from the search.
   void leave_out(std::span<const std::vector<double>> found) {
     std::vector<::Vec> vectors(found.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -88,8 +88,8 @@ class Search {
     for (::Vec& v : vectors) petsc_check(VecDestroy(&v));
   }
 
-  /// Searches for `n` and gives those that converged, in SLEPc's order. A failure of the caller's operators is thrown on
-  /// every rank alike, because they are collective.
+  /// Searches for `n` modes and returns the converged ones in SLEPc's order. Exceptions of the operators are
+  /// thrown on every rank, because the operators are collective.
   EigenModes run(GlobalIndex n, double tolerance, int restarts, double shift = 0) {
     petsc_check(EPSSetDimensions(eps_, PetscInt(n), PETSC_DEFAULT, PETSC_DEFAULT));
     petsc_check(EPSSetTolerances(eps_, tolerance, restarts));
@@ -138,7 +138,7 @@ void keep(EigenModes& modes, std::size_t n) {
   modes.shape.resize(n);
 }
 
-/// The `n` nearest to the shift, ascending, beside those given.
+/// The `n` modes closest to the shift in ascending order, without the given ones.
 EigenModes nearest(const Pencil& pencil, GlobalIndex n, double shift, double tolerance,
                    std::span<const std::vector<double>> beside = {}) {
   Search search(pencil);
@@ -157,7 +157,7 @@ EigenModes nearest(const Pencil& pencil, GlobalIndex n, double shift, double tol
   return modes;
 }
 
-/// Number of modes that end at the widest relative gap among the last ones, at least `n`.
+/// Number of modes, at least `n`, that end at the widest relative gap of the last ones.
 int widest_gap(const std::vector<double>& values, int n, double shift) {
   int best = n;
   double widest = -1;
@@ -170,7 +170,7 @@ int widest_gap(const std::vector<double>& values, int n, double shift) {
 
 EigenModes counted_modes(const Pencil& pencil, int n, double shift,
                          const std::function<GlobalIndex(double)>& count_below) {
-  // A group of equal eigenvalues may hide members from one Krylov space: more room, another try.
+  // One Krylov space may miss members of a group of equal eigenvalues, so it retries with more modes.
   const GlobalIndex rows = parallel::sum(pencil.comm, GlobalIndex(pencil.n));
   for (int more = extra; more <= 8 * extra; more *= 2) {
     EigenModes modes = nearest(pencil, std::min<GlobalIndex>(n + more, rows), shift, with_factors);
@@ -245,7 +245,7 @@ EigenModes largest_modes(const Pencil& pencil, int n) {
 
 namespace {
 
-// Share of a direction that rounding leaves of another one.
+// Fraction of a direction that round-off leaves in another one.
 constexpr double left_of_direction = 1e-10;
 
 Eigen::VectorXd times(const linalg::LinearMap& map, const Eigen::VectorXd& x) {
@@ -254,7 +254,7 @@ Eigen::VectorXd times(const linalg::LinearMap& map, const Eigen::VectorXd& x) {
   return y;
 }
 
-/// A vector with K and M times it.
+/// Vector x with K x and M x.
 struct Direction {
   Eigen::VectorXd x, k, m;
   void multiply(const Pencil& pencil) {
@@ -271,7 +271,7 @@ double dot(const Pencil& pencil, const Eigen::VectorXd& a, const Eigen::VectorXd
   return parallel::sum(pencil.comm, a.dot(b));
 }
 
-/// Scales to length 1 by M beside the others; false if nothing is left.
+/// Normalizes with respect to M, orthogonal to the others. Returns false if nothing is left.
 bool normalize(const Pencil& pencil, Direction& d, std::initializer_list<const Direction*> others) {
   const double before = dot(pencil, d.x, d.m);
   if (!(before > 0)) return false;

@@ -18,7 +18,7 @@ namespace couplet::modes {
 
 namespace {
 
-/// A face that goes along an edge, and whether from its smaller to its larger number.
+/// Face at an edge. `forward` is true if it runs from the smaller to the larger vertex number.
 struct Use {
   Index face;
   bool forward;
@@ -37,7 +37,7 @@ Edges edges_of(const mesh::Csr& faces) {
   return edges;
 }
 
-/// How far apart vertices may stand that are the same one [m].
+/// Distance up to which vertices are considered equal [m].
 double same_place(const ModalModel& model) {
   double shortest = std::numeric_limits<double>::infinity();
   for (Index f = 0; f < model.faces.size(); ++f) {
@@ -49,7 +49,7 @@ double same_place(const ModalModel& model) {
   return std::min(1e-6 * extent_of(model).norm(), 0.01 * shortest);
 }
 
-/// Of each vertex the smallest number that stands at its place.
+/// Smallest vertex number at the position of each vertex.
 std::vector<Index> places_of(const ModalModel& model) {
   const double distance = same_place(model);
   const base::PointTree tree(model.vertices);
@@ -62,11 +62,11 @@ std::vector<Index> places_of(const ModalModel& model) {
   return place;
 }
 
-/// The faces of a surface with one number for all vertices that stand at the same place (to 1e-6 of the surface's size and
-/// a hundredth of its shortest edge): another program may write them once for every face or every part.
+/// Surface whose vertices at one position are merged (to 1e-6 of its size and 1/100 of its shortest edge),
+/// because other programs may duplicate them for every face or part.
 struct WeldedSurface {
-  mesh::Csr faces;  ///< numbers of places in place of vertices; those left with fewer than 3 are empty
-  std::vector<std::vector<Index>> part;  ///< faces of each part that hangs together by its edges
+  mesh::Csr faces;                       ///< merged vertex numbers; faces with fewer than 3 are empty
+  std::vector<std::vector<Index>> part;  ///< faces of each part connected by edges
 };
 
 WeldedSurface weld(const ModalModel& model) {
@@ -80,7 +80,7 @@ WeldedSurface weld(const ModalModel& model) {
     if (corners.size() < 3) corners.clear();
     welded.faces.push_row(corners);
   }
-  // Bodies that touch have edges of four faces: there only faces with the same vertices belong together.
+  // Touching bodies have edges of four faces, where only faces with the same vertices are connected.
   base::DisjointSets groups(Index(model.faces.size()));
   for (const auto& [edge, uses] : edges_of(model.faces))
     for (const Use& use : uses) groups.join(uses.front().face, use.face);
@@ -95,8 +95,8 @@ WeldedSurface weld(const ModalModel& model) {
   return welded;
 }
 
-/// Tells whether two faces that meet along an edge, be it by vertices of their own, do not turn alike. Where more than two faces
-/// meet nothing is said: they may be bodies that touch.
+/// Reports two faces at an edge (possibly with duplicate vertices) with different orientation. More than two
+/// faces may belong to touching bodies and are skipped.
 std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& welded) {
   for (const auto& [edge, uses] : edges_of(welded.faces)) {
     if (uses.size() != 2 || uses[0].forward != uses[1].forward) continue;
@@ -109,11 +109,11 @@ std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& w
   return "";
 }
 
-/// A surface whose area vectors add up to more than this share of its area is a sheet: those of a closed one cancel,
-/// of a plate they leave the missing rim, of half of a tube 0.64.
+/// Relative sum of area vectors above which a surface is a sheet. It is zero for a closed surface, equals the
+/// missing rim for a plate, and is 0.64 for half a tube.
 constexpr double sheet_share = 0.25;
 
-/// The middle of the edges that one face alone has; none: the surface is closed.
+/// Center of the edges that belong to only one face. Nothing for a closed surface.
 std::optional<Vec3> middle_of_rim(const ModalModel& model) {
   Vec3 sum = Vec3::Zero();
   double length = 0;
@@ -139,7 +139,7 @@ std::string surface_problem_of(const ModalModel& model) {
         return fmt::format("face {} refers to vertex {} twice", f + 1, *v);
     }
   }
-  // More than two faces at an edge may be two bodies that touch there: they turn alike in pairs.
+  // More than two faces at an edge may belong to touching bodies, which are oriented consistently in pairs.
   for (const auto& [edge, uses] : edges_of(model.faces)) {
     const bool forward = uses.front().forward;
     if (uses.size() > 1 && std::ranges::all_of(uses, [&](const Use& u) { return u.forward == forward; }))
@@ -172,7 +172,7 @@ std::optional<double> volume_behind(const ModalModel& model) {
   };
   const std::optional<Vec3> rim = middle_of_rim(model);
   if (!rim) return about(middle);
-  // Where the rim is wide and bent the cone is a guess: what the surface's own middle sees must have the same sign.
+  // For a wide, curved rim the cone is only a guess, so the center of the surface must give the same sign.
   const double by_rim = about(*rim), by_middle = about(middle);
   if ((by_rim > 0) != (by_middle > 0)) return std::nullopt;
   return by_rim;
@@ -180,7 +180,7 @@ std::optional<double> volume_behind(const ModalModel& model) {
 
 namespace {
 
-/// Where a line meets a triangle, in its direction's lengths; NaN: nowhere [Moeller and Trumbore 1997].
+/// Intersection of a line with a triangle in units of `along`, or NaN [Moeller and Trumbore 1997].
 double meeting(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, p = along.cross(ac);
   const double none = std::numeric_limits<double>::quiet_NaN(), determinant = ab.dot(p);
@@ -191,14 +191,14 @@ double meeting(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b
   return ac.dot(q) / determinant;
 }
 
-/// What a line along the normal of a face meets of the surface.
+/// Intersections of the surface with a line along the normal of a face.
 struct Crossings {
-  int before = 0, behind = 0;                       // faces
-  bool other_before = false, other_behind = false;  // of another part
-  bool touches = false;  // a face in the same place: of a body that touches, or twice
+  int before = 0, behind = 0;                       // number of faces
+  bool other_before = false, other_behind = false;  // with another part
+  bool touches = false;  // a face at the same position: a touching body, or a duplicate
 };
 
-/// What says on which side of its faces a part lies, by areas [m^2].
+/// Areas that vote for the orientation of a part [m^2].
 struct Votes {
   double outward = 0, inward = 0, all = 0;
 };
@@ -212,7 +212,7 @@ class Sides {
     near_ = 1e-9 * extent_of(model).norm();
   }
 
-  /// Of at most so many faces of a part, evenly among all.
+  /// Votes of at most `samples` faces of a part, evenly distributed.
   Votes of(std::size_t part, std::size_t samples) const {
     const std::vector<Index>& faces = welded_.part[part];
     const bool sheet = is_sheet(faces);
@@ -225,14 +225,14 @@ class Sides {
       const Crossings seen = crossings(f);
       const bool before = seen.before % 2 == 1, behind = seen.behind % 2 == 1;
       if (seen.touches || before == behind) continue;
-      // A bent sheet that meets itself has no side for that.
+      // A curved sheet does not define a side by intersecting itself.
       if (sheet && !(before ? seen.other_before : seen.other_behind)) continue;
       (before ? votes.inward : votes.outward) += area;
     }
     return votes;
   }
 
-  /// Volume behind a part by itself.
+  /// Volume behind a single part.
   std::optional<double> volume(std::size_t part) const {
     ModalModel alone;
     alone.vertices = model_.vertices;
@@ -241,7 +241,7 @@ class Sides {
     return volume_behind(alone);
   }
 
-  /// Its words in a message.
+  /// Description of a part in a message.
   std::string name(std::size_t part) const {
     if (welded_.part.size() == 1) return "its faces";
     Vec3 middle = Vec3::Zero();
@@ -266,7 +266,7 @@ class Sides {
     return left.norm() > sheet_share * area;
   }
 
-  /// From a place in the face that no edge of a face opposite is likely to meet.
+  /// Starts at a point of the face that is unlikely to be opposite an edge.
   Crossings crossings(Index face) const {
     const auto corners = model_.faces[face];
     const Vec3 from = 0.41 * model_.vertices[corners[0]] + 0.33 * model_.vertices[corners[1]] +
@@ -298,7 +298,7 @@ class Sides {
   double near_ = 0;
 };
 
-/// Of one part. Empty: it is right, or nothing tells.
+/// Reports a wrong orientation of one part. Empty if it is right or undetermined.
 std::string part_problem(const Sides& sides, std::size_t part, std::size_t samples, Facing wanted) {
   constexpr const char* rule = "(the vertices of a face must turn right-handed about its outward normal)";
   const Votes votes = sides.of(part, samples);

@@ -23,14 +23,14 @@ double sum(MPI_Comm comm, double value);
 double max(MPI_Comm comm, double value);
 double min(MPI_Comm comm, double value);
 GlobalIndex sum(MPI_Comm comm, GlobalIndex value);
-/// True on every rank if it is true on any.
+/// Returns true on every rank if `value` is true on any.
 bool any(MPI_Comm comm, bool value);
 /// Sum over the ranks before this one (0 on rank 0).
 GlobalIndex exclusive_scan(MPI_Comm comm, GlobalIndex value);
 
 void broadcast(MPI_Comm comm, std::string& text, int root = 0);
 void broadcast(MPI_Comm comm, std::vector<std::string>& texts);
-/// Rank 0's values on every rank, in pieces that MPI's int counts can hold. Collective.
+/// Broadcasts rank 0's values, in pieces that fit MPI's int counts. Collective.
 template <class T>
 void broadcast(MPI_Comm comm, std::vector<T>& values) {
   GlobalIndex size = static_cast<GlobalIndex>(values.size());
@@ -42,11 +42,11 @@ void broadcast(MPI_Comm comm, std::vector<T>& values) {
     MPI_Bcast(data + at, static_cast<int>(std::min(piece, bytes - at)), MPI_BYTE, 0, comm);
 }
 
-/// Throws the text of the lowest rank that has one, on every rank; does nothing if all are empty. Collective.
+/// Throws the text of the lowest rank that has one on every rank. Does nothing if all are empty. Collective.
 void throw_together(MPI_Comm comm, const std::string& text);
 
-/// Runs `work` on every rank and returns its result; what it throws on the lowest rank that throws is thrown on all, as Error
-/// with the same text. `work` must not use MPI. Collective.
+/// Runs `work` on every rank and returns its result. The exception of the lowest rank that throws is thrown
+/// on all, as Error with the same text. `work` must not use MPI. Collective.
 template <class Work>
 auto on_all(MPI_Comm comm, Work&& work) {
   using Result = decltype(work());
@@ -63,7 +63,7 @@ auto on_all(MPI_Comm comm, Work&& work) {
   throw_together(comm, trouble);
   if constexpr (!std::is_void_v<Result>) return result;
 }
-/// Likewise, on rank 0 only.
+/// Runs `work` likewise, but only on rank 0.
 template <class Work>
 void on_root(MPI_Comm comm, Work&& work) {
   on_all(comm, [&] {
@@ -81,18 +81,18 @@ std::vector<T> from_bytes(const std::vector<char>& bytes) {
 }
 }  // namespace detail
 
-/// All values of all ranks, rank by rank, on every rank. Any trivially copyable T.
+/// Gathers the values of all ranks, rank by rank, on every rank. T must be trivially copyable.
 template <class T>
 std::vector<T> all_gather(MPI_Comm comm, const std::vector<T>& local) {
   return detail::from_bytes<T>(detail::gather_bytes(comm, local.data(), local.size() * sizeof(T), true));
 }
-/// The same on rank 0 only (empty elsewhere).
+/// Gathers the values on rank 0 only (empty elsewhere).
 template <class T>
 std::vector<T> gather(MPI_Comm comm, const std::vector<T>& local) {
   return detail::from_bytes<T>(detail::gather_bytes(comm, local.data(), local.size() * sizeof(T), false));
 }
 
-/// What goes to each rank, or came from each, rank by rank in one array: rank r's items are [first[r], first[r + 1]).
+/// Items to or from each rank in one array: those of rank r are [first[r], first[r + 1]).
 template <class T>
 struct Parcels {
   std::vector<T> items;
@@ -103,7 +103,7 @@ struct Parcels {
   std::span<T> of(int rank) { return {items.data() + first[rank], first[rank + 1] - first[rank]}; }
 };
 
-/// Room for `count[r]` items to each rank.
+/// Allocates `count[r]` items for each rank.
 template <class T>
 Parcels<T> make_parcels(const std::vector<std::size_t>& count) {
   Parcels<T> parcels;
@@ -113,7 +113,7 @@ Parcels<T> make_parcels(const std::vector<std::size_t>& count) {
   return parcels;
 }
 
-/// `items` by the rank that `rank_of` gives each, in their order.
+/// Sorts `items` by the rank that `rank_of` returns, in their order.
 template <class T, class RankOf>
 Parcels<T> sort_by_rank(MPI_Comm comm, const std::vector<T>& items, RankOf&& rank_of) {
   std::vector<std::size_t> count(comm_size(comm), 0);
@@ -124,7 +124,7 @@ Parcels<T> sort_by_rank(MPI_Comm comm, const std::vector<T>& items, RankOf&& ran
   return parcels;
 }
 
-/// Sends each rank its parcel and gives what came from each; T is copied byte by byte. Collective.
+/// Sends each rank its parcel and returns those received. T is copied byte by byte. Collective.
 template <class T>
 Parcels<T> exchange(MPI_Comm comm, const Parcels<T>& out) {
   const int size = comm_size(comm);
@@ -148,7 +148,7 @@ Parcels<T> exchange(MPI_Comm comm, const Parcels<T>& out) {
   return in;
 }
 
-/// Does the same with one list per rank: send[r] goes to rank r, the result holds at [r] what rank r sent here.
+/// Does the same with one list per rank: send[r] goes to rank r, and result[r] comes from rank r.
 template <class T>
 std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vector<T>>& send) {
   std::vector<std::size_t> count;

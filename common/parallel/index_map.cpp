@@ -11,18 +11,18 @@
 
 namespace couplet::parallel {
 
-/// Who sends what to whom. Messages are packed rank by rank; both sides keep the same order.
+/// Communication pattern. Messages are packed rank by rank, in the same order on both sides.
 struct IndexMap::Exchange {
   struct Peer {
     int rank;
     std::vector<Index> entries;
   };
   MPI_Comm comm = MPI_COMM_NULL;
-  std::vector<Peer> owned_for;  // entries of mine that others hold as ghosts
+  std::vector<Peer> owned_for;  // own entries that others hold as ghosts
   std::vector<Peer> ghosts_of;  // ghosts here that others own
   static constexpr int tag = 7001;
 
-  /// Sends entries of `size` bytes and calls unpack(entry, its bytes) for those that come.
+  /// Sends entries of `size` bytes and calls unpack(entry, its bytes) for received ones.
   template <class Unpack>
   void run(const std::vector<Peer>& from, const std::vector<Peer>& to, std::span<const std::byte> values,
            std::size_t size, Unpack&& unpack) const {
@@ -125,7 +125,7 @@ GlobalIndex largest(MPI_Comm comm, std::span<const GlobalIndex> ids) {
 GlobalOrder::GlobalOrder(MPI_Comm comm, std::span<const GlobalIndex> ids, std::size_t n_owned)
     : GlobalOrder(comm, ids, first_of(ids.size(), n_owned)) {}
 
-// Rank r has the numbers [r, r + 1) chunk: its block are those of them that exist, in ascending order.
+// Rank r has the existing numbers in [r, r + 1) chunk as its block, ascending.
 GlobalOrder::GlobalOrder(MPI_Comm comm, std::span<const GlobalIndex> ids, const std::vector<char>& owned)
     : comm_(comm), n_local_(ids.size()) {
   const auto ranks = static_cast<std::size_t>(comm_size(comm));
@@ -170,7 +170,7 @@ GlobalOrder GlobalOrder::by_numbers(MPI_Comm comm, std::span<const GlobalIndex> 
   if (any(comm, ids.size() != n)) return as_they_are(comm, n);
   try {
     return {comm, ids, n};
-  } catch (const Error&) {  // on all ranks alike
+  } catch (const Error&) {  // on all ranks
     return as_they_are(comm, n);
   }
 }

@@ -13,14 +13,13 @@
 
 namespace couplet::parallel {
 
-/// Which entries of a distributed array live here: the owned ones first, then the ghosts (copies of entries
-/// that another rank owns), and how to refresh the ghosts. Owned entries carry contiguous global numbers,
-/// rank by rank, as PETSc wants them.
+/// Local part of a distributed array: owned entries, then ghosts (copies of entries of other ranks), with
+/// their updates. Owned entries have contiguous global numbers, rank by rank, as PETSc requires.
 class IndexMap {
  public:
   IndexMap() = default;
-  /// Collective. `ghost_owner[g]`: the rank that owns ghost g; `ghost_remote[g]`: its local (owned) index
-  /// there.
+  /// `ghost_owner[g]` is the rank that owns ghost g, `ghost_remote[g]` its local (owned) index there.
+  /// Collective.
   IndexMap(MPI_Comm comm, Index n_owned, const std::vector<int>& ghost_owner,
            const std::vector<Index>& ghost_remote);
 
@@ -34,13 +33,12 @@ class IndexMap {
   GlobalIndex global(Index local) const { return global_[local]; }
   const std::vector<GlobalIndex>& global() const { return global_; }
 
-  /// Overwrites the ghosts with their owners' values. `values`: n_local x components, entry by entry.
-  /// Collective.
+  /// Copies the owners' values to the ghosts. `values` has n_local x components. Collective.
   void update_ghosts(std::span<double> values, int components = 1) const;
   void update_ghosts(std::span<GlobalIndex> values) const;
-  /// The same of anything that may be copied byte by byte, `size` bytes an entry.
+  /// Overload for trivially copyable entries of `size` bytes.
   void update_ghosts(std::span<std::byte> values, std::size_t size) const;
-  /// Adds the ghosts' values into their owners (and leaves the ghosts as they are). Collective.
+  /// Adds the ghosts' values to their owners without changing the ghosts. Collective.
   void add_to_owners(std::span<double> values, int components = 1) const;
 
  private:
@@ -51,45 +49,45 @@ class IndexMap {
   std::shared_ptr<const Exchange> exchange_;
 };
 
-/// The order of a distributed array by numbers of its entries that do not depend on the ranks. Each rank has one block of
-/// rows of that order, so that all blocks, rank by rank, are the array as one rank alone would have it: what files hold.
-/// No rank holds more than its block and its own entries.
+/// Order of a distributed array by numbers that do not depend on the partition. Each rank has one block of
+/// rows. All blocks together, rank by rank, are the array as a single rank would store it, as in files. No
+/// rank holds more than its block and its own entries.
 class GlobalOrder {
  public:
   GlobalOrder() = default;
-  /// `ids`: the number (0 or more) of each entry of this rank, of which the first `n_owned` are its own: each number is
-  /// owned by one rank. Throws Error on all ranks if that is not so. Collective.
+  /// `ids` holds the number (0 or more) of each entry, of which the first `n_owned` are owned. Each number
+  /// must be owned by one rank; otherwise throws Error on all ranks. Collective.
   GlobalOrder(MPI_Comm comm, std::span<const GlobalIndex> ids, std::size_t n_owned);
-  /// `owned`: which entries are this rank's own.
+  /// `owned` flags the entries that this rank owns.
   GlobalOrder(MPI_Comm comm, std::span<const GlobalIndex> ids, const std::vector<char>& owned);
-  /// The n entries of each rank, rank by rank, in the order in which they are.
+  /// Concatenates the n entries of each rank in their current order.
   static GlobalOrder as_they_are(MPI_Comm comm, std::size_t n);
-  /// By these numbers, of entries that are all this rank's own, or, where they are missing or not unique, of the n entries as
-  /// they are: numbers that a guest program may give or not. Collective.
+  /// Orders entries owned by this rank by their numbers. If numbers are missing or not unique, as from a
+  /// guest program, the current order is kept. Collective.
   static GlobalOrder by_numbers(MPI_Comm comm, std::span<const GlobalIndex> ids, std::size_t n);
-  /// Rows that stand rank by rank with these numbers, this rank reading as many as it has entries; its entries, all its own, have
-  /// the numbers `ids`. Gives the order of the rows, or none where they stand as the entries do. Throws Error on all ranks if the
-  /// numbers are not the same ones. Collective.
+  /// Order of rows that are stored rank by rank with the numbers `rows`, as many as this rank's (owned)
+  /// entries with the numbers `ids`. Returns nothing if both orders agree. Throws Error on all ranks if the
+  /// sets of numbers differ. Collective.
   static std::optional<GlobalOrder> of_rows(MPI_Comm comm, std::span<const GlobalIndex> rows,
                                             std::span<const GlobalIndex> ids);
 
   std::size_t n_local() const { return n_local_; }
   GlobalIndex n_global() const { return n_global_; }
-  /// This rank's block.
+  /// First row and number of rows of this rank's block.
   GlobalIndex first() const { return first_; }
   std::size_t count() const { return count_; }
 
-  /// From `width` values per entry of this rank, its own entries' counting, to its block. Collective.
+  /// Sends the owned entries of `values` (`width` per local entry) to the blocks. Collective.
   std::vector<double> to_block(std::span<const double> values, std::size_t width) const;
-  /// From the blocks to the entries of this rank, those that it does not own, too. Collective.
+  /// Sends rows of the blocks to all entries of this rank, including ghosts. Collective.
   std::vector<double> from_block(std::span<const double> block, std::size_t width) const;
 
  private:
   MPI_Comm comm_ = MPI_COMM_SELF;
   std::size_t n_local_ = 0, count_ = 0;
   GlobalIndex first_ = 0, n_global_ = 0;
-  // By rank: entries here whose rows lie in that rank's block, and which of them are owned; rows of the block here of that
-  // rank's entries, in its order.
+  // By rank: local entries whose rows are in that rank's block, and which of them are owned; local rows of
+  // that rank's entries, in its order.
   std::vector<std::vector<Index>> entries_, rows_;
   std::vector<std::vector<char>> owned_, owned_there_;
 };

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-// What a user's files and variables choose is read in client/transports.cpp, too: change both.
+// client/transports.cpp reads the user's files and variables in the same way. Change both.
 namespace couplet::parallel {
 namespace {
 
@@ -19,7 +19,7 @@ bool has_variable_like(std::string_view prefix) {
   return false;
 }
 
-/// Whether a line of the file sets one of the parameters that are set here.
+/// Returns true if a line of the file sets one of the parameters that are set here.
 bool speaks_of_transports(const std::filesystem::path& file) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -27,7 +27,7 @@ bool speaks_of_transports(const std::filesystem::path& file) {
     if (first == std::string::npos || line[first] == '#') continue;
     const std::string name = line.substr(first, line.find_first_of(" \t=", first) - first);
     if (name != "pml" && name != "btl" && name != "mtl" && name != "ess") continue;
-    // "btl = ^openib" only leaves something out, as distributions do: what is set here is not among it.
+    // "btl = ^openib" only excludes transports, as distributions do, none of which is set here.
     const std::size_t value = line.find_first_not_of(" \t=", first + name.size());
     if (value != std::string::npos && line[value] != '^') return true;
   }
@@ -55,12 +55,12 @@ void prepare_mpi_start() {
   if ((!alone && !on_one_machine) || user_has_chosen()) return;
   if (alone) {
     ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    // All isolated programs of a user are job 0 and would share one session folder, which the first to end removes
-    // while the next one starts in it; a program alone needs neither that folder nor shared memory.
+    // All isolated programs of a user are job 0 and share a session folder, which the first to end removes
+    // while the next one starts. A program alone needs neither that folder nor shared memory.
     ::setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   }
-  // Shared file pointers are not used; the default keeps one in the launcher's session folder, which is gone as soon as a
-  // process of the job dies: the others would fail when they open a file and end the job before the culprit is named.
+  // Shared file pointers are not used. By default one is in the launcher's session folder, which vanishes
+  // when a process of the job dies. The others would then fail to open files before the cause is reported.
   ::setenv("OMPI_MCA_sharedfp", "individual", 0);
   ::setenv("OMPI_MCA_pml", "ob1", 0);
   ::setenv("OMPI_MCA_btl", alone ? "self" : "self,vader", 0);

@@ -11,7 +11,7 @@
 namespace couplet::time {
 namespace {
 
-// "Of late" is about this part of the time that has gone by.
+// Fraction of the elapsed time that counts as recent.
 constexpr double window = 0.25;
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 constexpr Levels x{1, 0, 0, 0, 0, 0}, u{0, 1, 0, 0, 0, 0}, v{0, 0, 1, 0, 0, 0}, a{0, 0, 0, 1, 0, 0},
     u_old{0, 0, 0, 0, 1, 0}, v_old{0, 0, 0, 0, 0, 1};
 
-// The first part of a Bathe step: both parts then have the same matrix.
+// Length of the first part of a Bathe step, for which both parts have the same matrix.
 constexpr double bathe_part = 2 - std::numbers::sqrt2;
 
 const std::vector<std::pair<std::string, TimeScheme>> scheme_words{
@@ -33,7 +33,7 @@ Stage euler(double dt) {
   return s;
 }
 
-// The derivative at the end of the parabola through three levels, applied twice.
+// Derivative at the end of the parabola through three levels, applied twice.
 Stage three_point(double start, double dt, double dt_old) {
   Stage s{.start = start, .dt = dt};
   const double c1 = dt / (dt_old * (dt + dt_old)), c2 = -(dt + dt_old) / (dt * dt_old),
@@ -63,7 +63,7 @@ struct Alpha {
         beta(0.25 * (1 - m + f) * (1 - m + f)) {}
 };
 
-// Inertia at t^{n+1} - m dt, everything else at t^{n+1} - f dt; Newmark's relations between the levels.
+// Inertia at t^{n+1} - m dt, all other terms at t^{n+1} - f dt, with Newmark's relations between the levels.
 Stage generalised_alpha(double dt, double spectral_radius) {
   const Alpha alpha(spectral_radius);
   Stage s{.dt = dt, .place = 1 - alpha.f};
@@ -147,8 +147,8 @@ std::string name(TimeScheme scheme) {
 namespace {
 
 using Complex = std::complex<double>;
-using Row =
-    Eigen::Matrix<Complex, 1, 5>;  // a value as a combination of u, v, a, u_old, v_old at the step's start
+// Linear combination of u, v, a, u_old, v_old at the start of the step.
+using Row = Eigen::Matrix<Complex, 1, 5>;
 using Step = Eigen::Matrix<Complex, 5, 5>;
 
 Row combine(const Levels& l, const Row& x, const Step& levels) {
@@ -158,14 +158,14 @@ Row combine(const Levels& l, const Row& x, const Step& levels) {
 
 }  // namespace
 
-// Each stage: a + alpha v + lambda (x + beta v) = 0 gives x as a combination of the levels before it.
+// In each stage, a + alpha v + lambda (x + beta v) = 0 gives x as a combination of the previous levels.
 double amplification(const TimeSchemeParameters& scheme, double dt, Complex eigenvalue,
                      const RayleighCoefficients& damping) {
   const Row nothing = Row::Zero();
   const Complex by_rate = damping.mass + eigenvalue * damping.stiffness;
   Step levels = Step::Identity();
   const Row start_u = levels.row(0), start_v = levels.row(1);
-  // After the start-up: what a step does for ever.
+  // Uses regular steps after the startup.
   for (const Stage& s : second_order_stages(scheme, dt, {2, dt})) {
     if (s.start > 0) levels.row(3) = start_u, levels.row(4) = start_v;
     const Row known = combine(s.acceleration, nothing, levels) + by_rate * combine(s.rate, nothing, levels);
@@ -177,7 +177,7 @@ double amplification(const TimeSchemeParameters& scheme, double dt, Complex eige
   levels.row(3) = start_u, levels.row(4) = start_v;
   if (!uses_acceleration(scheme.type)) levels.row(2).setZero();
   if (!uses_old_level(scheme.type)) levels.bottomRows(2).setZero();
-  // Scaled so that rates and values are alike, which the eigenvalues do not notice but their rounding does.
+  // Scales rates and values to similar size, which reduces the round-off of the eigenvalues.
   const Eigen::Matrix<Complex, 5, 1> size{1, dt, dt * dt, 1, dt};
   const Step scaled = size.asDiagonal() * levels * size.cwiseInverse().asDiagonal();
   return Eigen::ComplexEigenSolver<Step>(scaled, false).eigenvalues().cwiseAbs().maxCoeff();

@@ -9,20 +9,20 @@
 
 namespace couplet::time {
 
-/// automatic: chosen by the equation that is integrated, which then passes one of the others to the functions below.
+/// `automatic` lets the equation choose; it then passes one of the others to the functions below.
 enum class TimeScheme { automatic, euler, three_point, trapezoidal, bathe, generalised_alpha };
 
 struct TimeSchemeParameters {
   TimeScheme type = TimeScheme::trapezoidal;
-  double spectral_radius = 0.8;  // of generalised-alpha: what is left of the highest modes after a step
+  double spectral_radius = 0.8;  // of generalised-alpha: amplification of the highest modes per step
 };
 
-/// The keys of `time-scheme` of an equation with second time derivatives. `automatic`: what `auto` chooses, for the document; empty: no such
-/// word.
+/// Declares the keys of `time-scheme` for second-order equations. `automatic` documents the choice of `auto`;
+/// if it is empty, `auto` is not allowed.
 void declare(config::Section& section, TimeSchemeParameters& parameters, const std::string& automatic = "");
 
-/// A linear combination of what a stage knows: its unknown x (a value within the stage), value, rate and
-/// acceleration at the start of the stage, value and rate one level further back.
+/// Linear combination of the values known in a stage: its unknown x (a value within the stage), value, rate
+/// and acceleration at its start, and value and rate one level further back.
 struct Levels {
   double x = 0, u = 0, v = 0, a = 0, u_old = 0, v_old = 0;
 
@@ -35,39 +35,39 @@ struct Levels {
   friend Levels operator-(const Levels& p, const Levels& q) { return p + -1.0 * q; }
 };
 
-/// One implicit solve: equilibrium is asked for at t + place * dt, where the value is the unknown x and rate
-/// and acceleration are these combinations; the end values follow from it.
+/// One implicit solve. Equilibrium holds at t + place * dt, where the value is the unknown x, and rate and
+/// acceleration are these combinations. The end values follow from it.
 struct Stage {
   double start = 0;  ///< after the start of the step [s]
   double dt = 0;     ///< length of the stage [s]
-  double place = 1;  ///< of the unknown and of the loads: 1/2 the middle of the stage, 1 its end
+  double place = 1;  ///< of the unknown and the loads: 1/2 at the middle of the stage, 1 at its end
   Levels rate{}, acceleration{};
   Levels end_value{}, end_rate{}, end_acceleration{};
-  /// Acceleration lives at the end of the stage; if not, it is the mean over the stage (trapezoidal rule).
+  /// True if the acceleration belongs to the end of the stage, false if it is the mean over it (trapezoidal
+  /// rule).
   bool acceleration_at_end = true;
 };
 
-/// What lies behind a step.
+/// Previous steps of the run.
 struct StepHistory {
-  int steps = 0;      ///< accepted so far; 0: there is no level further back
-  double dt_old = 0;  ///< of the last step [s]
+  int steps = 0;      ///< accepted so far; 0 if there is no previous level
+  double dt_old = 0;  ///< length of the last step [s]
 };
 
-/// The stages of a step for M u'' + C u' + K u = F:
+/// Stages of a step for M u'' + C u' + K u = F:
 ///   euler             backward, thesis (2.44)
 ///   three-point       backward with variable steps, thesis (2.46)-(2.47)
 ///   trapezoidal       thesis (2.45) with its erratum, as the mid-point rule: x at t + dt/2, u^{n+1} = 2x - u^n
 ///   bathe             trapezoidal over (2 - sqrt 2) dt, then three-point over the rest: both have the same matrix
 ///   generalised-alpha [chung1993], the acceleration is part of the state
 /// The first step of three-point and generalised-alpha, which need more than the initial values, is a
-/// trapezoidal one. Uses of u_old, v_old (three-point) and a (generalised-alpha) are told by the functions
-/// below.
+/// trapezoidal one. The functions below state if a scheme uses u_old, v_old or a.
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,
                                        const StepHistory& history);
 
-/// The scheme needs the level before the last one at the start of a step.
+/// Returns true if the scheme needs the level before the last one at the start of a step.
 bool uses_old_level(TimeScheme scheme);
-/// The scheme needs the acceleration at the start of a step.
+/// Returns true if the scheme needs the acceleration at the start of a step.
 bool uses_acceleration(TimeScheme scheme);
 
 /// Local error of a step: constant * dt^(order + 1) * the (order + 1)-th derivative of the value.
@@ -85,15 +85,14 @@ struct RayleighCoefficients {
   double stiffness = 0;  ///< [s]
 };
 
-/// Largest factor by which a step of size dt multiplies free vibration in a mode of M^-1 K with this
-/// eigenvalue [1/s^2]: the spectral radius of the scheme's step. A nonsymmetric K may have complex
-/// eigenvalues.
+/// Spectral radius of the scheme: largest factor by which a step dt multiplies free vibration in a mode of
+/// M^-1 K with this eigenvalue [1/s^2]. A nonsymmetric K may have complex eigenvalues.
 double amplification(const TimeSchemeParameters& scheme, double dt, std::complex<double> eigenvalue,
                      const RayleighCoefficients& damping = {});
 
-/// Exponential rate at which u'' = -eigenvalue u grows [1/s]: |Im sqrt(eigenvalue)|.
+/// Exponential growth rate of u'' = -eigenvalue u [1/s]: |Im sqrt(eigenvalue)|.
 double growth_rate(std::complex<double> eigenvalue);
-/// The same of the discrete step: ln(amplification) / dt [1/s].
+/// Growth rate of the discrete step: ln(amplification) / dt [1/s].
 double growth_rate(const TimeSchemeParameters& scheme, double dt, std::complex<double> eigenvalue,
                    const RayleighCoefficients& damping = {});
 

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: Apache-2.0
-! preCICE's interface of version 3 for Fortran: explicit interfaces of the calls that fortran_binding.cpp defines. A program
-! compiles this file itself, so that any compiler may be used.
+! Version 3 of preCICE's Fortran interface: explicit interfaces of the calls in fortran_binding.cpp. A program compiles
+! this file itself, so that any compiler may be used.
 module precice
   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_char
   implicit none

@@ -15,7 +15,7 @@ Names are loaded on first use: a participant needs only mpi4py and numpy."""
 from couplet import lazy
 from couplet.transports import choose
 
-choose()  # before anybody starts MPI
+choose()  # must precede MPI_Init
 
 _PLACES = {
     "participant": ("Client",),

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of fields by matplotlib: displaced two-dimensional cells, in three dimensions the outer faces; patches over the arc length,
-in three dimensions their faces."""
+"""Plots fields with matplotlib: displaced 2-D cells or, in 3-D, outer faces; patches over the arc length or, in 3-D, their faces."""
 import pathlib
 
 import numpy as np
@@ -16,12 +15,12 @@ MOST_FACES = 60000
 
 
 def is_shape(name):
-    """A field of largest length 1 without a scale: how a body buckles."""
+    """Returns true for a mode shape of maximum length 1, such as a buckling mode."""
     return name.startswith("buckling-")
 
 
 def series_of(folder, name):
-    """With this field, of a participant's folder or of the first participant below an output folder that has fields."""
+    """Series with this field in a participant's folder, or of the first participant with fields below an output folder."""
     for place in (folder, *sorted(p for p in folder.iterdir() if p.is_dir())):
         try:
             return find_series(place, SHAPES if is_shape(name) else "*.h5")
@@ -31,7 +30,7 @@ def series_of(folder, name):
 
 
 def surface_of(folder, patch):
-    """Of a participant's folder or of the first participant below an output folder that wrote this patch."""
+    """Surface of a participant's folder, or of the first participant that wrote this patch below an output folder."""
     places = [folder, *sorted(p for p in folder.iterdir() if p.is_dir())]
     for place in places:
         if patch in surface_names(place):
@@ -41,7 +40,7 @@ def surface_of(folder, patch):
 
 
 def values_of(series, i, name, component):
-    """One number per cell: a component, or the magnitude of a vector; of points the mean over the cell."""
+    """One number per cell: a component or the magnitude of a vector; for points the mean over the cell."""
     expect(name in series.names(i), f"there is no field '{name}'; there are: {', '.join(series.names(i))}")
     field = np.asarray(series.field(i, name), float)
     field = field[:, None] if field.ndim == 1 else field
@@ -54,21 +53,21 @@ def values_of(series, i, name, component):
 
 
 def places_of(series, i, warp, name):
-    """Points where they are: as they were written, with a displacement the reference points and `warp` times that, of a shape a tenth of the
-    body's size away."""
+    """Positions of the points: as written; for a displacement the reference points plus `warp` times it; for a shape displaced by a tenth of the
+    body's size."""
     points = np.array(series.coordinates(i), float)
     if is_shape(name):
         move = np.asarray(series.field(i, name), float)[:, :points.shape[1]]
         points[:, :move.shape[1]] += 0.1 * warp * np.ptp(points, axis=0).max() / np.linalg.norm(move, axis=1).max() * move
     elif "displacement" in series.names(i) and series.is_at_points(i, "displacement"):
-        points = np.array(series.reference(), float)  # the written ones are where the body is: with the displacement once
+        points = np.array(series.reference(), float)  # the written points already include the displacement
         move = np.asarray(series.field(i, "displacement"), float)
         points[:, :move.shape[1]] += warp * move[:, :points.shape[1]]
     return points
 
 
 def outer_faces(series):
-    """[(points, cell)] of the faces that one cell alone has."""
+    """[(points, cell)] of the faces that belong to only one cell."""
     seen = {}
     for number, cell in enumerate(series.cells):
         for face in FACES[len(cell)]:
@@ -90,7 +89,7 @@ def in_plane(figure, points, series, values):
 
 
 def along(figure, points, surface, values, i):
-    """A line over the arc length of the patch, one for each part of it."""
+    """Plots over the arc length of the patch, with one line per part."""
     axes = figure.add_subplot()
     begin = 0.0
     for edges, corners in surface.chains(i):
@@ -132,7 +131,7 @@ def new_figure(width, height, dpi):
 
 
 def saved(figure, title, picture):
-    """Names the first axes, writes the picture; gives its path."""
+    """Adds the title and writes the picture. Returns its path."""
     import matplotlib.pyplot as plt
     figure.axes[0].set_title(title, fontsize=10)
     figure.savefig(picture)
@@ -161,7 +160,7 @@ def draw_surface(folder, name, patch, picture=None, at=None, component=None, war
 
 
 def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110):
-    """Draws a field of one output (the last, or the nearest to the time `at`); gives the picture's name."""
+    """Draws a field of one output (the last, or the one closest to the time `at`). Returns the picture's name."""
     series = series_of(pathlib.Path(folder), name)
     i = output_near(series, at)
     values, points = values_of(series, i, name, component), places_of(series, i, warp, name)
@@ -173,7 +172,7 @@ def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110)
 
 
 def draw_mode(folder, number, picture=None, dpi=110):
-    """Draws a mode of modes.h5 (docs/formats.md) on the surface, its largest displacement a tenth of the size; gives the picture's name."""
+    """Draws a mode of modes.h5 (docs/formats.md) on the surface, with a maximum displacement of a tenth of the size. Returns the picture's name."""
     import h5py
     file = next((f for f in (pathlib.Path(folder) / "modes.h5", *sorted(pathlib.Path(folder).glob("*/modes.h5"))) if f.exists()), None)
     expect(file, f"{folder}: there is no modes.h5 in it")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of a package that are loaded when they are first asked for: starting a run needs neither numpy nor h5py."""
+"""Names of a package that are loaded on first use. Starting a run needs neither numpy nor h5py."""
 import importlib
 
 
 def names(package, places):
-    """`__getattr__` of a package; places: {module: (names, ...)}."""
+    """Creates `__getattr__` of a package. `places` is {module: (names, ...)}."""
     def get(name):
         for module, there in places.items():
             if name in there:

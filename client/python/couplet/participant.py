@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Python program as a participant of a Couplet job, over mpi4py and numpy alone; the protocol is docs/protocol.md.
+"""Python program as a participant of a Couplet job, using only mpi4py and numpy. docs/protocol.md defines the protocol.
 
     c = couplet.Client("solid", "my_solver")            # all processes of the participant
-    c.vertices(xyz, dimension=2)                        # (n, 3): what this process owns, or process 0 all
-    c.faces(centres, areas, corners)                    # corners: for each face the positions of its vertices
+    c.vertices(xyz, dimension=2)                        # (n, 3): part of this process, or all on process 0
+    c.faces(centres, areas, corners)                    # corners: vertex positions of each face
     c.takes("pressure-force", "N", "faces"); c.gives("displacement", "m", "vertices")
     for event in c:                                     # "begin", "solve", "accept", "output", "save", "load"
         if event == "solve": c.write("displacement", motion(c.read("pressure-force")))
@@ -60,9 +60,9 @@ class _Reader:
 
 class Client:
     def __init__(self, participant, program):
-        """Takes part in the start of the job, collective over all processes of the participant. Ends the program with
-        exit code 2 if the job does not start. With COUPLET_JOIN=FILE in the environment the program was launched separately (all
-        of MPI.COMM_WORLD is the participant) and joins through the relay that wrote FILE."""
+        """Takes part in the start of the job. Collective over all processes of the participant. Ends the program with exit code 2 if the job does not
+        start. If COUPLET_JOIN=FILE is set, the program was launched separately (MPI.COMM_WORLD is the participant) and joins through the relay that
+        wrote FILE."""
         self.participant, self._takes, self._gives = participant, [], []
         self._xyz = self._centres = self._areas = numpy.zeros((0, 3))
         self._corners, self._dimension, self._advised, self._pending = [], 3, math.inf, False
@@ -80,7 +80,7 @@ class Client:
         atexit.register(self._leave)
 
     def _join(self, participant, program):
-        """Handshake, roll call and connection, collective over the whole job: own communicator, and that to the coupler."""
+        """Handshake, roll call and connection, collective over the whole job. Creates the own communicator and that to the coupler."""
         world = MPI.COMM_WORLD
         hello, everyone = numpy.array([HELLO, VERSION, 1, 0], "i8"), numpy.zeros(4 * world.size, "i8")
         _wait(world.Iallgather(hello, everyone))
@@ -102,7 +102,7 @@ class Client:
         return comm, comm.Create_intercomm(0, world, participants.index("coupler"), JOIN_TAG)
 
     def _leave(self):
-        """A program that ends before the job (an exception, sys.exit) takes the job along: MPI_Finalize would wait for ever."""
+        """Ends the job if the program ends first (an exception, sys.exit), because MPI_Finalize would wait forever."""
         if not self._over and not MPI.Is_finalized():
             sys.stdout.flush()
             self._end(f"participant '{self.participant}' ended before the job was over")
@@ -117,16 +117,16 @@ class Client:
 
     # -- the interface, before the first event ------------------------------------------------------------------------
     def vertices(self, xyz, dimension=3):
-        """xyz: (n, 3) [m], reference configuration; dimension 2: z = 0, all per metre of depth."""
+        """Declares vertices `xyz` (n, 3) [m] in the reference configuration. For dimension 2, z = 0, and all values are per meter of depth."""
         self._xyz, self._dimension = numpy.asarray(xyz, float).reshape(-1, 3), dimension
 
     def faces(self, centres, areas, corners=None):
-        """centres [m], areas out of this participant [m^2]: (n, 3); corners: a list of vertex positions per face."""
+        """Declares faces: centers [m] and areas out of this participant [m^2] (n, 3). `corners` lists vertex positions per face."""
         self._centres, self._areas = (numpy.asarray(a, float).reshape(-1, 3) for a in (centres, areas))
         self._corners = corners or [[] for _ in self._centres]
 
     def takes(self, datum, unit, place, components=0):
-        """place: "vertices" or "faces"; components: values per location, 0: one per dimension."""
+        """Declares a received datum at `place` ("vertices" or "faces") with `components` values per location; 0 means one per dimension."""
         self._takes.append((datum, unit, ("vertices", "faces").index(place), components))
 
     def gives(self, datum, unit, place, components=0):
@@ -138,7 +138,7 @@ class Client:
             yield event
 
     def next(self):
-        """Answers for the last event and waits for the next; None: the job is over. Collective."""
+        """Replies to the last event and waits for the next one. Returns None when the job is over. Collective."""
         while True:
             if self._pending:
                 self._send_reply()
@@ -154,7 +154,7 @@ class Client:
                 return EVENTS[self.operation]
 
     def read(self, datum):
-        """(places, components) of this process; zeros if nobody has given it yet."""
+        """Values (locations, components) of this process, or zeros if no participant has given them yet."""
         entry = next(d for d in self._takes if d[0] == datum)
         return self._input.get(datum, numpy.zeros(self._shape(entry)))
 
@@ -163,14 +163,14 @@ class Client:
         self._output[datum] = numpy.ascontiguousarray(values, float).reshape(self._shape(entry))
 
     def fail(self, why, halving_helps=True):
-        """Instead of writing: the step could not be solved."""
+        """Reports a failed step instead of writing."""
         self._status, self._why = (1 if halving_helps else 2), why
 
     def advise(self, dt):
         self._advised = dt
 
     def checkpoint(self):
-        """Beginning of the name of a file for save and load."""
+        """Prefix of file names for save and load."""
         return f"{self.folder}/{self.participant}"
 
     # -- messages -----------------------------------------------------------------------------------------------------
@@ -223,7 +223,7 @@ class Client:
         return [0, *(int(c) for c in counts.cumsum())]
 
     def _peers(self):
-        """(rank of the coupler, slice of my vertices, slice of my faces) for all that share some."""
+        """(rank of the coupler, slice of own vertices, slice of own faces) for all ranks with common entries."""
         ranks, mine = self._link.ranks, self.comm.rank
         list_ = []
         for c in range(ranks):

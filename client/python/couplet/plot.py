@@ -24,7 +24,7 @@ MOST_LINES = 12  # with names of their own
 
 
 def read(file):
-    """Columns by name; truncated rows (of a run that is still writing) are skipped."""
+    """Columns by name. Truncated rows of a running job are skipped."""
     columns = columns_of(file)
     expect(next(iter(columns)).startswith("time") and not np.isnan(next(iter(columns.values()))).any(),
            f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.")
@@ -32,7 +32,7 @@ def read(file):
 
 
 def is_monitor(file):
-    """Whether its first line names a time; the tables that a run leaves at its end do not."""
+    """Returns true if the first line names a time, unlike the tables written at the end of a run."""
     with open(file, "rb") as lines:
         return lines.readline().lstrip(b'# "').startswith(b"time")
 
@@ -72,7 +72,7 @@ def curves(x, label, columns, names, log, title):
 
 
 def maps(columns, names, title):
-    """A plane: each column over the two ways along it, which are straight on a mesh at rest."""
+    """Plots each column of a plane over its two coordinates, which are straight on a mesh at rest."""
     a, b = columns["along [-]"], columns["up [-]"]
     across = int(np.ceil(np.sqrt(len(names))))
     down = -(-len(names) // across)
@@ -88,7 +88,7 @@ def maps(columns, names, title):
 
 
 def profiles(columns, names, title):
-    """Over the height (or the depth), a line an output, of which at most MOST_LINES are drawn."""
+    """Plots columns over height or depth with one line per output, at most MOST_LINES."""
     time, place = columns[next(iter(columns))], list(columns)[1]
     times = np.unique(time)
     times = times[np.linspace(0, len(times) - 1, min(MOST_LINES, len(times))).astype(int)]
@@ -136,7 +136,7 @@ def draw(file, options):
 
 
 def of_case(file, options):
-    """The picture of a case: what its section `plot` declares, or what its own plot.py draws. Draws it; gives the exit code, or None where there are only the monitors of its run, which options.files then names."""
+    """Draws the picture of the case, from its section `plot` or its own plot.py. Returns the exit code, or None if there are only monitors, which options.files then names."""
     case = Case(file)
     out = options.out or output_of(case, ())
     expect(not options.film or "plot" in case.data, f"--film: {case.file} has no section plot with a map")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The way of a participant's process to the coupler: over MPI, or, launched separately, over a socket through the relay of the job
-(docs/protocol.md, "Launched separately")."""
+"""Connection of a participant's process to the coupler: over MPI or, if launched separately, over a socket to its relay in the job (docs/protocol.md,
+"Launched separately")."""
 import os
 import socket
 import struct
@@ -13,7 +13,7 @@ FRAME = struct.Struct("=iiq")
 
 
 def pause(since):
-    """Between two looks at what is awaited: the core belongs to the others."""
+    """Yields the core between two polls."""
     waited = time.monotonic() - since
     time.sleep(0 if waited < 8e-5 else min(waited / 16, 2.5e-4))
 
@@ -47,7 +47,7 @@ class OverMpi:
 
 
 class OverSocket:
-    """Raises ConnectionError or ValueError, each with what is wrong."""
+    """Link over a socket. Raises ConnectionError or ValueError with the reason."""
 
     def __init__(self, file, participant, version, comm):
         seconds = float(os.environ.get("COUPLET_JOIN_WAIT", "60"))
@@ -68,11 +68,11 @@ class OverSocket:
         if kind == "unix":
             self._socket = socket.socket(socket.AF_UNIX)
             self._socket.connect(where[0])
-        else:  # a numeric address of either family
+        else:  # numeric address of either family
             family, _, _, _, place = socket.getaddrinfo(*where, type=socket.SOCK_STREAM, flags=socket.AI_NUMERICHOST | socket.AI_NUMERICSERV)[0]
             self._socket = socket.socket(family)
             self._socket.connect(place)
-        if kind == "tcp":  # as watch() of stream.cpp: a lost partner is known within 5 s
+        if kind == "tcp":  # like watch() of stream.cpp: a lost partner is detected within 5 s
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
             for option, value in (("TCP_KEEPIDLE", 2), ("TCP_KEEPINTVL", 1), ("TCP_KEEPCNT", 3), ("TCP_USER_TIMEOUT", 5000), ("TCP_NODELAY", 1)):
                 self._socket.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
@@ -90,7 +90,7 @@ class OverSocket:
         while view:
             try:
                 n = self._socket.recv_into(view)
-            except OSError as error:  # "reset by peer", where the other side had not read all
+            except OSError as error:  # "reset by peer" if the other side had unread data
                 raise ConnectionError(f"the connection was closed ({error.strerror})") from error
             if n == 0:
                 raise ConnectionError("the connection was closed")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the fields that a participant wrote (HDF5): in the volume, and on patches (surface-<patch>.h5 of `output.surfaces`)."""
+"""Reads the fields of a participant (HDF5): in the volume, and on patches (surface-<patch>.h5 of `output.surfaces`)."""
 import pathlib
 
 import h5py
@@ -9,7 +9,7 @@ WIDTH = {4: 3, 5: 4, 6: 4, 7: 5, 8: 6, 9: 8}  # points of a cell, by XDMF code
 
 
 class FieldSeries:
-    """One <name>.h5 series. Times, cells (lists of point numbers), coordinates and fields by name."""
+    """One <name>.h5 series: times, cells (lists of point numbers), coordinates and fields by name."""
 
     def __init__(self, file):
         self.file = h5py.File(file, "r")
@@ -41,7 +41,7 @@ class FieldSeries:
         raise KeyError(f"no field '{name}' in {self.file.filename}")
 
     def is_at_points(self, i, name):
-        """field() takes the one of the cells where both have it."""
+        """Returns true if the field exists only at points. field() prefers cells if both have it."""
         step = self.file["steps"][self.steps[i]]
         return not ("cells" in step and name in step["cells"])
 
@@ -50,24 +50,24 @@ class FieldSeries:
         return self.file["mesh/coordinates"][...]
 
     def is_flat(self):
-        """Whether the mesh is two-dimensional."""
+        """Returns true if the mesh is two-dimensional."""
         points = self.reference()
         return points.shape[1] == 2 or np.ptp(points[:, 2]) == 0
 
     def shares_of_points(self):
-        """Volumes (2-D: areas) of the cells, dealt out evenly to their points."""
+        """Volumes (2-D: areas) of the cells, distributed evenly to their points."""
         shares = np.zeros(len(self.reference()))
         for cell, volume in zip(self.cells, self.volumes()):
             shares[cell] += volume / len(cell)
         return shares
 
     def centres(self):
-        """Means of the points of each cell in the undeformed mesh."""
+        """Cell centers (means of the points) in the undeformed mesh."""
         points = self.reference()
         return np.array([points[cell].mean(axis=0) for cell in self.cells])
 
     def volumes(self):
-        """Areas (2-D) of the cells in the undeformed mesh; in 3-D those of hulls, which for planar faces are the volumes."""
+        """Areas (2-D) of the cells in the undeformed mesh; in 3-D volumes of hulls, exact for planar faces."""
         points = self.reference()
         if self.is_flat():
             found = []
@@ -83,7 +83,7 @@ class FieldSeries:
         return [name for place in ("cells", "points") if place in step for name in step[place]]
 
     def edges_on_boundary(self):
-        """Edges (2-D) that belong to one cell only, as pairs of point numbers."""
+        """Edges (2-D) that belong to only one cell, as pairs of point numbers."""
         count = {}
         for cell in self.cells:
             for a, b in zip(cell, np.roll(cell, -1)):
@@ -91,11 +91,11 @@ class FieldSeries:
         return np.array([pair[0] for pair in count.values() if len(pair) == 1])
 
 
-SHAPES = "buckling.h5"  # of load factors, beside the fields of a run
+SHAPES = "buckling.h5"  # shapes of load factors, beside the fields of a run
 
 
 def find_series(folder, name="*.h5"):
-    """The .h5 field series in a participant's output folder: that of the run, not of its shapes, unless they are named."""
+    """The .h5 field series in a participant's output folder: that of the run, not that of its shapes, unless they are named."""
     for file in sorted(pathlib.Path(folder).glob(name)):
         if file.name == SHAPES != name:
             continue
@@ -106,7 +106,7 @@ def find_series(folder, name="*.h5"):
 
 
 class Surface(FieldSeries):
-    """One patch over time. Its cells are faces: two points each in 2-D, three or four in 3-D.
+    """Patch over time. Its cells are faces with two points in 2-D, and three or four in 3-D.
 
     field(i, name) has one row per face, or per point for fields at points; 2-D vectors are padded to three components."""
 
@@ -118,16 +118,16 @@ class Surface(FieldSeries):
         self.name = pathlib.Path(file).stem.removeprefix("surface-")
 
     def is_plane(self):
-        """2-D: the faces are edges, per metre of depth."""
+        """Returns true if the faces are edges (2-D), with values per meter of depth."""
         return len(self.cells[0]) == 2
 
     def places(self, i=-1):
-        """Centres of the faces [m]: means of their points."""
+        """Face centers [m]: means of their points."""
         points = self.coordinates(i)
         return np.array([points[face].mean(axis=0) for face in self.cells])
 
     def areas(self, i=-1):
-        """Of the faces [m^2]; edges count as length times 1 m. Quadrilaterals: half the cross product of the diagonals (plane faces)."""
+        """Face areas [m^2]. Edges count as length times 1 m. Quadrilaterals use half the cross product of the diagonals (planar faces)."""
         points = self.coordinates(i)
         if self.is_plane():
             return np.array([np.linalg.norm(points[b] - points[a]) for a, b in self.cells])
@@ -137,15 +137,15 @@ class Surface(FieldSeries):
         return np.array([0.5 * np.linalg.norm(np.cross(u, v)) for u, v in ends])
 
     def integral(self, name, i=-1):
-        """Sum over the faces of the field times the area: of a traction [Pa] the force [N]; of points the mean over the face."""
+        """Sum over the faces of the field times the area: for a traction [Pa] the force [N]. Point fields use the mean over each face."""
         field = np.asarray(self.field(i, name), float)
         if self.is_at_points(i, name):
             field = np.array([field[face].mean(axis=0) for face in self.cells])
         return np.tensordot(self.areas(i), field, axes=1)
 
     def chains(self, i=-1):
-        """[(numbers of the edges in order, their points in order)], 2-D: an open part from its end of the lowest number on, a
-        closed one from its point of the largest x on, both with the body to the same side as the edges have it."""
+        """[(ordered edge numbers, ordered points)] in 2-D. An open part starts at its end with the lowest number, a closed one at its point with the
+        largest x. Both have the body on the same side as the edges."""
         points, after = self.coordinates(i), {}
         for number, (a, b) in enumerate(self.cells):
             after.setdefault(int(a), []).append((number, int(b)))
@@ -172,7 +172,7 @@ def surface_names(folder):
 
 
 def find_surface(folder, patch):
-    """The surface of a patch in a participant's folder."""
+    """Surface of a patch in a participant's folder."""
     file = pathlib.Path(folder) / f"surface-{patch.replace('/', '_')}.h5"
     if not file.exists():
         there = surface_names(folder)
@@ -181,8 +181,8 @@ def find_surface(folder, patch):
 
 
 def extrema(t, y, window=0.15):
-    """Local maxima and minima as (time, value, kind), each the top of a parabola through its three nearest samples and
-    the largest (smallest) within `window` seconds either side; the end points do not count."""
+    """Local maxima and minima as (time, value, kind), from the parabola through three samples, that are extreme within `window` seconds on either
+    side. End points are excluded."""
     found = []
     for sign, kind in ((1, "max"), (-1, "min")):
         z = sign * y

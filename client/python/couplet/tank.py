@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of a thermocline study: what figures 5.9, 5.11, 5.12 and 5.13 of the thesis show."""
+"""Pictures of a thermocline study: figures 5.9, 5.11, 5.12 and 5.13 of the thesis."""
 import pathlib
 import re
 
@@ -56,7 +56,7 @@ def stresses(study, axes):
 
 
 def charge(study, axes):
-    """Figure 5.12: the wall through the charge of the profile day, every two hours."""
+    """Figure 5.12: the wall during the charge of the profile day, every two hours."""
     for name, style in (("B", "-"), ("CO2", ":")):
         file = study / name / "tank" / "profiles.csv"
         if not file.exists():
@@ -82,7 +82,7 @@ def thickness(study, axes):
         if not file.exists():
             continue
         data = couplet.read_csv(file)
-        # After the month of the run-in.
+        # Skips the first month, in which the tank starts up.
         start = (31 if name == "B" else 30) * DAY
         keep = data["time [s]"] > start
         axes.plot((data["time [s]"][keep] - start) / DAY, data["thermocline thickness [m]"][keep], lw=0.7, label=label)
@@ -92,7 +92,7 @@ def thickness(study, axes):
 
 
 def picture(case_folder, reference_diameter, title):
-    """Draws out/<case>.png from out/study and gives its path."""
+    """Draws out/<case>.png from out/study and returns its path."""
     study = pathlib.Path(case_folder) / "out" / "study"
     if not (study / "B" / "tank" / "summary.csv").exists():
         raise SystemExit(f"There is nothing in {study}: run couplet study {case_folder}/case.yaml first.")

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which way messages go between processes of a job."""
+"""Transports between processes of a job."""
 import os
 import re
 
 
 def choose():
-    """Shared memory alone where all processes of the job sit on one machine and the user has not chosen, as the programs of
-    the job do: other choices of two processes do not fit each other, and looking at all networks takes its time."""
+    """Selects shared memory if the whole job is on one machine and the user made no choice, like the programs of the job. Different choices are
+    incompatible, and probing all networks is slow."""
     if "OMPI_COMM_WORLD_SIZE" not in os.environ or os.environ["OMPI_COMM_WORLD_SIZE"] != os.environ.get("OMPI_COMM_WORLD_LOCAL_SIZE"):
         return
     if any("OMPI_MCA_" + name in os.environ for name in ("pml", "btl", "mtl", "mca_param_files")):

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_errors = 30, most_participants = 100, longest_participant_name = 50;
 
-/// Why a participant cannot have this name: it becomes a folder and a file beside those of the run itself.
+/// Reason why a participant cannot have this name, which becomes a folder and a file beside those of the run.
 std::string problem_of_name(const std::string& name) {
   if (name.empty()) return "a participant needs a name";
   if (name == coupler_name) return "the coupler is not a participant; its keys are in `coupling`";
@@ -49,7 +49,7 @@ void list_expected(const config::Document& document, CaseFile& result) {
     throw Error("{}: {} participants; at most {} are allowed.", config::where(document, "participants"),
                 names.size(), most_participants);
   for (const std::string& name : names) {
-    // The first one is told alone: its path cannot be looked up.
+    // The first invalid name is reported by itself, because its path cannot be looked up.
     if (const std::string problem = problem_of_name(name); !problem.empty())
       throw Error("{}: '{}': {}.", config::where(document, "participants"), name, problem);
     const auto program = config::text_of(document, "participants." + name + ".program");
@@ -62,7 +62,7 @@ void list_expected(const config::Document& document, CaseFile& result) {
   }
 }
 
-/// The participant that this program is to run; throws Error.
+/// Finds the participant that this program must run. Throws Error.
 std::string find_participant(const CommandLine& command_line, const Program& program, const CaseFile& file) {
   const std::string& source = file.document->name();
   if (program.is_coupler) {
@@ -107,7 +107,7 @@ std::string find_participant(const CommandLine& command_line, const Program& pro
   return mine.front();
 }
 
-/// Of an expression in x, y, z, t or of a property, which is a number or a table of the temperature T.
+/// Problem of an expression in x, y, z, t or of a property (a number or a table of the temperature T).
 std::string problem_of_expression(const config::ExpressionText& text) {
   std::string problem = fv::problem_of(text);
   if (problem.find("unknown name 'T'") != std::string::npos)
@@ -115,7 +115,7 @@ std::string problem_of_expression(const config::ExpressionText& text) {
   return problem;
 }
 
-/// `effects: auto`: what the case leaves open is set in the document as if it stood there; what stands there wins.
+/// Applies `effects: auto`: sets keys that the case leaves open in the document. Existing keys are kept.
 void choose(const CommandLine& command_line, const Program& program, CaseFile& result) {
   result.choices = program.choose(scene_of(command_line, result));
   const std::string section = "participants." + result.participant;
@@ -174,12 +174,12 @@ CaseFile read_case(const CommandLine& command_line, const Program& program) {
     };
     std::vector<std::string> problems = load();
     if (result.simulation.choose_effects && program.choose && result.errors.empty()) {
-      choose(command_line, program, result);  // a first look may miss keys that are chosen now
+      choose(command_line, program, result);  // the first load may miss keys that are chosen now
       problems = load();
     }
     append(result.errors, problems);
     append(result.doubts, doubts);
-    // Once a job.
+    // Reported once per job.
     if (config::text_of(*result.document, "coupling.fluid.participant") == result.participant)
       append(result.doubts, doubts_of_wall_mass(*result.document));
   } catch (const Error& error) {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* separator = " = ";
 
-/// One line whatever is in the value.
+/// Escapes a value so that it fits on one line.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -30,7 +30,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-/// The file itself, or the files in quotation marks of an expression with tables.
+/// Names of files in a value: the value itself, or quoted files of tables in an expression.
 std::vector<std::string> names_in(const std::string& value) {
   if (value.find('"') == std::string::npos) return {value};
   std::vector<std::string> names;
@@ -49,7 +49,7 @@ std::map<std::string, std::string> lines_of(const std::string& text) {
   return result;
 }
 
-/// Keys that say how far, how often and where to, those of a study, which runs variants of a case, and those of its picture.
+/// Returns true for keys of durations, intervals, locations, studies (variants of a case) and plots.
 bool is_harmless(const std::string& path) {
   if (path.starts_with("simulation.") || path.starts_with("study") || path.starts_with("plot")) return true;
   if (!path.starts_with("participants.")) return false;
@@ -88,7 +88,7 @@ KeyChanges changes_between(const std::string& then, const std::string& now) {
     const auto found = after.find(path);
     const bool is_content = path.find(": content of ") != std::string::npos;
     if (found == after.end()) {
-      // Another name of a file is one change, not two.
+      // Another file name is one change, not two.
       if (!is_content) note(path, fmt::format(": was {}, is now absent", value));
     } else if (is_content ? value != found->second : !config::same_value(value, found->second)) {
       note(path, is_content ? " has changed" : fmt::format(": was {}, is {}", value, found->second));

@@ -54,7 +54,7 @@ class Cast {
                                     name, base::did_you_mean(name, names_, "participants")));
   }
 
-  /// "; 'solid' (solid_solver) can": those of the case that could play it.
+  /// Text "; 'solid' (solid_solver) can" with the participants of the case that could play the role.
   std::string others(const coupling::RoleContract& contract) const {
     std::vector<std::string> able;
     for (const Expected& e : players_)
@@ -71,9 +71,9 @@ class Cast {
     cast_.push_back(*name);
     const Expected* who = find(*name);
     if (who == nullptr) return unknown(key, *name);
-    if (who->program == "?") return;  // told elsewhere
+    if (who->program == "?") return;  // reported elsewhere
     const coupling::Player* player = coupling::player_of(who->program);
-    // Strangers show at the start what they take and give, but the link of the mesh is the project's own.
+    // Other programs declare their data at the start, but only the project's own programs have the mesh link.
     std::string problem;
     if (player)
       problem = coupling::problem_of_role(contract, *player, has_mover_);
@@ -107,7 +107,7 @@ class Cast {
     }
   }
 
-  /// Of a fluid and its mesh mover, which name the same patches: a wall that the structure moves is moved.
+  /// Checks that a fluid and its mesh mover name the same patches: a wall moved by the structure must move.
   void look_at_moved_walls() {
     const auto fluid = config::text_of(document_, "coupling.fluid.participant"),
                mover = config::text_of(document_, "coupling.mesh.participant");
@@ -152,10 +152,10 @@ std::vector<std::string> problems_of_roles(const config::Document& document,
 
 namespace {
 
-// A side that is wet alone has the whole mass, and where the fluid is heavy less converges better.
+// A structure wetted on one side carries the whole mass. A smaller value converges better with heavy fluids.
 constexpr double most = 3;
 
-/// In SI; none where the key is not there or cannot be read, which is reported elsewhere.
+/// Value of a key in SI. Nothing if it is absent or invalid, which is reported elsewhere.
 std::optional<double> number(const config::Document& document, const std::string& key, const char* unit) {
   const auto text = config::text_of(document, key);
   if (!text) return {};
@@ -247,7 +247,7 @@ class Seat {
     if (!direction.empty()) set("direction", fmt::format("[{}]", fmt::join(direction, ", ")));
   }
 
-  /// A gap that states its seat, and a contact beside it that states another.
+  /// Reports a gap and a contact that both specify the seat.
   void look_beside(const std::string& gaps, const std::vector<std::string>& names) {
     for (const std::string& name : names)
       if (config::text_of(document_, gaps + "." + name + ".height"))

@@ -19,7 +19,7 @@ constexpr const char* version = "1.0.0";
 
 using Items = std::vector<config::Item>;
 
-/// The first level of the program's parameters, a line each.
+/// First level of the program's parameters, one line each.
 std::string list_keys(const Items& items) {
   std::size_t width = 0;
   for (const config::Item& item : items) width = std::max(width, item.facts.name.size());
@@ -68,7 +68,7 @@ CommandLine::Strict strictness(const std::string& word) {
   throw CLI::ValidationError("--strict=" + word + ": use --strict or --strict=effects.");
 }
 
-/// What the options set that the command line does not keep.
+/// Options that are not stored in the command line.
 struct Flags {
   bool check = false, docs = false, schema = false, print_config = false, explain = false, effects = false,
        verbose = false, quiet = false;
@@ -137,7 +137,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
   app.footer([&] { return footer(program); });
   app.set_version_flag("--version", version_text());
   add_options(app, line, flags);
-  // What is left over is told in our words, with the option that was meant.
+  // Unknown options are reported by our own message with a suggestion.
   app.allow_extras();
   try {
     app.parse(argc, argv);

@@ -11,31 +11,31 @@
 
 namespace couplet::app {
 
-/// What a program was asked to do; the same for all programs.
+/// Command line, which is the same for all programs.
 struct CommandLine {
   enum class Task { run, check, docs, schema, print_config, explain, effects } task = Task::run;
   std::filesystem::path case_file;       ///< empty for docs, schema and effects
-  std::string participant;               ///< empty: the only one in the YAML that names this program
+  std::string participant;               ///< if empty, the only one in the YAML that names this program
   std::vector<std::string> overrides;    ///< "a.b=v", for config::Document::set
-  std::filesystem::path restart_folder;  ///< empty: fresh start
+  std::filesystem::path restart_folder;  ///< empty for a fresh start
   bool allow_commands = false;           ///< a .geo may run commands and write files
   bool restart_with_changes = false;     ///< consent to changes of the case since the checkpoint
   enum class Strict { no, answer, effects };
-  /// Warnings about the answer fail the run; with `effects` opinions on neglected effects, too.
+  /// Makes warnings about the result fail the run. `effects` includes opinions on neglected effects.
   Strict strict = Strict::no;
-  std::vector<std::string> accept;  ///< ids of findings that are let pass
+  std::vector<std::string> accept;  ///< ids of accepted findings
   log::Verbosity verbosity = log::Verbosity::normal;
 };
 
-/// How a program presents itself in --help.
+/// Description of a program in --help.
 struct ProgramText {
   std::string name;                  ///< "solid_solver"
   std::string description;           ///< one line
-  config::Section::Declare declare;  ///< its parameters: --help lists the first level of them
+  config::Section::Declare declare;  ///< its parameters; --help lists their first level
 };
 
-/// What to do now: go on with the command line, or leave with this exit code after `output` was printed (--help,
-/// --version: 0 and standard output; a wrong command line: 2 and standard error).
+/// Result of parsing. Without `exit_code` the program continues. Otherwise `output` was printed to standard
+/// output (--help, --version: 0) or standard error (invalid command line: 2).
 struct ParsedCommandLine {
   CommandLine command_line;
   std::optional<int> exit_code;
@@ -43,7 +43,7 @@ struct ParsedCommandLine {
 };
 ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program);
 
-/// "couplet 1.0.0".
+/// Text "couplet 1.0.0".
 std::string version_text();
 
 }  // namespace couplet::app

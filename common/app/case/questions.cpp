@@ -48,7 +48,7 @@ class FileCheck {
   void check_mesh(const std::string& name) {
     const fs::path file = folder_ / name;
     std::error_code ignored;
-    // Caches are made when they are needed, some by a script of the case.
+    // Caches are created on demand, some by a script of the case.
     if (name.ends_with(".cache.msh") && !fs::exists(file, ignored)) return;
     if (!fs::is_regular_file(file, ignored)) {
       report("mesh", fmt::format("the file '{}' does not exist.", file.string()));
@@ -95,7 +95,7 @@ class FileCheck {
           report(fmt::format("{}.{}", key, entry),
                  fmt::format("the mesh has no patch with this name. {}",
                              base::did_you_mean(entry, patches, "patches")));
-    // Of conduction alone: a patch without an entry is adiabatic.
+    // In pure heat conduction a patch without an entry is adiabatic.
     if (config::text_of(document_, section_ + ".analysis") == "thermal") return;
     for (const std::string& patch : patches)
       if (!has(entries, patch))
@@ -155,7 +155,7 @@ std::string problem_of_restart(const CommandLine& command_line, const CaseFile& 
 
 namespace {
 
-/// What is missing or broken among the files of a participant: what every program's --check sees, then its own.
+/// Problems of a participant's files: general ones, or else those found by its program.
 std::vector<std::string> problems(const CaseFile& file, const Program& program,
                                   const std::filesystem::path& case_folder) {
   std::vector<std::string> all = problems_of_files(*file.document, file.participant, case_folder);
@@ -203,7 +203,7 @@ int check(const CommandLine& command_line, const Program& program, bool print) {
 
 namespace {
 
-/// Without its mesh nothing can be expected; what is wrong with it a run will say.
+/// Prints the expected cost, which requires the mesh. A run reports problems of the mesh.
 void print_expected(const diagnostics::CaseScene& scene, const Program& program) {
   try {
     fmt::print("expected:         {}\n", diagnostics::text(program.expected(scene)));
@@ -212,7 +212,7 @@ void print_expected(const diagnostics::CaseScene& scene, const Program& program)
   }
 }
 
-/// The effects of the scene and the launch line, without running anything.
+/// Prints the effects of the scene and the launch line without running anything.
 int explain(const CommandLine& command_line, const Program& program) {
   const CaseFile file = read_case(command_line, program);
   if (!file.errors.empty()) {

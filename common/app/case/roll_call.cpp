@@ -18,7 +18,7 @@
 namespace couplet::app {
 namespace {
 
-// One text a process: fields parted by unit separators, which no name, path or message holds.
+// One text per process with fields separated by unit separators, which no name, path or message contains.
 constexpr char field_end = '\x1f', text_end = '\x1e';
 constexpr std::size_t longest_text = 256;
 constexpr std::int64_t hello_mark = 0x434f55504c4554;  // "COUPLET"
@@ -46,7 +46,7 @@ bool is_name(const std::string& text) {
 
 std::string label(const Attendant& a) { return a.participant.empty() ? a.program : a.participant; }
 
-/// "mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml ..."
+/// Text "mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml ..."
 std::string launch_line(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected) {
   std::map<std::string, int> ranks, users, application;
   for (const Attendant& a : attendants)
@@ -63,7 +63,7 @@ std::string launch_line(const std::vector<Attendant>& attendants, const std::vec
   return line;
 }
 
-/// Each message once; with the names of those that sent it unless all did.
+/// Lists each message once, with the names of its senders unless all processes sent it.
 std::string configuration_errors(const std::vector<Attendant>& attendants) {
   std::vector<std::string> order;
   std::map<std::string, std::set<std::string>> senders;
@@ -85,9 +85,9 @@ std::string configuration_errors(const std::vector<Attendant>& attendants) {
   return text;
 }
 
-/// The first way in which two processes read different things.
+/// First difference between what two processes read.
 std::string disagreement(const std::vector<Attendant>& attendants) {
-  // A guest that does not read the file says 0.
+  // A guest that does not read the file sends 0.
   const auto reader = std::ranges::find_if(attendants, [](const Attendant& a) { return a.case_hash != 0; });
   const Attendant& first = reader == attendants.end() ? attendants.front() : *reader;
   for (const Attendant& a : attendants) {

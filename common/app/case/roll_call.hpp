@@ -13,68 +13,68 @@
 
 namespace couplet::app {
 
-/// What one process says of itself at the roll call.
+/// Data of one process at the roll call.
 struct Attendant {
   std::string program;        ///< "solid_solver"
-  std::string participant;    ///< its name in the YAML; empty if it could not be found
+  std::string participant;    ///< its name in the YAML; empty if it was not found
   std::string case_file;      ///< as given on the command line
-  std::size_t case_hash = 0;  ///< of the YAML's text after overrides
-  std::string restart;        ///< --restart, empty without
+  std::size_t case_hash = 0;  ///< of the YAML text with overrides
+  std::string restart;        ///< folder of --restart, or empty
   bool named = false;         ///< --participant was given
-  int application = 0;        ///< number of its part of the mpirun line (MPI_APPNUM)
+  int application = 0;        ///< index of its part of the mpirun command (MPI_APPNUM)
   int world_rank = 0;
   std::vector<std::string> errors;  ///< in its own part of the configuration
 };
 
-/// One participant as the YAML has it.
+/// Participant as declared in the YAML.
 struct Expected {
   std::string participant, program;
 };
 
-/// One participant as it has come.
+/// Participant as found in the job.
 struct Member {
   std::string participant, program;
   int first_rank = 0, ranks = 0;  ///< in MPI_COMM_WORLD
 };
 
 struct Verdict {
-  std::string problem;  ///< empty: the job can start
-  bool alone = false;   ///< only one participant has come and shall run without the others
+  std::string problem;  ///< empty if the job can start
+  bool alone = false;   ///< only one participant is present and runs without the others
 };
 
 inline constexpr const char* coupler_name = "coupler";
 
-/// A handshake that failed. `speaker`: the first process of this project and version, which says so for all.
+/// Failed handshake. `speaker` is the first process of this project and version, which reports it for all.
 class HandshakeFailure final : public Error {
  public:
   HandshakeFailure(const std::string& text, int speaker) : Error(text), speaker(speaker) {}
   int speaker;
 };
 
-/// The very first words of a job: every process says in four 64-bit integers that it is part of it (mark,
-/// version of the protocol, 0 for a program of this project or 1 for a guest, 0; docs/protocol.md). Returns
-/// the communicator of this project's processes, who watch over each other; guests are not in it. Waits
-/// without burning a core and says for what. Throws HandshakeFailure if a process says something else. Collective over
-/// `world`.
+/// Performs the handshake: every process sends four 64-bit integers (mark, protocol version, 0 for a program
+/// of this project or 1 for a guest, 0; docs/protocol.md). Returns the communicator of this project's
+/// processes, which watch each other; guests are excluded. Waits without busy polling and logs for whom.
+/// Throws HandshakeFailure for any other message. Collective over `world`.
 MPI_Comm shake_hands(MPI_Comm world);
 
-/// What all processes said at the handshake, four integers each: throws HandshakeFailure.
+/// Checks the handshake messages of all processes, four integers each. Throws HandshakeFailure.
 void check_hands(std::span<const std::int64_t> all);
 
-/// What a process has said of itself, without the end of text; throws Error if it is not what docs/protocol.md asks for.
+/// Parses the roll-call answer of a process, without its terminator. Throws Error if it violates
+/// docs/protocol.md.
 Attendant introduced(const std::string& text, int process);
 
-/// Every process's answer, by world rank, on every process. Collective.
+/// Exchanges the answers of all processes, sorted by world rank. Collective.
 std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self);
 
-/// Compares who has come with who is expected. `coupled`: the YAML has a `coupling` section (the coupler is
-/// then expected too, and is part of `expected`). The same on every process.
+/// Compares the processes with the expected participants. `coupled` means that the YAML has a `coupling`
+/// section; the coupler is then part of `expected`. The result is the same on every process.
 Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected, bool coupled);
 
-/// Whether nobody has seen a problem: then the job starts. Collective over `world`.
+/// Returns true if no process has a problem, so that the job starts. Collective over `world`.
 bool all_agree_to_start(MPI_Comm world, bool problem);
 
-/// In order of first world rank.
+/// Participants in order of their first world rank.
 std::vector<Member> members(const std::vector<Attendant>& attendants);
 
 }  // namespace couplet::app

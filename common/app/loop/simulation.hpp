@@ -9,22 +9,22 @@
 
 namespace couplet::app {
 
-/// What `simulation:` in the YAML says to every program.
+/// Parameters of `simulation:` in the YAML for every program.
 struct SimulationParameters {
   std::string name = "case";
   double end_time = 0, time_step = 0;  // [s]
-  int max_step_halvings = 6;           // of a step that fails
-  std::vector<std::string> accept;     // ids of findings that may not end the run with exit code 4
+  int max_step_halvings = 6;           // halvings of a failed step
+  std::vector<std::string> accept;     // ids of findings that do not cause exit code 4
   std::string output_folder = "out";   // relative to the YAML's folder unless absolute
-  double output_interval = 0;          // [s]; 0: only the start and the end
+  double output_interval = 0;          // [s]; 0: only at the start and the end
   bool output_steps = true;            // steps.csv
-  io::FieldChoice fields;              // in the volume
-  double checkpoint_interval = 0;      // [s]; 0: only at the end
+  io::FieldChoice fields;              // volume fields
+  double checkpoint_interval = 0;      // [s]; 0 for only at the end
   int checkpoints_kept = 2;
-  double hang_timeout = 600;    // [s]; 0: never
+  double hang_timeout = 600;    // [s]; 0 for never
   bool error_estimate = true;   // at the end of the run
-  bool choose_effects = false;  // what the case leaves open is decided by estimates of the scene
-  std::string keys;             // no parameter: the case as text, kept with every checkpoint (see case_keys)
+  bool choose_effects = false;  // estimates of the scene decide what the case leaves open
+  std::string keys;             // case as text, stored with every checkpoint (see case_keys)
 };
 void declare(config::Section& section, SimulationParameters& parameters);
 

@@ -60,10 +60,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A run that continues drops rows and outputs that are later than its checkpoint by more than rounding: what a stop writes is.
+// Offset of outputs written by a stop, so that a continued run drops those later than its checkpoint.
 constexpr double later_than_saved = 1 + 4e-9;
 
-/// Different for each run that ever writes into a folder; later runs have larger ones.
+/// Creates a unique id for each run in a folder. Later runs have larger ones.
 std::string make_run_id() {
   std::random_device device;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -71,7 +71,7 @@ std::string make_run_id() {
   return fmt::format("{:012x}-{:08x}", milliseconds, device());
 }
 
-/// What rank 0 does alone: its Error is thrown on every rank. Collective.
+/// Runs `action` on rank 0 and throws its Error on every rank. Collective.
 void on_first_rank(MPI_Comm comm, const std::function<void()>& action) {
   std::string problem;
   if (parallel::comm_rank(comm) == 0) {
@@ -155,7 +155,7 @@ void StepLoop::restart(const RunState& state, const fs::path& from) {
 bool StepLoop::due(double interval) const {
   if (plan_.finished()) return true;
   if (interval <= 0) return false;
-  // Due when a multiple of the interval lies in the nominal step that has just ended.
+  // Due if a multiple of the interval lies in the nominal step that just ended.
   const auto multiples = [&](double t) {
     const double rounding = std::max(1e-9 * simulation_.time_step, 4e-16 * plan_.time());
     return std::floor((t + rounding) / interval);
@@ -184,7 +184,7 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
     if (!keys) throw Error("Cannot write the checkpoint in {}. Is the disk full?", folder.string());
     io::finish_checkpoint_set(folder, stamp, continues_);
     log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
-    // Sets of other runs are theirs.
+    // Keeps sets of other runs.
     std::vector<io::FoundSet> own = io::checkpoint_sets(checkpoints_);
     std::erase_if(own, [&](const io::FoundSet& set) { return !is_own(set); });
     for (std::size_t i = 0; i + simulation_.checkpoints_kept < own.size(); ++i)
@@ -195,7 +195,7 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
 
 std::string StepLoop::stop(const StepActions& actions) {
   const fs::path folder = checkpoint(actions);
-  // Only now: what participants learn from writing is no part of the state that goes on.
+  // Written after the checkpoint, because participants may change their state when writing output.
   if (!is_written_) actions.write_stop(plan_.time() * later_than_saved, outputs_);
   if (folder.empty())
     return fmt::format("Stopped at t = {:g} s by a signal.{}", plan_.time(), what_is_kept(actions));
@@ -217,7 +217,7 @@ std::string StepLoop::give_up(const StepActions& actions, const coupling::Step& 
   if (!failure.halving_helps)
     return fmt::format("The run ends at t = {:g} s: {}{}", step.time, failure.reason, what_is_kept(actions));
   const auto& [first_dt, first] = first_failure_;
-  // The last failure may be one that short steps alone have.
+  // The last failure may occur only with short steps.
   const bool is_another =
       HalvingCauses::without_numbers(first) != HalvingCauses::without_numbers(failure.reason);
   return fmt::format("The step from t = {:g} s failed, even with dt = {:g} s after {} halvings: {}{}{}",
@@ -226,8 +226,8 @@ std::string StepLoop::give_up(const StepActions& actions, const coupling::Step& 
                      what_is_kept(actions));
 }
 
-/// The failure itself, or, where the same cause has halved steps too often, why the run ends. Collective: ranks may word a
-/// cause otherwise.
+/// Returns the failure itself, or why the run ends if its cause has halved steps too often. Collective,
+/// because ranks may word a cause differently.
 StepFailure StepLoop::seen_again(const StepFailure& failure, double dt) {
   const GlobalIndex mine = parallel::comm_rank(comm_) == 0 ? causes_.halved(failure.reason, dt) : 0,
                     times = parallel::sum(comm_, mine);

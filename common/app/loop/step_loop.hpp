@@ -19,47 +19,47 @@
 
 namespace couplet::app {
 
-/// Why steps were halved. A cause that comes back again and again is not one that shorter steps cure: they only feed a run
-/// whose answer is lost.
+/// Counts the causes of step halvings. Shorter steps cannot cure a recurring cause; they only prolong a run
+/// whose result is lost.
 class HalvingCauses {
  public:
-  /// So many halvings for one cause end a run. A cause begins anew where more than `calm_steps` steps were accepted since
-  /// that are as long as the one that failed: it is over, as where a load has changed suddenly.
+  /// Number of halvings by one cause that ends a run. A cause is forgotten after more than `calm_steps`
+  /// accepted steps that are at least as long as the failed one, for example after a sudden change of load.
   static constexpr int most = 10, calm_steps = 16;
 
-  /// dt [s] of the step.
+  /// Registers an accepted step of length dt [s].
   void accepted(double dt);
-  /// How often this cause has halved a step, now included. Causes are the same where the first sentences differ by numbers only.
+  /// Registers a halving and counts its cause. Causes are equal if their first sentences differ only in
+  /// numbers.
   int halved(const std::string& reason, double dt);
-  /// "the pressure did not converge in # iterations".
+  /// Returns "the pressure did not converge in # iterations".
   static std::string without_numbers(const std::string& reason);
 
  private:
   struct Count {
     int halvings = 0, good_steps = 0;
-    double dt = 0;  // that failed [s]
+    double dt = 0;  // of the failed step [s]
   };
   std::map<std::string, Count> counts_;
 };
 
-/// Where a run stands at an accepted time; kept beside the participants' files in a checkpoint folder as
-/// run.h5.
+/// State of a run at an accepted time, stored as run.h5 beside the participants' files in a checkpoint.
 struct RunState {
   double time = 0;
-  int outputs = 0;  ///< written so far
+  int outputs = 0;  ///< number of outputs written
   std::array<double, 6> plan{};
 };
-inline constexpr const char* run_file = "run.h5";  ///< of a checkpoint
-/// Written by rank 0, collective; read by each rank for itself.
+inline constexpr const char* run_file = "run.h5";  ///< in a checkpoint
+/// Rank 0 writes the state (collective). Each rank reads it by itself.
 void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, const RunState& state);
 RunState read_run_state(const std::filesystem::path& folder);
 
-/// `folder` itself if it is a complete checkpoint, else the one in it that has gone furthest, whichever file is
-/// the newest; throws Error if there is none. `tell`: a warning where the latest run has not gone as far as an
-/// earlier one.
+/// Returns `folder` if it is a complete checkpoint, else the one in it with the latest time, regardless of
+/// file dates. Throws Error if there is none. `tell` warns if the latest run did not get as far as an earlier
+/// one.
 std::filesystem::path find_checkpoint(const std::filesystem::path& folder, bool tell = false);
 
-/// Why a step was not solved, and whether a smaller one may be.
+/// Reason why a step failed, and whether a smaller one may succeed.
 struct StepFailure {
   std::string reason;
   bool halving_helps = true;
@@ -68,36 +68,36 @@ struct StepFailure {
   StepFailure(const char* why) : reason(why) {}  // NOLINT
 };
 
-/// What a run does with a step: all calls collective over its communicator.
+/// Actions of a run for each step. All calls are collective over its communicator.
 struct StepActions {
-  /// Begins and solves the step; the reason if that failed, nothing if it was solved. State n stays as it is.
+  /// Begins and solves the step without changing state n. Returns the reason of a failure, or nothing.
   std::function<std::optional<StepFailure>(const coupling::Step&)> attempt;
-  /// The step becomes state n. `time`: its end; `output`: number of the output that is due, -1 for none.
+  /// Makes the step state n. `time` is its end, `output` the number of the output that is due, or -1.
   std::function<void(double time, int output)> accept;
   std::function<void(int output)> write_start;
-  /// The run stops here: the state that was saved, as an output that a continued run drops and writes anew when it is due.
+  /// Writes the saved state as output of a stopped run. A continued run replaces it by regular output.
   std::function<void(double time, int output)> write_stop = [](double, int) {};
   std::function<void(const std::filesystem::path& folder)> save;
-  /// Why no checkpoint could be continued from; empty: checkpoints are written.
+  /// Reason why no checkpoint could be continued. If empty, checkpoints are written.
   std::string stateless;
-  /// After each accepted step: for the console.
+  /// Reports an accepted step on the console.
   std::function<void(const coupling::Step&, double time)> report;
-  /// Largest step that is advised now [s].
+  /// Largest currently recommended step [s].
   std::function<double()> advised_dt = [] { return std::numeric_limits<double>::infinity(); };
 };
 
-/// Steps from the start (or the checkpoint's time) to the end: halving after failures, outputs and
-/// checkpoints at nominal times. The same loop drives a participant alone and the coupled job.
+/// Advances from the start (or the checkpoint) to the end: halves failed steps, and writes outputs and
+/// checkpoints at nominal times. It drives standalone participants and coupled jobs.
 class StepLoop {
  public:
   StepLoop(MPI_Comm comm, const SimulationParameters& simulation, coupling::Scheme scheme,
            std::filesystem::path checkpoints);
-  /// Continues from this state instead of from the start. `from`: its checkpoint; those of the run that wrote it, up to that
-  /// time, are from now on this run's, and go as its own do, if they lie in the same folder.
+  /// Continues from this state. `from` is its checkpoint. Earlier checkpoints of that run in the same folder
+  /// then belong to this run and are removed like its own.
   void restart(const RunState& state, const std::filesystem::path& from = {});
-  /// Runs to the end, or to the next accepted step after the job was asked to stop (Watch::stop_requested), which is
-  /// saved and written. The text is empty if all went well, else it says at what time and why no step could be found; the
-  /// state before that step was saved, unless the job is stateless.
+  /// Runs to the end, or after a stop request (Watch::stop_requested) to the next accepted step, which is
+  /// saved and written. Returns an empty text on success. Otherwise it states when and why no step was found;
+  /// the state before was saved unless the job is stateless.
   std::string run(const StepActions& actions);
 
   double time() const { return plan_.time(); }
@@ -107,10 +107,10 @@ class StepLoop {
  private:
   bool due(double interval) const;
   StepFailure seen_again(const StepFailure& failure, double dt);
-  /// Gives the folder.
+  /// Writes a checkpoint and returns its folder.
   std::filesystem::path checkpoint(const StepActions& actions);
   std::string stop(const StepActions& actions);
-  /// Whether the run may take this set away when it is old.
+  /// Returns true if the run may remove this set when it is old.
   bool is_own(const io::FoundSet& set) const;
   std::string what_is_kept(const StepActions& actions) const;
   std::string give_up(const StepActions& actions, const coupling::Step& step, const StepFailure& failure);
@@ -122,11 +122,11 @@ class StepLoop {
   std::string run_id_;  // on rank 0
   coupling::StepPlan plan_;
   HalvingCauses causes_;
-  std::pair<double, std::string> first_failure_;  // of the step under way: dt [s] and reason; empty: none
-  std::vector<std::string> continues_;            // ids of the runs before
+  std::pair<double, std::string> first_failure_;  // of the current step: dt [s] and reason; empty if none
+  std::vector<std::string> continues_;            // ids of the earlier runs
   double continued_at_ = 0;
   int outputs_ = 0, halvings_ = 0;
-  bool restarted_ = false, is_written_ = false;  // is_written_: the state now, as an output
+  bool restarted_ = false, is_written_ = false;  // is_written_: the current state was written as output
 };
 
 }  // namespace couplet::app

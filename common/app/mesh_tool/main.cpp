@@ -31,7 +31,7 @@ struct Words {
   mesh::MeshParameters parameters;
 };
 
-/// Of this process so far [MB].
+/// Peak memory of this process [MB].
 double peak_memory() {
   rusage used{};
   ::getrusage(RUSAGE_SELF, &used);
@@ -56,7 +56,7 @@ void box(MPI_Comm comm, const Words& words) {
   io::write_cut_mesh(comm, mesh::box_block(comm, box), words.output);
 }
 
-/// Opens a mesh as the programs do and tells what it took.
+/// Opens a mesh as the programs do and prints the cost.
 void open(MPI_Comm comm, const Words& words) {
   const double start = MPI_Wtime(), before = peak_memory();
   const mesh::LoadedMesh loaded = io::load_mesh(comm, words.file, words.dimension, {}, {}, {}, words.solid);
@@ -73,7 +73,7 @@ void open(MPI_Comm comm, const Words& words) {
         parallel::comm_size(comm), sum, most, copies, seconds, peaks, peak, base);
 }
 
-/// NAME=VALUE.
+/// Parses assignments NAME=VALUE.
 mesh::MeshParameters parameters_of(const std::vector<std::string>& assignments) {
   mesh::MeshParameters parameters;
   for (const std::string& text : assignments) {
@@ -117,7 +117,7 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-/// Exit code; what is thrown is printed by rank 0.
+/// Returns the exit code. Rank 0 prints exceptions.
 int run_or_report(int argc, char** argv) {
   try {
     return run(argc, argv);

@@ -32,7 +32,7 @@ using namespace watching;
 
 namespace {
 
-/// Whether somebody wants the job to end although all of it is well and making steps: nobody is gone, nobody ends.
+/// Returns true if a healthy job is asked to end during its steps: no process is gone or ending.
 bool is_a_wish() {
   if (app::watching::board.slots[app::watching::board.mine].phase <= int(Phase::initialise)) return false;
   for (int i = 0; i < app::watching::board.count; ++i) {
@@ -43,8 +43,8 @@ bool is_a_wish() {
 }
 
 void report_the_dead() {
-  // The launcher may end the survivors one by one: those that have come here are no culprits, even if they
-  // are gone.
+  // The launcher may end the survivors one by one, so processes that reach this point are not the cause, even
+  // if gone.
   app::watching::board.slots[app::watching::board.mine].terminating = 1;
   const char* separator = "couplet: ";
   app::watching::Line line;
@@ -62,7 +62,7 @@ void report_the_dead() {
   if (!any && !app::watching::board.whole_job) return;
   if (!any) line << "couplet: the job was stopped from outside (signal SIGTERM)";
   line << ". All programs of the job end.\n";
-  // One line for all: that of the first survivor to come here.
+  // Only the first survivor prints the line.
   if (app::watching::board.slots[0].spoke_for_all.exchange(1) == 0) line.write_to(STDERR_FILENO);
 }
 
@@ -74,7 +74,7 @@ extern "C" void on_terminate(int) {
     return;
   }
   report_the_dead();
-  // Standard error is a pipe to the launcher: the line shall be through before the process is gone.
+  // Standard error is a pipe to the launcher, so the line needs time before the process exits.
   timespec pause{0, 100'000'000};
   ::nanosleep(&pause, nullptr);
   ::_exit(128 + SIGTERM);
@@ -95,7 +95,7 @@ app::watching::Slot* share_page(MPI_Comm machine, int rank, int size) {
   if (file >= 0) ::close(file);
   MPI_Barrier(machine);
   if (rank == 0) ::shm_unlink(path.c_str());
-  // Without shared memory the job runs all the same; only the line about the dead is lost.
+  // Without shared memory the job runs normally, but without the line about dead processes.
   if (parallel::any(machine, page == MAP_FAILED)) return nullptr;
   return static_cast<app::watching::Slot*>(page);
 }
@@ -180,7 +180,7 @@ void Watch::set_time(double time) {
 void Watch::limit_silence(double seconds) {
   if (!app::watching::board.slots || seconds <= 0 || app::watching::board.count < 2) return;
   guard_ = std::jthread([seconds](const std::stop_token& stop) {
-    // Signals are for the main thread.
+    // Signals are handled by the main thread.
     sigset_t all;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
@@ -218,7 +218,7 @@ void Watch::ending() {
 
 void Watch::finished() {
   if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].finished = 1;
-  // A launcher that clears up after another process's exit code must not spoil this one's.
+  // A launcher that cleans up after another exit code must not change the exit code of this process.
   std::signal(SIGTERM, SIG_IGN);
 }
 
@@ -252,7 +252,7 @@ void FaultInjection::at(std::string_view phase) {
 
 namespace {
 
-/// "fluid_solver (pid 7)", of the launcher's other children that are stopped, if any.
+/// Text "fluid_solver (pid 7)" with other stopped children of the launcher, or empty.
 std::string stopped_ones() {
   const std::string launcher = std::to_string(::getppid());
   std::ifstream children("/proc/" + launcher + "/task/" + launcher + "/children");
@@ -271,7 +271,7 @@ std::string stopped_ones() {
 StartGuard::StartGuard(double seconds, std::string label) {
   if (!(seconds > 0)) return;
   guard_ = std::jthread([seconds, label = std::move(label)](const std::stop_token& stop) {
-    sigset_t all;  // signals are for the main thread
+    sigset_t all;  // signals are handled by the main thread
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
     std::mutex mutex;
@@ -286,7 +286,7 @@ StartGuard::StartGuard(double seconds, std::string label) {
          << (stopped.empty() ? "one of them hangs or was not started" : "stopped (as by SIGSTOP): " + stopped)
          << ". The job ends.\n";
     std::cerr << text.str() << std::flush;
-    ::_exit(1);  // the launcher ends the others, stopped ones too
+    ::_exit(1);  // the launcher ends the others, including stopped ones
   });
 }
 

@@ -9,7 +9,7 @@
 
 namespace couplet::app {
 
-/// What a process is doing, for the others to see when it is gone.
+/// Activity of a process, which the others report if it dies.
 enum class Phase : int {
   roll_call,
   initialise,
@@ -24,40 +24,37 @@ enum class Phase : int {
 };
 const char* name(Phase phase);
 
-/// The processes of a job on one machine watch over each other through a small page of shared memory: each
-/// writes there who it is and what it does. MPI's launcher ends a job with SIGTERM when one of its processes
-/// dies; the handler then finds which processes are gone, and the first survivor to look writes the one line
-/// that names them and what they did last. If none is gone, SIGTERM is somebody's wish that the job ends: it is
-/// passed on to the loop of steps, which saves the state and ends the run. Where all of them wait for each other the job
-/// ends, too. One Watch a process. It stays in force until the process ends.
+/// Mutual watch of a job's processes on one machine. Each writes its identity and phase to a page of shared
+/// memory. MPI's launcher ends a job with SIGTERM when a process dies. The first survivor to handle the
+/// signal then prints one line with the dead processes and their last phase. If none is dead, SIGTERM is a
+/// stop request: the step loop saves the state and ends the run. A job whose processes all wait for each
+/// other is ended, too. One Watch per process stays in force until it ends.
 class Watch {
  public:
-  /// Collective over `world`, right after MPI_Init.
+  /// Must be called right after MPI_Init. Collective over `world`.
   Watch(MPI_Comm world, const std::string& participant);
   Watch(const Watch&) = delete;
-  /// Installs the handler (again): to be called after libraries that set handlers of their own, such as
-  /// PETSc.
+  /// Installs the signal handlers, again after libraries that replace them, such as PETSc.
   static void install();
-  /// Rank within the participant, once it is known.
+  /// Sets the rank within the participant, once it is known.
   void set_rank(int rank);
   void enter(Phase phase);
   Phase phase() const { return phase_; }
   void set_time(double time);
-  /// True for the first process of this participant on this machine that asks: it is the one that prints the
-  /// error.
+  /// Returns true for the first process of this participant on this machine that asks. It prints the error.
   bool claim_report();
-  /// From now on a thread looks whether the processes of this machine go on: one that has shown no sign of life
-  /// for so long [s] (see log/life.hpp), and does not just wait for others, ends the job and is named. 0: never.
+  /// Starts a thread that watches the processes of this machine. It ends the job and names a process without
+  /// sign of life for this time [s] (see log/life.hpp), unless that only waits for others. 0 disables it.
   void limit_silence(double seconds);
 
-  /// A signal asked this job to stop while it was making steps.
+  /// Returns true after a signal asked this job to stop during its steps.
   static bool stop_requested();
-  /// The job has saved its state and stops, as asked.
+  /// Records that the job saved its state and stops as requested.
   static void stopped();
   static bool has_stopped();
-  /// This process ends the job on purpose: the others need not look for a culprit.
+  /// Announces that this process ends the job on purpose, so that the others need not look for a cause.
   void ending();
-  /// This process is through with MPI: it may be gone from now on.
+  /// Announces that this process has finished with MPI and may disappear.
   static void finished();
 
  private:
@@ -65,10 +62,10 @@ class Watch {
   std::jthread guard_;
 };
 
-/// A test aid: COUPLET_FAULT="solid:solve:2" kills rank 0 of participant 'solid' with SIGKILL when it enters
-/// its second solve; "solid:solve:2:1" kills rank 1. A fifth part names another fate: hang (for ever, without a sign of
-/// life), work (for 7 s, with signs of life), wait (for a message that nobody sends), stop (SIGSTOP). The phases are those
-/// of app/watch.hpp. Without the variable nothing happens.
+/// Fault injection for tests: COUPLET_FAULT="solid:solve:2" kills rank 0 of participant 'solid' with SIGKILL
+/// at its second solve; "solid:solve:2:1" kills rank 1. A fifth part selects another fault: hang (without a
+/// sign of life), work (7 s, with signs of life), wait (for a message that is never sent), stop (SIGSTOP).
+/// Phases are those of app/watch.hpp. Without the variable nothing happens.
 class FaultInjection {
  public:
   FaultInjection(std::string_view participant, int rank);
@@ -80,12 +77,11 @@ class FaultInjection {
   int remaining_ = 0;
 };
 
-/// Until the processes of a job know each other, a Watch cannot see that one of them hangs: the others wait in
-/// MPI_Init for ever. This ends the process, and by that the job, where the start takes longer than the hang timeout.
-/// To be made before MPI_Init; disarmed by its end.
+/// Ends the job if its start exceeds the hang timeout. A Watch cannot do so, because processes wait in
+/// MPI_Init before they know each other. Create it before MPI_Init; the destructor disarms it.
 class StartGuard {
  public:
-  /// `seconds`: 0 for never. `label`: who speaks.
+  /// `seconds` is 0 for never. `label` starts the message.
   StartGuard(double seconds, std::string label);
 
  private:

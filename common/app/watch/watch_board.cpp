@@ -18,7 +18,7 @@
 
 namespace couplet::app::watching {
 
-Board board;  // NOLINT: see above
+Board board;  // NOLINT: see watch_board.hpp
 
 double now() {
   timespec t{};
@@ -35,7 +35,7 @@ char state_of(int pid) {
   char text[512];
   const ssize_t size = ::read(file, text, sizeof text);
   ::close(file);
-  // "pid (program) state ...", where the program's name may hold anything but ends at the last bracket.
+  // Format "pid (program) state ...". The name may contain anything, so the last bracket ends it.
   for (ssize_t i = size - 1; i >= 0; --i)
     if (text[i] == ')' && i + 2 < size) return text[i + 2];
   return 'R';
@@ -48,7 +48,7 @@ bool gone(int pid) {
 
 namespace {
 
-/// utime and stime of one process, and those of its children that have ended.
+/// User and system time of a process and its terminated children.
 double own_seconds(const std::string& folder) {
   std::ifstream file(folder + "/stat");
   std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -62,7 +62,7 @@ double own_seconds(const std::string& folder) {
   return total / double(::sysconf(_SC_CLK_TCK));
 }
 
-/// With its children and theirs: a program may be started by way of another.
+/// Includes children and their children, because a program may be started by another one.
 double seconds_of(const std::string& pid, int depth) {
   const std::string folder = "/proc/" + pid;
   double total = own_seconds(folder);
@@ -95,15 +95,15 @@ void end_job_with(const Line& line) {
 
 namespace {
 
-constexpr double patience = 4;   // [s] that nothing changes while all wait, each for more than a second
-constexpr double is_recent = 2;  // [s]: whoever waits looks four times a second
+constexpr double patience = 4;   // [s] without change while all wait, each for more than a second
+constexpr double is_recent = 2;  // [s]: a waiting process polls four times per second
 
-/// Since when all wait for the same as now; 0: not all do.
+/// Start of the period in which all processes wait for the same as now, or 0 if not all do.
 struct Stillness {
-  double since = 0, sum = 0;  // sum: of the times at which the waits began, which tells them from later ones
+  double since = 0, sum = 0;  // sum: of the start times of the waits, to distinguish them from later ones
 };
 
-/// The sum of Stillness, or 0 if somebody does not wait.
+/// Sum of Stillness, or 0 if a process does not wait.
 double all_wait(double t) {
   double sum = 0;
   for (int i = 0; i < board.count; ++i) {
@@ -159,12 +159,12 @@ void watch_waits() {
 
 namespace {
 
-/// Of the time since the last sign a busy process spends at least this share on a processor.
+/// Minimum processor share of a busy process since its last sign.
 constexpr double least_share = 1e-3, least_seconds = 0.02;
 
 bool is_coupler(const Slot& slot) { return std::string_view(slot.participant) == "coupler"; }
 
-/// Processor time is its sign of life.
+/// Returns true if processor time is its sign of life.
 bool works_long(const Slot& slot) {
   switch (Phase(slot.phase.load())) {
     case Phase::initialise:
@@ -190,7 +190,7 @@ Listener::Listener(double patience)
 
 void Listener::look() {
   const double t = now();
-  // Whoever was stopped himself has heard nothing of anybody.
+  // A process that was itself stopped has heard nothing from the others.
   if (t - last_look_ > 1 + 2 * period_) {
     started_ = t;
     std::fill(asleep_since_.begin(), asleep_since_.end(), 0.);
@@ -205,7 +205,7 @@ void Listener::look() {
     any_drowsy = any_drowsy || asleep_since_[std::size_t(i)] > 0;
     any_busy = any_busy || (is_silent(i) && !is_coupler(slot));
   }
-  // Others wait for one that is stopped: it is given its time before any of them is blamed.
+  // Others wait for a stopped process, so it gets its time before another one is blamed.
   if (any_drowsy && !any_asleep) return;
   speak(any_asleep, any_busy);
 }
@@ -223,7 +223,7 @@ void Listener::hear(int i) {
     return;
   }
   const double seconds = processor_seconds_of(slot.pid);
-  // A child that has ended and is not yet counted lets the sum fall.
+  // The sum decreases when a terminated child is not yet counted.
   if (work.since == 0 || seconds < work.seconds ||
       seconds - work.seconds > least_seconds + least_share * (last_look_ - work.since))
     work = {seconds, last_look_};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The page of shared memory by which the processes of a job on one machine watch over each other (see watch.hpp).
+/// Page of shared memory by which processes of a job on one machine watch each other (see watch.hpp).
 
 #include <unistd.h>
 
@@ -16,19 +16,19 @@ namespace couplet::app::watching {
 struct Slot {
   char participant[64];
   std::atomic<int> pid, rank, phase, ending, finished, terminating, reported, spoke_for_all;
-  std::atomic<int> stop_requested, stopped;  // of the job: in the first slot
+  std::atomic<int> stop_requested, stopped;  // of the job, in the first slot
   std::atomic<double> time;
   std::atomic<double> alive;        // last sign of life [s] on the machine's steady clock
   std::atomic<int> long_work;       // above 0: processor time is the sign (log::LongWork)
-  std::atomic<double> waits_since;  // of a wait that lasts; 0: none
-  std::atomic<double> looked;       // when the wait has last looked for its message
+  std::atomic<double> waits_since;  // start of a long wait, or 0
+  std::atomic<double> looked;       // last time the wait polled for its message
   char waits_for[128];              // written before waits_since
 };
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
 
-// A signal handler can only reach what has static storage. Written once, before the handler is installed.
+// Signal handlers can only use static storage. Written once, before the handler is installed.
 struct Board {
-  Slot* slots = nullptr;  // one a process of this machine, by world rank
+  Slot* slots = nullptr;  // one per process of this machine, by world rank
   int count = 0;
   int mine = 0;
   bool whole_job = false;  // all of the project's processes of the job are on this machine
@@ -36,7 +36,7 @@ struct Board {
 };
 extern Board board;
 
-/// Text built without allocation, for the signal handler.
+/// Text for the signal handler, built without allocation.
 class Line {
  public:
   Line& operator<<(std::string_view text) {
@@ -53,7 +53,7 @@ class Line {
     while (n > 0) *this << std::string_view(&digits[--n], 1);
     return *this;
   }
-  /// Six decimals, none for whole numbers.
+  /// Appends a number with six decimals, or none for whole numbers.
   Line& operator<<(double value) {
     if (value == double(long(value))) return *this << long(value);
     const auto micro = static_cast<long>(value * 1e6 + 0.5);
@@ -76,39 +76,39 @@ class Line {
   std::size_t size_ = 0;
 };
 
-/// Of the machine's steady clock [s].
+/// Time of the machine's steady clock [s].
 double now();
-/// The letter of the process in /proc: R running, S sleeping, T stopped, Z waiting to be buried; X: there is none.
+/// State of the process in /proc: R running, S sleeping, T stopped, Z zombie, X if it does not exist.
 char state_of(int pid);
-/// No such process, or one that only waits to be buried.
+/// Returns true if the process does not exist or is a zombie.
 bool gone(int pid);
-/// Processor time of the process and of its children [s]; 0: unknown. Not for signal handlers.
+/// Processor time of the process and its children [s], or 0 if unknown. Not for signal handlers.
 double processor_seconds_of(int pid);
-/// "participant 'solid' (rank 0, pid 7) <fate>; last heard of in solve at t = 0.1 s"
+/// Appends "participant 'solid' (rank 0, pid 7) <fate>; last heard of in solve at t = 0.1 s".
 void describe(Line& line, const Slot& slot, std::string_view fate);
-/// The first to come writes the line for all and ends its process, and by that the job.
+/// Ends this process and thus the job. Only the first caller writes the line.
 [[noreturn]] void end_job_with(const Line& line);
 
-/// From now on this process tells the others of waits that last, each a sign of life, and looks whether all of them
-/// wait: nobody is left then to send what any of them waits for, and the job ends with the names, whatever the hang
-/// timeout. Only where all processes of the job can be seen: a guest, or another machine, may be the one that works.
+/// Reports long waits of this process to the others, each as a sign of life, and checks if all processes
+/// wait. Then nobody can send the awaited messages, so the job is ended with their names, regardless of the
+/// hang timeout. Disabled if there are guests or other machines, which may still be working.
 void watch_waits();
 
-/// Records what one process notices of the others' silence, look by look.
+/// Tracks the silence of the other processes as seen by this one.
 class Listener {
  public:
   explicit Listener(double patience);
-  /// Between two looks [s]: a 120th of the patience, 5 s at most.
+  /// Time between two checks [s]: 1/120 of the patience, at most 5 s.
   double period() const { return period_; }
 
-  /// Ends the job if a process is silent: it is stopped, or nothing has been heard of it although it is not one that
-  /// waits. The coupler is named only if nobody else can be.
+  /// Ends the job if a process is silent: stopped, or without a sign of life although it is not waiting. The
+  /// coupler is named only if no other process can be.
   void look();
 
  private:
-  /// Processor time of a process in work that gives no sign, and when it last went on.
+  /// Processor time of a process during long work, and the time of its last increase.
   struct Work {
-    double seconds = 0, since = 0;  // since 0: it does no such work
+    double seconds = 0, since = 0;  // since 0: no long work
   };
   void hear(int i);
   bool is_asleep(int i) const;

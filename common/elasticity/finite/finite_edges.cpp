@@ -6,7 +6,7 @@
 namespace couplet::elastic {
 namespace {
 
-/// Four edges' tensors as components.
+/// Gathers the tensors of four edges as components.
 void gather(const double* values, const std::array<Index, 4>& at, bool is_change, Four (&t)[3][3]) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
@@ -36,7 +36,7 @@ FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
   for (std::size_t m = 0; m < laws.size(); ++m) {
     Group group;
     group.law = laws[m];
-    Index last = -1;  // filling stands in the same block
+    Index last = -1;  // padding uses the last edge of the block
     std::size_t n = 0;
     const auto add = [&](Index e, double of_edge) {
       if (n % 4 == 0) group.edges.emplace_back(), group.volume.emplace_back();

@@ -13,10 +13,10 @@
 namespace couplet::elastic {
 namespace {
 
-// Blocks that a law evaluates in one call: their numbers stay in the first cache.
+// Number of blocks per call of a law, chosen to keep the data in the first-level cache.
 constexpr std::size_t chunk = 16;
 
-// The loops for several generations of processors; the right one is picked when the program starts.
+// Loops compiled for several generations of processors, selected at program start.
 COUPLET_PROCESSOR_CLONES void deform_pass(finite::Group& group, std::size_t first, const finite::Values& at,
                                           std::span<Invariants> found) {
   group.dim == 2 ? finite::deform_loop<2>(group, first, at, found)
@@ -80,7 +80,7 @@ finite::Values FiniteKernel::values() {
   return {space_.values(), space_.forces(), cells_.of_nodes.empty() ? nullptr : cells_.of_nodes.data()};
 }
 
-/// States, energy and the worst volume ratio of one material's faces.
+/// Computes states, energy and the smallest volume ratio of one material's faces.
 void FiniteKernel::deform(finite::Group& group) {
   std::array<Invariants, chunk> invariants;
   std::array<Energy, chunk> energy;
@@ -91,7 +91,7 @@ void FiniteKernel::deform(finite::Group& group) {
     group.relax(first, found);
     for (std::size_t i = 0; i < n; ++i)
       for (int k = 0; k < 4; ++k) worst_.take(found[i].j[k], group.volumes[first + i].face[k]);
-    if (!(worst_.ratio > 0)) continue;  // laws know logarithms and roots
+    if (!(worst_.ratio > 0)) continue;  // laws contain logarithms and roots
     group.evaluate(first, found, cells_.of_nodes.empty(), {energy.data(), n});
     for (std::size_t i = 0; i < n; ++i)
       for (int k = 0; k < 4; ++k) energy_ += group.own * group.volumes[first + i].whole[k] * energy[i].w[k];
@@ -113,7 +113,7 @@ void FiniteKernel::internal_forces() {
     edges_->finish_means();
     if (worst_.ratio > 0) worst_.take(edges_->to_stress(cells_.of_nodes.empty(), energy_), worst_.face);
   }
-  // Inside out somewhere: the forces are not used, but the other ranks wait.
+  // If a face is inverted, the forces are not used, but the other ranks wait for the collective call.
   if (!cells_.of_nodes.empty()) find_pressures();
   if (has_start_) return conserving_forces();
   if (!(worst_.ratio > 0)) return;
@@ -123,7 +123,7 @@ void FiniteKernel::internal_forces() {
   }
 }
 
-/// Springs and inertia, and the rows of all forces.
+/// Adds springs and inertia, and computes the rows of all forces.
 void FiniteKernel::finish(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
                           std::span<double> result) {
   space_.add_springs(known);
@@ -161,7 +161,7 @@ void FiniteKernel::apply_tangent(std::span<const double> v, std::span<const doub
   finish(v, known, mass_factor, result);
 }
 
-/// With edges: what the face's share of them makes of both.
+/// Includes the share of the edges, if there are any.
 void FiniteKernel::visit(const Take& take) {
   for (const finite::Group& group : groups_)
     for (std::size_t i = 0; i < group.blocks.size(); ++i) {
@@ -188,7 +188,7 @@ void FiniteKernel::visit(const Take& take) {
     }
 }
 
-// One volume ratio a cell.
+// The following functions belong to the formulation with one volume ratio per cell.
 
 void FiniteKernel::set_own_pressures(bool on) {
   cells_.own = on ? cells_.pressure : std::vector<double>();
@@ -202,14 +202,14 @@ void FiniteKernel::accept_pressures() {
   cells_.fraction = 0;
 }
 
-/// Gives the values of the local cells.
+/// Returns the values of the local cells.
 std::span<double> FiniteKernel::sum_over_ranks(std::vector<double>& of_nodes) const {
   const std::span<double> cells = std::span(of_nodes).first(std::size_t(mesh_.cells.n_local()));
   mesh_.cells.add_to_owners(cells);
   return cells;
 }
 
-/// From V J of the cells to U'(J).
+/// Converts V J of the cells to U'(J).
 void FiniteKernel::find_pressures() {
   const std::span<double> cells = sum_over_ranks(cells_.of_nodes);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
@@ -224,7 +224,7 @@ void FiniteKernel::find_pressures() {
   if (edges_) cells_.there = cells_.of_nodes;
 }
 
-/// U'' dJ of owned cells for the change in the space.
+/// Computes U'' dJ of owned cells for the increment in the space.
 void FiniteKernel::sum_volume_changes() {
   std::ranges::fill(cells_.of_nodes, 0.0);
   for (const finite::Group& group : groups_) volume_pass(group, values());
@@ -249,7 +249,7 @@ void FiniteKernel::add_pressure_defect(std::span<double> result) {
   space_.add_collected(result);
 }
 
-/// p* = [U(J_1) - U(J_0)] / (J_1 - J_0) of the cells, J_1 being that of 2 F - F_0.
+/// Conserving pressure p* = [U(J_1) - U(J_0)] / (J_1 - J_0) of the cells, where J_1 belongs to 2 F - F_0.
 void FiniteKernel::conserving_pressures() {
   std::ranges::fill(cells_.of_nodes, 0.0);
   std::vector<double> before(cells_.of_nodes.size(), 0);
@@ -265,9 +265,9 @@ void FiniteKernel::conserving_pressures() {
   mesh_.cells.update_ghosts(cells);
 }
 
-// The step that conserves energy; what holds a body at its patches.
+// Energy-conserving steps and reaction forces.
 
-/// F, W and the cells' J of the state where a step begins.
+/// Stores F, W and J of the cells at the start of a step.
 void FiniteKernel::set_start(std::span<const double> unknowns, std::span<const double> known) {
   has_start_ = false;
   space_.fill(unknowns, known);
@@ -278,11 +278,11 @@ void FiniteKernel::set_start(std::span<const double> unknowns, std::span<const d
   has_start_ = true;
 }
 
-/// Forces of a step that conserves energy; the tangent stays that of the states in its middle, which is symmetric and differs
-/// by the square of the step.
+/// Adds the forces of an energy-conserving step. The tangent remains that of the midpoint states. It is
+/// symmetric and differs by the square of the step.
 void FiniteKernel::conserving_forces() {
   for (finite::Group& group : groups_) {
-    // The states' pressure belongs to their tangent.
+    // The tangent includes the pressure of the midpoint states.
     if (!cells_.of_nodes.empty())
       for (std::size_t i = 0; i < group.blocks.size(); ++i)
         group.states[i].wj += finite::between(group, i, cells_.of_nodes.data()) / group.own;
@@ -316,7 +316,7 @@ std::vector<Wrench> FiniteKernel::holding_forces(std::span<const double> unknown
   return space_.held(known, true);
 }
 
-// Thermal stretches of faces, of the edges they share with, of cells.
+// Sets thermal stretches of faces, shared edges and cells.
 
 void FiniteKernel::set_stretch(std::span<const double> of_faces) {
   cells_.swelling.clear();
@@ -338,7 +338,7 @@ void FiniteKernel::set_stretch(std::span<const double> of_faces) {
   for (std::size_t c = 0; c < cells_.swelling.size(); ++c) cells_.swelling[c] /= cells_.volume[c];
 }
 
-/// The mean over the faces round an edge, as that of F. Collective.
+/// Averages the stretches of the faces around each edge, like F. Collective.
 void FiniteKernel::stretch_edges() {
   edges_->clear();
   for (const finite::Group& group : groups_)
@@ -350,7 +350,7 @@ void FiniteKernel::stretch_edges() {
   edges_->take_stretch();
 }
 
-/// Uses nine changes of F. The edges see a pressure through their own F: the face takes it whole here.
+/// Computes nine changes of F. A pressure acts on edges through their own F; here the face takes all of it.
 void FiniteKernel::visit_tangents(const std::function<void(const FaceTangent&)>& take) {
   const auto take_cofactors = [](const finite::State& state, FaceTangent(&of)[4]) {
     Four h[3][3];
@@ -389,7 +389,7 @@ void FiniteKernel::visit_tangents(const std::function<void(const FaceTangent&)>&
   }
 }
 
-/// V B_i^T (dP/dF) B_j, and what the nodes change of the cells' volumes.
+/// Assembles V B_i^T (dP/dF) B_j and the derivatives of the cell volumes.
 linalg::SparseMatrix finite_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
                                    std::span<const double> of_nodes) {
   const Numbering number{fv::number_nodes(mesh, rows.unknown_faces()), {}};

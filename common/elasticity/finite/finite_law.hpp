@@ -8,37 +8,36 @@
 
 namespace couplet::elastic {
 
-/// Of C = F^T F: I1 = tr C, I2 = (I1^2 - tr C^2) / 2, and J = det F.
+/// Invariants of C = F^T F: I1 = tr C, I2 = (I1^2 - tr C^2) / 2, and J = det F.
 struct Invariants {
   Four i1, i2, j;
 };
 
-/// An energy W(I1, I2, J) [Pa] with its first and second derivatives.
+/// Energy W(I1, I2, J) [Pa] with its first and second derivatives.
 template <class T>
 struct EnergyOf {
   T w{}, w1{}, w2{}, wj{}, w11{}, w12{}, w1j{}, w22{}, w2j{}, wjj{};
 };
 using Energy = EnergyOf<Four>;
 
-/// U(J) with its first two derivatives [Pa].
+/// Volumetric energy U(J) with its first two derivatives [Pa].
 template <class T>
 struct BulkOf {
   T u{}, pressure{}, modulus{};
 };
 
-/// A hyperelastic isotropic law: the energy of a unit of undeformed volume by the invariants of the
-/// deformation. What is made of it (stress, tangent) stands in finite_strain.hpp, so that a law is its
-/// derivatives and no more.
+/// Hyperelastic isotropic law: energy per undeformed volume as a function of the invariants. Stress and
+/// tangent are derived in finite_strain.hpp, so a law consists only of its derivatives.
 class FiniteLaw {
  public:
   virtual ~FiniteLaw() = default;
-  /// One call a chunk of places: W whole, or without its bulk part U(J).
+  /// Evaluates W for many states at once, with or without its bulk part U(J).
   virtual void evaluate(std::span<const Invariants> at, bool with_bulk, std::span<Energy> energy) const = 0;
-  /// The part that depends on J alone and grows without bound as nu goes to 1/2.
+  /// Part that depends only on J and becomes infinite as nu approaches 1/2.
   virtual BulkOf<double> bulk(double j) const = 0;
-  /// Some laws have none (Saint Venant-Kirchhoff: its pressure is not one of the volume).
+  /// Returns false for laws such as Saint Venant-Kirchhoff, whose pressure is not a function of J.
   virtual bool has_bulk() const = 0;
-  /// I2 appears in W.
+  /// Returns true if W depends on I2.
   virtual bool has_second_invariant() const = 0;
 };
 
@@ -46,10 +45,11 @@ class FiniteLaw {
 
 namespace couplet::elastic::finite {
 
-/// The energy of the elastic part of F = F_e theta, theta a stretch equal in all directions (thermal), per volume before it:
+/// Energy of the elastic part of F = F_e theta with an isotropic (thermal) stretch theta, per undeformed
+/// volume:
 ///   W = theta^3 W_e(I1 / theta^2, I2 / theta^4, J / theta^3)
-/// with its derivatives by the invariants of F, so that stress and tangent need not know of theta. `at`: those of F, spoilt;
-/// `stretch`: theta of each place, empty: 1.
+/// Derivatives are with respect to the invariants of F, so stress and tangent do not depend on theta. `at`
+/// are these invariants and is overwritten. `stretch` is theta of each state, or empty for 1.
 inline void evaluate(const FiniteLaw& law, std::span<Invariants> at, std::span<const Four> stretch,
                      bool with_bulk, std::span<Energy> energy) {
   for (std::size_t i = 0; i < stretch.size(); ++i) {

@@ -8,18 +8,18 @@
 #include "common/elasticity/finite/finite_places.hpp"
 #include "common/elasticity/symmetric/symmetric_blocks.hpp"
 
-/// Loops of FiniteKernel over faces of one material, four side by side.
+/// Loops of FiniteKernel over faces of one material, four at a time.
 namespace couplet::elastic::finite {
 
 struct Group : FaceGroup, Places {
   int dim = 3;
 };
 
-/// Where the loops read and write.
+/// Input and output arrays of the loops.
 struct Values {
   const double* values;
   double* forces;
-  double* of_cells;  ///< null: the volume ratio is the faces'
+  double* of_cells;  ///< nullptr if each face has its own volume ratio
 };
 
 /// F, or its change.
@@ -54,7 +54,7 @@ inline Four between(const Group& group, std::size_t i, const double* of_nodes) {
   return blocks::between(group.blocks[i], group.volumes[i], of_nodes);
 }
 
-/// F and the invariants of some blocks; adds V_fP J to the cells.
+/// Computes F and the invariants of some blocks. Adds V_fP J to the cells.
 template <int D>
 [[gnu::always_inline]] inline void deform_loop(Group& group, std::size_t first, const Values& at,
                                                std::span<Invariants> found) {
@@ -78,7 +78,7 @@ template <int D, bool HasSecond>
   }
 }
 
-/// The forces of a pressure of the cells alone: p H.
+/// Adds the forces p H of the cell pressures.
 inline void pressure_loop(const Group& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four h[3][3];
@@ -90,7 +90,7 @@ inline void pressure_loop(const Group& group, const Values& at) {
   }
 }
 
-/// V_fP dJ to the cells.
+/// Adds V_fP dJ to the cells.
 template <int D>
 [[gnu::always_inline]] inline void volume_loop(const Group& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
@@ -113,7 +113,7 @@ template <int D, bool HasSecond>
   }
 }
 
-/// t V / 3 (F - I), or its change, to the edges, gradient_stride numbers each.
+/// Adds t V / 3 (F - I), or its change, to the edges, gradient_stride numbers each.
 inline void to_edges(const FaceGroup& group, const double* values, double* edges) {
   for (std::size_t i = 0; i < group.edges.size(); ++i) {
     Four g[3][3];
@@ -127,7 +127,7 @@ inline void to_edges(const FaceGroup& group, const double* values, double* edges
   }
 }
 
-/// What the edges' stress does to the nodes.
+/// Adds the forces of the edges' stress to the nodes.
 inline void from_edges(const FaceGroup& group, const double* edges, double* forces) {
   for (std::size_t i = 0; i < group.edges.size(); ++i) {
     Four p[3][3] = {};
@@ -147,7 +147,7 @@ inline void end_of(const Group& group, std::size_t i, Tensor4& f) {
     for (int b = 0; b < 3; ++b) f[a][b] = 2.0 * group.states[i].f[a][b] - group.start[i].f[a][b];
 }
 
-/// Adds V_fP J to the cells, at the start of a step and at its end.
+/// Adds V_fP J at the start and end of a step to the cells.
 inline void end_volumes(const Group& group, double* at_start, double* at_end) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four f[3][3];
@@ -157,7 +157,7 @@ inline void end_volumes(const Group& group, double* at_start, double* at_end) {
   }
 }
 
-/// The smallest det F at the end of a step.
+/// Smallest det F at the end of a step.
 inline double least_end_ratio(const Group& group) {
   double least = 1;
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
@@ -170,8 +170,8 @@ inline double least_end_ratio(const Group& group) {
   return least;
 }
 
-/// The forces of a step that conserves energy: in place of those of the states in its middle. `change`: p* of the
-/// cells in `at.of_cells`.
+/// Adds the forces of an energy-conserving step, which replace those of the midpoint states. `at.of_cells`
+/// holds the conserving pressure p* of the cells.
 inline void conserving_loop(const Group& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four p[3][3];

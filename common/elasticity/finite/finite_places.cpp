@@ -9,11 +9,11 @@
 namespace couplet::elastic::finite {
 namespace {
 
-// Newton's method in the stretch; a step changes it at most by this factor.
+// Newton's method for the stretch. A step changes it at most by the factor `largest_step`.
 constexpr int most_steps = 60;
 constexpr double largest_step = 2, converged = 1e-13;
 
-/// Invariants of F from in-plane F : F and det F.
+/// Invariants of F from the in-plane F : F and det F.
 Invariants with(const Four& square, const Four& area, const Four& l) {
   Invariants at;
   at.i1 = square + l * l;
@@ -22,7 +22,7 @@ Invariants with(const Four& square, const Four& area, const Four& l) {
   return at;
 }
 
-/// One step from l; the largest relative change.
+/// Performs one Newton step from l. Returns the largest relative change.
 double step(const Energy& e, const Four& square, const Four& area, Four& l) {
   const Four a1 = 2.0 * l, a2 = 2.0 * l * square;
   const Four slope = a1 * e.w1 + a2 * e.w2 + area * e.wj;
@@ -34,12 +34,12 @@ double step(const Energy& e, const Four& square, const Four& area, Four& l) {
         bend[k] > 0 ? l[k] - slope[k] / bend[k] : l[k] * (slope[k] > 0 ? 1 / largest_step : largest_step);
     const double next = std::clamp(newton, l[k] / largest_step, l[k] * largest_step);
     change = std::max(change, std::abs(next - l[k]) / l[k]);
-    if (l[k] > thinnest) l[k] = next;  // one that is lost stays where it is
+    if (l[k] > thinnest) l[k] = next;  // a lost one stays unchanged
   }
   return change;
 }
 
-/// dW/dJ of a sheet from P_33 = 0: without the rounding of det F times the bulk modulus.
+/// Sets dW/dJ of a sheet from P_33 = 0, without the round-off of det F times the bulk modulus.
 void balance(State& state) {
   const Tensor4& f = state.f;
   const Four square = f[0][0] * f[0][0] + f[0][1] * f[0][1] + f[1][0] * f[1][0] + f[1][1] * f[1][1];
@@ -49,7 +49,7 @@ void balance(State& state) {
 
 }  // namespace
 
-/// -d ln l / d ln (in-plane area) of the linear sheet.
+/// Sets `thinning` to -d ln l / d ln (in-plane area) of the linear sheet.
 void Places::set_plane_stress() {
   sheet.resize(states.size());
   State state{};
@@ -74,7 +74,7 @@ void Places::relax(std::size_t first, std::span<Invariants> found) {
       const double free = theta.empty() ? 1 : theta[0][k];
       l[k] = area[k] > 0 ? free * std::pow(area[k] / (free * free), -thinning) : 1;
     }
-    if (!is_sound) continue;  // the step is shortened for it
+    if (!is_sound) continue;  // the step will be shortened
     double change = std::numeric_limits<double>::infinity();
     for (int n = 0; n < most_steps && change > converged; ++n) {
       Invariants here = with(square, area, l);

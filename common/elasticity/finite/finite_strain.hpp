@@ -5,8 +5,8 @@
 
 #include "common/elasticity/finite/finite_law.hpp"
 
-/// First Piola-Kirchhoff stress P = dW/dF and its directional derivative for an energy by invariants
-/// [holzapfel2000], four places at a time:
+/// First Piola-Kirchhoff stress P = dW/dF and its directional derivative for an energy of the invariants
+/// [holzapfel2000], four locations at a time:
 ///   P  = 2 W1 F + 2 W2 B + WJ H,   B = I1 F - F C,   H = dJ/dF (the cofactors of F)
 ///   dP = 2 W1 dF + 2 dW1 F + 2 W2 dB + 2 dW2 B + WJ dH + dWJ H
 /// with dW1 = W11 dI1 + W12 dI2 + W1J dJ and so on, dI1 = 2 F:dF, dI2 = 2 B:dF, dJ = H:dF.
@@ -14,7 +14,7 @@ namespace couplet::elastic::finite {
 
 using Tensor4 = Four[3][3];
 
-/// What the derivative needs of a state.
+/// State at which the derivative is evaluated.
 struct alignas(32) State {
   Four f[3][3];
   Four w1, w2, wj, w11, w12, w1j, w22, w2j, wjj;
@@ -96,7 +96,8 @@ template <bool HasSecond>
     }
 }
 
-/// `dpressure`: change of a pressure that is known apart, whose value stands in s.wj.
+/// Directional derivative dP. `dpressure` is the change of a separate pressure, whose value is included in
+/// s.wj.
 template <bool HasSecond>
 [[gnu::always_inline]] inline void tangent(const State& s, const Tensor4& df, const Four& dpressure,
                                            Tensor4& dp) {
@@ -131,16 +132,16 @@ template <bool HasSecond>
   s.w11 = e.w11, s.w12 = e.w12, s.w1j = e.w1j, s.w22 = e.w22, s.w2j = e.w2j, s.wjj = e.wjj;
 }
 
-/// Where a step that conserves energy began: F and W.
+/// F and W at the start of an energy-conserving step.
 struct alignas(32) Start {
   Four f[3][3];
   Four energy;
 };
 
-/// Below this size of D the quotient is rounding, and what it would correct is smaller still.
+/// Size of D below which the quotient is dominated by round-off; its correction is then negligible.
 constexpr double smallest_change = 1e-4;
 
-/// dX/dC of an energy by invariants: w1 I + w2 (i1 I - C) + wj J/2 C^-1.
+/// Derivative of an energy of the invariants with respect to C: w1 I + w2 (i1 I - C) + wj J/2 C^-1.
 inline void by_c(const Tensor4& c, const Four& w1, const Four& w2, const Four& wj, const Four& j,
                  Tensor4& to) {
   Tensor4 h;
@@ -164,7 +165,7 @@ inline Invariants invariants_of_c(const Tensor4& c) {
   return at;
 }
 
-/// D / (D:D) times `gap`; nothing where D is all but nothing or the gap is rounding of `size`.
+/// D / (D:D) times `gap`. Zero if D is negligible or the gap is round-off of `size`.
 inline Four quotient(const Four& gap, const Four& square, const Four& size) {
   Four q{};
   for (int k = 0; k < 4; ++k)
@@ -173,13 +174,12 @@ inline Four quotient(const Four& gap, const Four& square, const Four& size) {
   return q;
 }
 
-/// The stress of a step from F_0 to F_1 = 2 F - F_0 (F in the middle) that does exactly the work W(C_1) - W(C_0)
-/// [gonzalez2000]: with C = (C_0 + C_1) / 2 and D = C_1 - C_0
-///   S* = 2 W'(C) + 2 [W(C_1) - W(C_0) - W'(C):D] D / (D:D),   P* = F S*,
-/// S* symmetric, so that neither linear nor angular momentum changes. A pressure of the volume ratio (one a cell) goes
-/// with the same difference quotient of J.
-///
-/// `start`: F_0; `energy_start`: W there; `pressure`: of the cells, where the law is asked without its bulk part.
+/// Stress of a step from F_0 to F_1 = 2 F - F_0 (midpoint F) whose work is exactly W(C_1) - W(C_0)
+/// [gonzalez2000]. With C = (C_0 + C_1) / 2 and D = C_1 - C_0:
+///   S* = 2 W'(C) + 2 [W(C_1) - W(C_0) - W'(C):D] D / (D:D),   P* = F S*
+/// S* is symmetric, so linear and angular momentum are conserved. A pressure of the volume ratio (one per
+/// cell) uses the same difference quotient of J. `start` is F_0, `energy_start` is W there, and `pressure` is
+/// that of the cells if the law is evaluated without its bulk part.
 inline void conserving_stress(const FiniteLaw& law, const Tensor4& middle, const Tensor4& start,
                               const Four& energy_start, bool with_bulk, const Four& pressure, Tensor4& p) {
   Tensor4 end, c0, c1, c, a, b;

@@ -33,7 +33,7 @@ void StressStiffness::apply(std::span<const double> x, std::span<double> y) {
   space_.take_rows({}, {}, y);
 }
 
-/// V G sigma of the faces.
+/// Adds V G sigma of the faces.
 template <int D>
 void StressStiffness::push(const FaceGroup& group) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
@@ -52,7 +52,7 @@ void StressStiffness::push(const FaceGroup& group) {
   }
 }
 
-/// Mean gradients of the edges, times the stress there.
+/// Multiplies the mean gradients of the edges by their stress.
 void StressStiffness::push_edges() {
   std::ranges::fill(edge_value_, 0);
   for (const FaceGroup& group : groups_) finite::to_edges(group, space_.values(), edge_value_.data());

@@ -10,13 +10,13 @@
 
 namespace couplet::elastic {
 
-/// K_sigma of the symmetric gradient, without a matrix: v . K_sigma v = sum_f V_f sigma_f : G_f^T G_f, where three-cornered faces
-/// share with their edges (SharedEdges) those with the mean gradients and the mean stress there; and the stiffness of the pressure.
+/// Geometric stiffness of the symmetric gradient without a matrix: v . K_sigma v = sum_f V_f sigma_f : G_f^T
+/// G_f. Triangles share it with their edges (SharedEdges). It includes the stiffness of a follower pressure.
 class StressStiffness {
  public:
-  /// All by reference but what is kept of `of`. Collective.
+  /// Keeps references to mesh and rows, and the needed parts of `of`. Collective.
   StressStiffness(const mesh::Mesh& mesh, const ElasticOperator& rows, Prestress of);
-  /// y = K_sigma x on the rows of ElasticOperator. Collective.
+  /// Computes y = K_sigma x on the rows of ElasticOperator. Collective.
   void apply(std::span<const double> x, std::span<double> y);
 
  private:

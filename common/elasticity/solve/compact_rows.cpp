@@ -35,7 +35,7 @@ CompactRows::Lanes CompactRows::boundary_diagonal(Index f) const {
   for (int c = 0; c < mesh_.dim; ++c) {
     const double known = row.known(c, c), spring = line.area * row.spring(c, c);
     const double whole = (row.mirrored ? 1 : boundary_factor_) * k[c];
-    // spring and half cell in series
+    // Spring and half cell in series.
     k[c] = static_cast<float>(whole * (known + (1 - known) * spring / (whole + spring)));
   }
   return k;

@@ -8,7 +8,7 @@
 
 namespace couplet::elastic {
 
-/// Two-point rows of the owned cells; boundary faces, and bonds to other ranks, stand on the diagonal only.
+/// Two-point rows of the owned cells. Boundary faces and bonds to other ranks are only on the diagonal.
 class CompactRows {
  public:
   using Lanes = linalg::ComponentMultigrid::Lanes;
@@ -27,7 +27,7 @@ class CompactRows {
   bool owned(Index c) const { return c < mesh_.cells.n_owned(); }
   /// |S| / (d . n) [mu + (mu + lambda) n_c^2] per component.
   Lanes coefficient(Index f) const;
-  /// What a boundary face adds on the diagonal of its cell.
+  /// Contribution of a boundary face to the diagonal of its cell.
   Lanes boundary_diagonal(Index f) const;
   /// Both sides of a bonded face in series.
   Lanes bond(Index f) const;

@@ -16,10 +16,10 @@ namespace {
 
 using Block = Eigen::Matrix<double, 6, 6>;
 
-// Volume strains between aggregates that are all but forbidden would lock the coarse space.
+// Limits lambda, because nearly incompressible strains between aggregates would lock the coarse space.
 constexpr double most_lambda_over_mu = 3;
 
-/// Displacement of mode m at an arm: translations, then rotations; in the plane two and one.
+/// Displacement of mode m at an arm: translations, then rotations (two and one in 2-D).
 Vec3 mode(int m, int dim, const Vec3& arm) {
   if (m < dim) return Vec3::Unit(m);
   if (dim == 2) return Vec3::UnitZ().cross(arm);
@@ -96,13 +96,13 @@ void CurrentRigidModes::find_arms(const DeformedBody& body) {
   }
 }
 
-/// V dE_m : C : dE_n between the modes of the aggregates that a face knows.
+/// Adds V dE_m : C : dE_n between the modes of the aggregates in a face's stencil.
 void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>& matrix) const {
   FaceTerms terms_of(mesh_, rows_, number_);
   const std::size_t n = centre_.size() * std::size_t(modes_);
   struct Part {
     Index aggregate;
-    Block strain;  // columns: modes; rows: xx yy zz, and the shears times root 2
+    Block strain;  // columns: modes; rows: xx yy zz, and the shears times sqrt(2)
   };
   std::vector<Part> parts;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
@@ -143,7 +143,7 @@ void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>&
   }
 }
 
-/// S k of the springs on the mean motions of their faces, which they resist even where an aggregate carries out all of it.
+/// Adds S k of the springs for the mean motion of their faces, even if one aggregate performs all of it.
 void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double>& matrix) const {
   FaceTerms terms_of(mesh_, rows_, number_);
   const std::size_t n = centre_.size() * std::size_t(modes_);
@@ -170,7 +170,7 @@ void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double
   }
 }
 
-/// Of a vector at an unknown node: the rest is known, and no mode moves it.
+/// Part of a vector at an unknown node that is not known. Modes move only this part.
 Vec3 CurrentRigidModes::free_part(std::size_t i, const Vec3& v) const {
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned());
   if (i < n_cells) return v;

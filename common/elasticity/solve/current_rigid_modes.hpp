@@ -12,27 +12,27 @@
 
 namespace couplet::elastic {
 
-/// What a coarse space of a deformed body must know of the present state. `gradient`: F of each flux face;
-/// `displacement`: of each local node (cells, then boundary faces).
+/// Current state of a deformed body: F of each flux face and the displacement of each local node (cells, then
+/// boundary faces).
 struct DeformedBody {
   std::vector<Tensor3> gradient;
   std::vector<Vec3> displacement;
 };
 
-/// Rigid motions of aggregates of cells about their present places: what bends a slender body is a slow
-/// variation of rotations, which no component-wise operator sees cheaply, and which a body that has turned
-/// carries out about where it is now. The correction is Z (Z^T A Z)^-1 Z^T r with the tangent's part that
-/// strains, V dE : C : dE with dE = sym(F^T dF) and the law's constants at small strain, and the springs: never indefinite. A face
-/// all of whose stencil lies in one aggregate carries nothing. Factorised whole on every rank.
+/// Coarse space of rigid motions of cell aggregates about their current positions. Slender bodies bend by
+/// slowly varying rotations, which component-wise operators resolve slowly. The correction is Z (Z^T A Z)^-1
+/// Z^T r. A contains the springs and V dE : C : dE with dE = sym(F^T dF) and the small-strain constants, so
+/// it is never indefinite. A face whose stencil lies in one aggregate has no contribution. The matrix is
+/// factorized on every rank.
 class CurrentRigidModes {
  public:
-  /// About `n_aggregates` over all ranks. `node_inertia`: of the unknown nodes [N/m]; empty: none.
-  /// Mesh and rows by reference. Collective.
+  /// `n_aggregates` is approximate, over all ranks. `node_inertia` is that of the unknown nodes [N/m], or
+  /// empty. Keeps references to mesh and rows. Collective.
   CurrentRigidModes(const mesh::Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
                     std::vector<double> node_inertia);
-  /// Collective.
+  /// Assembles and factorizes for the current state. Collective.
   void update(const DeformedBody& body);
-  /// z += Z (Z^T A Z)^-1 Z^T r. Collective.
+  /// Adds Z (Z^T A Z)^-1 Z^T r to z. Collective.
   void add_correction(std::span<const double> r, std::span<double> z) const;
   int n_aggregates() const { return static_cast<int>(centre_.size()); }
 
@@ -51,10 +51,10 @@ class CurrentRigidModes {
   const ElasticOperator& rows_;
   int modes_;
   std::vector<double> inertia_;
-  Numbering number_;              // nodes by themselves; negative: known
+  Numbering number_;              // one number per node; negative if known
   std::vector<Index> aggregate_;  // of each local cell, over all ranks
-  std::vector<Vec3> centre_;      // of all aggregates, present places
-  std::vector<Vec3> arm_;         // of the unknown nodes from their centres
+  std::vector<Vec3> centre_;      // of all aggregates, current positions
+  std::vector<Vec3> arm_;         // from the center to each unknown node
   std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;
 };
 

@@ -12,10 +12,10 @@
 namespace couplet::elastic {
 namespace {
 
-// Of the symmetric operator. Smooth motions are softer in an elastic body than component by component, the more so the
-// smoother: a factor of the coarse correction, level by level (any positive one leaves the preconditioner positive), and
-// parts of the diagonal of K added. To 1e-8: from 88 iterations to 47 on the elliptic plate of 32x48x24 hexahedra, from
-// 350 to 136 on a porous body of 115 500 tetrahedra, from 135 to 69 on Cook's membrane of 64x64.
+// Factors for the symmetric operator. The coarse correction of each level is multiplied by a factor, because
+// smooth motions are softer than component by component. Parts of the diagonal of K are added. Iterations to
+// 1e-8: 47 instead of 88 for a plate of 32x48x24 hexahedra, 136 instead of 350 for a porous body of 115 500
+// tetrahedra, 69 instead of 135 for Cook's membrane of 64x64.
 constexpr float of_smooth = 1.3F;
 constexpr double of_cells = 0.8, of_faces = 0.85;
 
@@ -27,13 +27,13 @@ ComponentCycle multigrid_cycle(linalg::ComponentMultigrid::Rows rows,
   };
 }
 
-/// Of a face with the block `own`: springs beside what is free, `whole` where it is known.
+/// Block `own` of a face with supports: springs in free directions, `whole` in known ones.
 Tensor3 supported(const Tensor3& own, const BoundaryRow& s, double area, double whole) {
   const Tensor3 open = Tensor3::Identity() - s.known;
   return open * (own + area * s.spring) * open + whole * s.known;
 }
 
-/// Of a two-point flux along the normal, which stands for what is known of a face [N/m].
+/// Stiffness of a two-point flux along the normal, used for known directions [N/m].
 double stiffness_across(const LameConstants& lame, const fv::FaceLine& line) {
   return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
@@ -49,7 +49,7 @@ ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const Elast
       between_(options.between),
       is_symmetric_(options.scheme == FaceGradientScheme::symmetric),
       left_out_(options.without_cells_bulk ? rows.volume_strain() : VolumeStrain::faces) {
-  // The corrected gradient has 2 (u_B - u_P) on the boundary.
+  // On the boundary the corrected gradient contains 2 (u_B - u_P).
   const double boundary_factor = options.scheme == FaceGradientScheme::corrected ? 2 : 1;
   linalg::ComponentMultigrid::Rows compact =
       CompactRows(mesh, rows, boundary_factor, left_out_)
@@ -97,7 +97,7 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<con
       const Index twin = mesh.n_interior + mesh.twin[f - mesh.n_interior];
       const Tensor3 other = stiffness(twin);
       own += other;
-      // The other cell's part goes to this one where it lives on another rank: constants stay constants.
+      // If the other cell is on another rank, its part goes to this one, so that constants stay constant.
       if (mesh.owner[twin] < mesh.cells.n_owned()) {
         row.twin_owner = mesh.owner[twin];
         row.other = own.inverse() * other;
@@ -113,8 +113,8 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<con
   }
 }
 
-/// High frequencies see the diagonal of K itself, a third of the compact operator's inside hexahedra, but up to 1.6 times
-/// as much at cells and faces that many vertices lean on.
+/// Adds the diagonal of K for high frequencies. Inside hexahedra it is a third of the compact operator's, but
+/// up to 1.6 times as much at cells and faces with many vertices.
 void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inertia) {
   const mesh::Mesh& mesh = *mesh_;
   const mesh::Geometry& geometry = *geometry_;
@@ -135,7 +135,7 @@ void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inert
   }
 }
 
-/// u_B of the boundary faces from their own rows and the cells' part of z.
+/// Computes u_B of the boundary faces from their own rows and the cells' part of z.
 void ElasticPreconditioner::solve_faces(std::span<const double> r, std::span<double> z) const {
   const int dim = mesh_->dim;
   const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * dim;
@@ -159,7 +159,7 @@ void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> 
   solve_faces(r, z);
 }
 
-/// [1, C^T] before the cycle and [1; C] after it, and the diagonal of K added.
+/// Applies [1, C^T] before the cycle and [1; C] after it, and adds the diagonal of K.
 void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::span<double> z) {
   const int dim = mesh_->dim;
   const std::size_t n_cells = gathered_.size();

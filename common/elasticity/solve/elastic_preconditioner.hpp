@@ -12,43 +12,42 @@
 
 namespace couplet::elastic {
 
-/// x = V(b), `components` values a cell. Collective.
+/// Multigrid cycle x = V(b) with `components` values per cell. Collective.
 using ComponentCycle = std::function<void(std::span<const double> b, std::span<double> x, int components)>;
 
-/// Preconditioner of diag(inertia) + A without A: the two-point flux of each component by itself, coefficient
-/// |S| / (d . n) [mu + (mu + lambda) n_c^2] (the diagonal of the compact block operator), under a multigrid
-/// cycle; the unknowns of faces from their own rows, u_B = K_B^-1 (r_B + C u_P); and, where asked for, the
-/// rigid motions of aggregates, added, or taken first.
+/// Matrix-free preconditioner of diag(inertia) + A. It applies a multigrid cycle to the two-point flux of
+/// each component with coefficient |S| / (d . n) [mu + (mu + lambda) n_c^2] (diagonal of the compact block
+/// operator). Unknowns of faces follow from u_B = K_B^-1 (r_B + C u_P). Rigid motions of aggregates are
+/// optionally added or applied first.
 class ElasticPreconditioner {
  public:
   struct Options {
     FaceGradientScheme scheme = FaceGradientScheme::thesis;
-    int n_aggregates = 0;  ///< of the rigid coarse space; 0: none
-    /// The thesis's operator, kept by reference: the coarse space comes first and the cycle sees what it
-    /// leaves. Costs one application and saves a third of the iterations. None: both are added.
+    int n_aggregates = 0;  ///< of the rigid coarse space, or 0
+    /// Operator of the thesis, kept by reference, to apply the coarse space before the cycle. One more
+    /// application saves a third of the iterations. With nullptr both corrections are added.
     const ElasticKernel* between = nullptr;
-    /// Of the symmetric operator: inertia of the unknown nodes, owned cells, then faces [N/m]; empty: none.
+    /// Inertia of the unknown nodes (owned cells, then faces) for the symmetric operator [N/m], or empty.
     std::span<const double> node_inertia = {};
-    /// Of what is left of the symmetric operator without the bulk modulus of cells: of the mixed form.
+    /// Preconditions the symmetric operator without the bulk modulus of cells, for the mixed form.
     bool without_cells_bulk = false;
-    /// What makes another cycle than ComponentMultigrid's, to compare them (benchmarks/linalg); empty: none.
+    /// Creates another cycle than ComponentMultigrid's for comparison (benchmarks/linalg), or empty.
     std::function<ComponentCycle(linalg::ComponentMultigrid::Rows,
                                  const linalg::ComponentMultigrid::Options&)>
         cycle = {};
   };
-  /// Collective.
   ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
                         const Options& options);
 
-  /// z = M^-1 r. Collective.
+  /// Computes z = M^-1 r. Collective.
   void apply(std::span<const double> r, std::span<double> z);
   const RigidCoarseSpace* coarse_space() const { return coarse_.get(); }
 
  private:
-  /// u_B = inverse r_B + cell u_P (+ other u_P' across a bonded face).
+  /// Face unknown u_B = inverse r_B + cell u_P (+ other u_P' across a bonded face).
   struct FaceRow {
     Tensor3 inverse, cell, other;
-    Index owner, twin_owner;  // -1: not bonded, or the other cell is on another rank
+    Index owner, twin_owner;  // -1 if not bonded or on another rank
   };
   void find_face_rows(double boundary_factor, std::span<const double> node_inertia);
   void add_true_diagonal(std::span<const double> node_inertia);
@@ -63,12 +62,12 @@ class ElasticPreconditioner {
   const ElasticKernel* between_;
   bool is_symmetric_;
   VolumeStrain left_out_;         // faces: the preconditioner is that of the whole operator
-  std::vector<double> gathered_;  // of the symmetric form, as the next
+  std::vector<double> gathered_;  // for the symmetric form, like the next
   std::vector<float> inverse_diagonal_;
   ComponentCycle cycle_;
   std::vector<FaceRow> face_rows_;
   std::unique_ptr<RigidCoarseSpace> coarse_;
-  std::vector<double> left_, smooth_;  // of the multiplicative form
+  std::vector<double> left_, smooth_;  // for the multiplicative form
 };
 
 }  // namespace couplet::elastic

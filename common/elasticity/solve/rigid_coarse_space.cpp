@@ -22,7 +22,7 @@ Tensor3 cross_matrix(const Vec3& v) {
   return m;
 }
 
-/// One entry of Z^T A Z on its way to the other ranks.
+/// Entry of Z^T A Z for another rank.
 struct Entry {
   Index row, column;
   double value;
@@ -30,9 +30,9 @@ struct Entry {
 
 }  // namespace
 
-/// Z^T A Z under construction.
+/// Assembly of Z^T A Z.
 struct RigidCoarseSpace::Assembly {
-  /// What of a vertex value follows one aggregate: sum w and sum w (x_i - c) over its nodes there.
+  /// Part of a vertex value that follows one aggregate: sum w and sum w (x_i - c) over its nodes there.
   struct Share {
     Index aggregate;
     double weight;
@@ -44,7 +44,7 @@ struct RigidCoarseSpace::Assembly {
   const ElasticOperator& rows;
   std::vector<std::int64_t> offset{0};
   std::vector<Share> shares;                                 // of each vertex
-  std::vector<std::vector<std::pair<Index, Block>>> blocks;  // of the aggregates of this rank: column, value
+  std::vector<std::vector<std::pair<Index, Block>>> blocks;  // of this rank's aggregates: column, value
   Index first_row;
 
   Assembly(const RigidCoarseSpace& s, const mesh::Mesh& m, const ElasticOperator& r, Index first, int n_here)
@@ -84,8 +84,7 @@ struct RigidCoarseSpace::Assembly {
     return true;
   }
 
-  /// Force on the face by the modes of each aggregate in its stencil, and from there into the rows of its
-  /// cells.
+  /// Adds the force on the face by the modes of each aggregate in its stencil to the rows of its cells.
   void add_face(Index f) {
     const bool on_boundary = f >= mesh.n_interior;
     const fv::FaceLine line = fv::face_line(mesh, geometry, f);
@@ -132,7 +131,7 @@ struct RigidCoarseSpace::Assembly {
  private:
   void add_node(Index cell, const Tensor3& block) { add(space.aggregate_[cell], block, 1, space.arm(cell)); }
 
-  // Shared: the mean of both sides, for want of the true balance.
+  // A shared face uses the mean of both sides instead of the true balance.
   void add_face_node(Index f, const Tensor3& across) {
     const Vec3& x = geometry.face_centre[f];
     const auto follow = [&](Index cell, const Tensor3& block, double share) {
@@ -148,7 +147,7 @@ struct RigidCoarseSpace::Assembly {
     follow(mesh.owner[f], (across - geometry.face_area[f].norm() * open * s.spring) * open, 1);
   }
 
-  // block u with u = weight t + spin x arm.
+  // Adds block u with u = weight t + spin x arm.
   void add(Index aggregate, const Tensor3& block, double weight, const Vec3& arm) {
     std::size_t i = 0;
     while (i < found_.size() && found_[i].first != aggregate) ++i;
@@ -157,7 +156,7 @@ struct RigidCoarseSpace::Assembly {
     found_[i].second.rightCols<3>() -= block * cross_matrix(arm);
   }
 
-  // Force and moment of this row on the modes of the cell's aggregate.
+  // Adds force and moment of this row to the modes of the cell's aggregate.
   void add_row(Index cell, Index column, const Modes& force) {
     if (cell >= mesh.cells.n_owned()) return;
     auto& row = blocks[space.aggregate_[cell] - first_row];
@@ -188,7 +187,7 @@ RigidCoarseSpace::RigidCoarseSpace(const mesh::Mesh& mesh, const ElasticOperator
   }
   assembly.add_inertia(inertia);
 
-  // In the plane the modes are two translations and the turn about z.
+  // In 2-D the modes are two translations and the rotation about z.
   const std::array<int, 6> mode = modes_ == 6 ? std::array{0, 1, 2, 3, 4, 5} : std::array{0, 1, 5, 0, 0, 0};
   std::vector<Entry> entries;
   for (int a = 0; a < n_here; ++a)

@@ -11,25 +11,24 @@
 
 namespace couplet::elastic {
 
-/// A mode that moves no cell (the spin of a single row of cells) has an empty row; this part of the largest diagonal
-/// keeps it solvable, its amplitude is nothing.
+/// Fraction of the largest diagonal entry for modes that move no cell (the spin of a single row of cells),
+/// whose row would be empty.
 inline constexpr double floor_of_diagonal = 1e-10;
 
-/// Rigid motions of aggregates of cells as a coarse space for elasticity: what bends a slender body is a slow
-/// variation of rotations, which no component-wise operator sees cheaply. With Z the rigid modes (3 in 2-D, 6
-/// in 3-D) of each aggregate, the correction is Z (Z^T A Z)^-1 Z^T r; Z^T looks at cell rows only, boundary
-/// nodes move with their cell.
+/// Coarse space of rigid motions of cell aggregates. Slender bodies bend by slowly varying rotations, which
+/// component-wise operators resolve slowly. Z holds the rigid modes (3 in 2-D, 6 in 3-D) of each aggregate.
+/// The correction is Z (Z^T A Z)^-1 Z^T r. Z^T uses only cell rows; boundary nodes move with their cell.
 ///
-/// Z^T A Z is assembled face by face: a face all of whose stencil lies in one aggregate carries no force. It
-/// is factorised whole on every rank.
+/// Z^T A Z is assembled by faces, skipping those whose stencil lies in one aggregate, and factorized on every
+/// rank.
 class RigidCoarseSpace {
  public:
-  /// About `n_aggregates` over all ranks. Collective.
+  /// `n_aggregates` is approximate, over all ranks. Collective.
   RigidCoarseSpace(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
                    int n_aggregates);
   ~RigidCoarseSpace();
 
-  /// z += Z (Z^T A Z)^-1 Z^T r. Collective.
+  /// Adds Z (Z^T A Z)^-1 Z^T r to z. Collective.
   void add_correction(std::span<const double> r, std::span<double> z) const;
   int n_aggregates() const { return static_cast<int>(centre_.size()); }
 
@@ -47,7 +46,7 @@ class RigidCoarseSpace {
   std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> factors_;
 };
 
-/// Parts 0 .. n - 1 of nearly equal size by halving along the longest side again and again.
+/// Partitions positions into nearly equal parts 0 .. n - 1 by repeated bisection along the longest side.
 std::vector<Index> bisect(std::span<const Vec3> places, int n_parts);
 
 }  // namespace couplet::elastic

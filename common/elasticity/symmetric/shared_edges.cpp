@@ -12,7 +12,7 @@
 
 namespace couplet::elastic {
 
-/// What an edge is told by on every rank, and who has it.
+/// Identifies an edge on every rank, with the rank that has it.
 struct SharedEdges::Key {
   GlobalIndex material, a, b;
   int rank = 0;
@@ -22,7 +22,7 @@ struct SharedEdges::Key {
 
 namespace {
 
-/// What a point is told by in the edges' names: on periodic patches by the point that all copies are.
+/// Names of points in the keys of edges. On periodic patches all copies have one name.
 std::vector<GlobalIndex> names_of_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
   std::vector<GlobalIndex> names = mesh.point_id;
   const mesh::PeriodicPoints periodic(mesh, geometry);
@@ -41,7 +41,7 @@ SharedEdges::SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
   number(mesh, faces);
   const std::size_t n = end_points_.size();
   value_.assign(n * stride, 0);
-  std::vector<double> sums(n * 3, 0);  // V_E, and mu and lambda by volume
+  std::vector<double> sums(n * 3, 0);  // V_E, and mu and lambda times volume
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const LameConstants whole = face_lame(mesh, rows, faces[i]);
     const LameConstants lame = part_of_faces(whole, rows.volume_strain());
@@ -68,13 +68,13 @@ SharedEdges::SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
   names_ = {};
 }
 
-/// Means of the faces' by volume.
+/// Averages the matrices of the faces by volume.
 void SharedEdges::find_matrices(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                 std::span<const Index> faces, std::span<const double> volume) {
   constexpr int entries = 36;
   std::vector<double> sums(inverse_volume_.size() * entries, 0);
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (volume[i] == 0) continue;  // another rank's
+    if (volume[i] == 0) continue;  // belongs to another rank
     const ElasticMatrix part = share * volume[i] / 3 * face_matrix(mesh, rows, faces[i]);
     for (const Index e : edges_of_[i])
       for (int k = 0; k < entries; ++k) sums[std::size_t(e) * entries + k] += part.data()[k];
@@ -87,9 +87,9 @@ void SharedEdges::find_matrices(const mesh::Mesh& mesh, const ElasticOperator& r
     matrix_.push_back(inverse_volume_[e] * Eigen::Map<const ElasticMatrix>(sums.data() + e * entries));
 }
 
-/// Local numbers, the owned edges first; the owner is the smallest rank that has an edge.
+/// Numbers the edges locally, owned ones first. The owner is the smallest rank that has the edge.
 void SharedEdges::number(const mesh::Mesh& mesh, std::span<const Index> faces) {
-  std::vector<std::uint8_t> is_near(mesh.points.n_local(), 0);  // may be known elsewhere
+  std::vector<std::uint8_t> is_near(mesh.points.n_local(), 0);  // may be known to other ranks
   for (Index c = mesh.cells.n_owned(); c < mesh.cells.n_local(); ++c)
     for (const Index v : mesh.cell_points[c]) is_near[v] = 1;
   for (std::size_t v = 0; v < names_.size(); ++v)
@@ -131,7 +131,7 @@ void SharedEdges::number(const mesh::Mesh& mesh, std::span<const Index> faces) {
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) edges_of_[i][k] = found.at(key_of(faces[i], k).same());
   if (!parallel_) return;
-  // Where the owners keep them.
+  // Positions at the owners.
   std::erase_if(mine, [&](const Key& k) { return owner_of(k.same()) != rank; });
   for (Key& k : mine) k.local = found.at(k.same());
   std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, Index> remote;
@@ -148,7 +148,7 @@ void SharedEdges::number(const mesh::Mesh& mesh, std::span<const Index> faces) {
 
 void SharedEdges::find_mirrors(const mesh::Mesh& mesh, const ElasticOperator& rows) {
   const mesh::Geometry& geometry = rows.geometry();
-  // Symmetry faces of ghosts count: an edge of the plane may have its faces here elsewhere.
+  // Symmetry faces of ghosts are included, because an edge of the plane may have its faces on another rank.
   std::map<std::array<GlobalIndex, 2>, std::vector<Index>> by_ends;
   for (std::size_t e = 0; e < end_points_.size(); ++e)
     by_ends[end_points_[e]].push_back(static_cast<Index>(e));
@@ -172,7 +172,7 @@ void SharedEdges::find_mirrors(const mesh::Mesh& mesh, const ElasticOperator& ro
     for (const Vec3& n : list) mirrors_.emplace_back(e, n);
 }
 
-/// Entry (a, b) of the tensor at an edge stands at place[3 a + b].
+/// Completes the sums. Entry (a, b) of the tensor at an edge is at place[3 a + b].
 void SharedEdges::finish(std::span<double> values, int step, std::span<const int, 9> place) const {
   if (parallel_) {
     map_.add_to_owners(values, step);

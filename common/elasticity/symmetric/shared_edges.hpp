@@ -11,23 +11,22 @@
 
 namespace couplet::elastic {
 
-/// The edges with which three-cornered faces share their strain. The tangential part of a face's gradient is
-/// the constant strain of its three vertices, which locks in bending; the mean over the faces round an edge
-/// does not:
-///   E = sum_f (1 - t) V_f W(e_f) + sum_E V_E W(e_E),   V_E = sum_{f at E} t V_f / 3,
+/// Edges with which triangular faces share their strain. The tangential gradient of a triangle is the
+/// constant strain of its vertices, which locks in bending. The mean over the faces around an edge does not:
+///   E = sum_f (1 - t) V_f W(e_f) + sum_E V_E W(e_E),   V_E = sum_{f at E} t V_f / 3
 ///   e_E = sum_{f at E} (t V_f / 3) e_f / V_E
-/// Zero modes appear at t = 1 only. Edges between materials are one a material. On a symmetry plane the mean
-/// holds the mirror images, too: no shear across the plane.
+/// Zero-energy modes appear only at t = 1. An edge between materials is split by material. On a symmetry
+/// plane the mean includes the mirror images, so the shear strain across the plane is zero.
 class SharedEdges {
  public:
   static constexpr double share = 0.9;
   static constexpr int size = 6;  ///< xx, yy, zz, xy, yz, xz
-  static constexpr std::array<int, 9> of_strain{0, 3, 5, 3, 1,
-                                                4, 5, 4, 2};  ///< where a tensor's entries stand
+  /// Position of each tensor entry in a strain.
+  static constexpr std::array<int, 9> of_strain{0, 3, 5, 3, 1, 4, 5, 4, 2};
   static constexpr int stride = 8;
   static constexpr int gradient_stride = 12;  ///< of finish_gradients()
 
-  /// `faces`: the three-cornered ones of this rank, each face on one rank alone; `volume`: V_f of each.
+  /// `faces` are the triangular ones of this rank (each face on one rank), `volume` is V_f of each.
   /// Collective.
   SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
               std::span<const double> volume);
@@ -36,26 +35,27 @@ class SharedEdges {
   const std::array<Index, 3>& edges_of(std::size_t face) const { return edges_of_[face]; }
   void clear() { std::fill(value_.begin(), value_.end(), 0.0); }
   double* at(Index edge) { return value_.data() + std::size_t(edge) * stride; }
-  /// After all faces have added (t V_f / 3) e_f: over the ranks, divided by V_E, mirrored. Collective.
+  /// Completes the means after all faces have added (t V_f / 3) e_f: sums over ranks, divides by V_E,
+  /// mirrors. Collective.
   void finish_means();
-  /// The same of gradients in an array of the caller's: entry a * 3 + b of an edge. Collective.
+  /// Completes means of gradients in the caller's array, entry a * 3 + b of an edge. Collective.
   void finish_gradients(std::span<double> values) const;
   std::size_t n_edges() const { return inverse_volume_.size(); }
   double volume(Index edge) const { return 1 / inverse_volume_[edge]; }
   bool is_owned(Index edge) const { return !parallel_ || edge < map_.n_owned(); }
-  /// One number an edge over all ranks, and back: -1: of another rank.
+  /// Number of an edge over all ranks, and its inverse (-1 for another rank's edge).
   GlobalIndex global(Index edge) const { return parallel_ ? map_.global(edge) : edge; }
   Index owned_of(GlobalIndex edge) const {
     if (!parallel_) return Index(edge);
     const GlobalIndex i = edge - map_.first();
     return i >= 0 && i < map_.n_owned() ? Index(i) : -1;
   }
-  /// Edges on symmetry planes, with the normal; as often as planes.
+  /// Edges on symmetry planes with the normal, one entry per plane.
   const std::vector<std::pair<Index, Vec3>>& mirrors() const { return mirrors_; }
-  /// An edge's own constants: means of its faces'. The matrix of anisotropic bodies alone.
+  /// Constants of an edge: means over its faces. The matrix exists only for anisotropic bodies.
   const LameConstants& lame(Index edge) const { return lame_[lame_.size() == 1 ? 0 : std::size_t(edge)]; }
   const ElasticMatrix& matrix(Index edge) const { return matrix_[std::size_t(edge)]; }
-  /// Strains (engineering shear halved) become stresses of the edge's own constants.
+  /// Converts strains (tensor shear) to stresses by the edge's constants.
   void to_stress();
 
  private:
@@ -70,15 +70,15 @@ class SharedEdges {
   parallel::IndexMap map_;
   bool parallel_ = false;
   std::vector<double> value_, inverse_volume_;
-  std::vector<LameConstants> lame_;                     // one a material's edge, or one in all
-  std::vector<ElasticMatrix> matrix_;                   // in its place, one an edge; empty: isotropic
+  std::vector<LameConstants> lame_;                     // one per edge and material, or one in total
+  std::vector<ElasticMatrix> matrix_;                   // one per edge instead; empty if isotropic
   std::vector<std::pair<Index, Vec3>> mirrors_;         // edges on symmetry planes, with the normal
-  std::vector<std::array<GlobalIndex, 2>> end_points_;  // while it is made
-  std::vector<GlobalIndex> names_;                      // of the local points, while it is made
+  std::vector<std::array<GlobalIndex, 2>> end_points_;  // only during construction
+  std::vector<GlobalIndex> names_;                      // of the local points, only during construction
 };
 
-/// The three-cornered flux faces in the order of SharedEdges: `n_mine` of this rank, then others'; `volume` [m^3] of
-/// this rank's, 0 of the others. Empty in the plane.
+/// Triangular flux faces in the order of SharedEdges: first `n_mine` of this rank, then the others, whose
+/// `volume` [m^3] is 0. Empty in 2-D.
 struct SharedFaces {
   std::vector<Index> faces;
   std::vector<double> volume;
@@ -86,11 +86,11 @@ struct SharedFaces {
 };
 SharedFaces shared_faces(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
-/// Stress of the edges: the mean of their faces' by the weights of their strain, see SharedEdges::at(). `stress`: per flux
-/// face [Pa]. Collective.
+/// Stress of the edges: mean of their faces' with the weights of the strain, stored in SharedEdges::at().
+/// `stress` is per flux face [Pa]. Collective.
 void find_edge_stresses(const SharedFaces& shared, std::span<const Tensor3> stress, SharedEdges& edges);
 
-/// Gives the value at an edge as a symmetric tensor.
+/// Value at an edge as a symmetric tensor.
 Tensor3 edge_tensor(SharedEdges& edges, Index edge);
 
 }  // namespace couplet::elastic

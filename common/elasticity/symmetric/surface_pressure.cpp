@@ -6,12 +6,12 @@
 namespace couplet::elastic {
 namespace {
 
-/// A triangle between the node of a face and one of its edges; in the plane a line between the node and a corner.
+/// Triangle between the node of a face and one of its edges, or in 2-D a line between node and corner.
 struct Piece {
-  std::array<Index, 3> at;      ///< places
+  std::array<Index, 3> at;      ///< locations
   std::array<Tensor3, 3> turn;  ///< da/dx of each corner
   Vec3 area;
-  std::size_t n;  ///< corners
+  std::size_t n;  ///< number of corners
 };
 
 Tensor3 cross(const Vec3& e) {
@@ -20,7 +20,7 @@ Tensor3 cross(const Vec3& e) {
   return m;
 }
 
-/// take(piece) for the pieces of a boundary face, whose places stand at position(place).
+/// Calls take(piece) for the pieces of a boundary face, with positions given by position(place).
 template <class Position, class Take>
 void visit_pieces(const mesh::Mesh& mesh, Index face, const Position& position, const Take& take) {
   const auto points = mesh.face_points[face];

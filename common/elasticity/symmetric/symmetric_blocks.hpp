@@ -13,31 +13,31 @@
 
 namespace couplet::elastic {
 
-/// The rows of four faces, side by side: the kernels' arithmetic is on one number of each at a time. All indices are places.
+/// Rows of four faces for SIMD arithmetic. All indices are locations.
 struct FaceBlock {
-  double b[3][3][4];                       ///< of the node across, plus_0 (, plus_1): see FaceRows
-  std::array<Index, 4> plus[3], minus[3];  ///< the node across and the owner's, then points
+  double b[3][3][4];                       ///< of the neighbor node, plus_0 (, plus_1): see FaceRows
+  std::array<Index, 4> plus[3], minus[3];  ///< neighbor and owner nodes, then points
 };
 
-/// What else of four faces matters. Filling has no volume.
+/// Volumes of four faces. Padding has none.
 struct FaceVolumes {
   double whole[4];           ///< V [m^3]
   double here[4], there[4];  ///< V_fP of both sides over V
-  Index face[4];             ///< -1: filling
+  Index face[4];             ///< -1 for padding
 };
 
-/// Faces that a rank computes, in blocks in their order; the last block is filled up.
+/// Faces that a rank computes, in blocks in their order. The last block is padded.
 struct FaceGroup {
   std::vector<Index> faces;
   std::vector<FaceBlock> blocks;
   std::vector<FaceVolumes> volumes;
-  double own = 1;                                          ///< share of their energy that is not the edges'
-  std::vector<std::array<std::array<Index, 3>, 4>> edges;  ///< of each block; empty: they share nothing
+  double own = 1;                                          ///< share of their energy not assigned to edges
+  std::vector<std::array<std::array<Index, 3>, 4>> edges;  ///< of each block; empty if nothing is shared
 };
 
 FaceGroup make_group(const mesh::Mesh& mesh, const ElasticOperator& rows, std::vector<Index> faces);
 
-/// This rank's flux faces with takes(f): those that share with `edges`, or the others if none are given.
+/// Group of this rank's flux faces with takes(f): those that share with `edges`, or the others if nullptr.
 template <class Takes>
 FaceGroup make_group(const mesh::Mesh& mesh, const ElasticOperator& rows, const SharedFaces& shared,
                      const SharedEdges* edges, const Takes& takes) {
@@ -63,7 +63,7 @@ namespace blocks {
 
 [[gnu::always_inline]] inline Four wide(const double* from) { return lanes::load<3>(from); }
 
-/// Four places' vectors as components, each over the four faces.
+/// Gathers the vectors of four locations as components over the four faces.
 template <int D>
 [[gnu::always_inline]] inline void gather(const double* values, const std::array<Index, 4>& at,
                                           Four (&to)[D]) {
@@ -84,7 +84,7 @@ template <int D>
   }
 }
 
-/// The components of four faces as vectors.
+/// Converts the components of four faces to vectors.
 [[gnu::always_inline]] inline void transpose(const Four (&from)[3], Four (&to)[4]) {
   const Four zero{};
   const Four low = __builtin_shufflevector(from[0], from[1], 0, 4, 2, 6);  // x0 y0 x2 y2
@@ -97,7 +97,7 @@ template <int D>
   to[3] = __builtin_shufflevector(high, zh, 2, 3, 6, 7);
 }
 
-/// values[plus] += force, values[minus] -= force, of each of the four.
+/// Adds `force` at `plus` and subtracts it at `minus`, for each of the four faces.
 template <int D>
 [[gnu::always_inline]] inline void scatter(double* values, const std::array<Index, 4>& plus,
                                            const std::array<Index, 4>& minus, const Four (&force)[D]) {
@@ -117,7 +117,7 @@ template <int D>
   }
 }
 
-/// G, entry (k, j) = d u_k / d x_j.
+/// Computes the gradient G, entry (k, j) = d u_k / d x_j.
 template <int D>
 [[gnu::always_inline]] inline void gradient(const FaceBlock& block, const double* values, Four (&g)[D][D]) {
   Four u[D][D], other[D];
@@ -133,7 +133,7 @@ template <int D>
     }
 }
 
-/// The forces of a stress times V on nodes and points: dE/du.
+/// Adds the forces dE/du of a stress times V to nodes and points.
 template <int D>
 [[gnu::always_inline]] inline void push(const FaceBlock& block, const Four (&stress)[D][D], double* forces) {
   for (int k = 0; k < D; ++k) {
@@ -146,7 +146,7 @@ template <int D>
   }
 }
 
-/// (V_fP p_P + V_fQ p_Q) / V of values of cells.
+/// Average of cell values, (V_fP p_P + V_fQ p_Q) / V.
 [[gnu::always_inline]] inline Four between(const FaceBlock& block, const FaceVolumes& volumes,
                                            const double* of_nodes) {
   double here[4], there[4];

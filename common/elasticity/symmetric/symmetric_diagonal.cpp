@@ -7,7 +7,7 @@
 namespace couplet::elastic {
 namespace {
 
-// Of a block: xx, yy, zz, then xy, yz, xz.
+// Block entries are xx, yy, zz, then xy, yz, xz.
 constexpr int block_size = 6, diagonal_size = 3;
 
 class Sum {
@@ -39,8 +39,8 @@ class Sum {
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   VolumeStrain without_;
-  std::vector<Vec3> gradient_;  // of each local node: G = sum u b^T on the face at hand
-  std::vector<Index> nodes_;    // where it is not zero
+  std::vector<Vec3> gradient_;  // of each local node: G = sum u b^T on the current face
+  std::vector<Index> nodes_;    // nodes with nonzero gradient_
   std::vector<double> cells_, boundary_;
 };
 
@@ -54,7 +54,7 @@ void Sum::add_face(Index f) {
     else if (!mirrored)
       add(row.place, row.b);
   if (mirrored) {
-    // The mirror image moves as the cell does but for the way across the plane: G = -2 n (n . u) s^T.
+    // The mirror image moves like the cell except across the plane: G = -2 n (n . u) s^T.
     const LameConstants lame = part_of_faces(rows_.lame(mesh_.owner[f]), without_);
     const Vec3& s = face.row[1].b;
     for (int a = 0; a < 3; ++a)
@@ -64,7 +64,7 @@ void Sum::add_face(Index f) {
   add_squares(face.volume, part_of_faces(face_lame(mesh_, rows_, f), without_));
 }
 
-/// V [(lambda + mu) b b^T + mu b.b I] of each node.
+/// Adds V [(lambda + mu) b b^T + mu b.b I] of each node.
 void Sum::add_squares(double volume, const LameConstants& lame) {
   const double mu = volume * lame.mu, both = volume * (lame.lambda + lame.mu);
   for (const Index node : nodes_) {
@@ -84,7 +84,7 @@ void Sum::add_squares(double volume, const LameConstants& lame) {
 SymmetricDiagonal Sum::finish() {
   mesh_.cells.add_to_owners(cells_, diagonal_size);
   mesh_.boundary.add_to_owners(boundary_, block_size);
-  mesh_.boundary.update_ghosts(boundary_, block_size);  // the other sides of bonded faces
+  mesh_.boundary.update_ghosts(boundary_, block_size);  // other sides of bonded faces
   SymmetricDiagonal result;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < mesh_.dim; ++a) result.cells.push_back(cells_[std::size_t(c) * diagonal_size + a]);
@@ -108,7 +108,7 @@ SymmetricDiagonal symmetric_diagonal(const mesh::Mesh& mesh, const ElasticOperat
                                      VolumeStrain without) {
   Sum sum(mesh, rows, without);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f)
-    if (mesh.owner[f] < mesh.cells.n_owned()) sum.add_face(f);  // another one's rank adds it
+    if (mesh.owner[f] < mesh.cells.n_owned()) sum.add_face(f);  // otherwise another rank adds it
   return sum.finish();
 }
 

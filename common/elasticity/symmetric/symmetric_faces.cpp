@@ -7,7 +7,7 @@
 namespace couplet::elastic {
 namespace {
 
-/// From the owner to the node across; the mirror image of the owner at a symmetry plane.
+/// Vector from the owner to the neighbor node, which is the owner's mirror image at a symmetry plane.
 Vec3 line_across(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f, bool mirrored) {
   const Vec3& here = geometry.cell_centre[mesh.owner[f]];
   if (f < mesh.n_interior) return geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f) - here;
@@ -80,7 +80,7 @@ FaceRows ring_rows(const mesh::Mesh& mesh, const ElasticOperator& rows, Index f)
   const auto points = mesh.face_points[f];
   const Index first_point = n_node_places(mesh);
   const bool has_shear = !rows.mirrored(f);
-  // Around the quadrilateral: owner, first point, node across, second point, as places of the arrays.
+  // Order around the quadrilateral: owner, first point, neighbor node, second point, as array indices.
   const std::array<std::size_t, 4> around{0, 2, 1, 3};
   std::array<Vec3, 4> x, b;
   x[0] = geometry.cell_centre[mesh.owner[f]];
@@ -158,7 +158,7 @@ void add_term(FaceTermList& terms, const FaceTerm& term) {
   terms.push_back(term);
 }
 
-/// The hoop strain of a ring comes by the radial displacement; without shear each component has its own derivative.
+/// Adds a term. In a ring, radial displacement gives hoop strain. Components separate without shear.
 void FaceTerms::take(GlobalIndex block, const Vec3& b, const Tensor3& turn) {
   if (block < 0) return;
   if (!ring_) return add_term(terms_, {block, b, turn});

@@ -7,7 +7,7 @@
 namespace couplet::elastic {
 namespace {
 
-// Tensor indices of xx, yy, zz, xy, yz, xz; in the plane of xx, yy, xy.
+// Tensor indices of xx, yy, zz, xy, yz, xz, and in 2-D of xx, yy, xy.
 constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
 constexpr int entry[2][6] = {{0, 1, 3, 0, 0, 0}, {0, 1, 2, 3, 4, 5}};
 
@@ -33,7 +33,7 @@ SymmetricKernel::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& 
     for (std::size_t i = 0; i < shared.faces.size(); ++i) shared_index_[shared.faces[i]] = Index(i);
   }
   if (!rows.volume_by_cells()) {
-    plain_.volumes = {};  // only their cells' strain needs them
+    plain_.volumes = {};  // needed only for volume strains of cells
     return;
   }
   pressure_.assign(space_.n_nodes(), 0);
@@ -110,7 +110,7 @@ inline void SymmetricKernel::stress_of(const Group& group, std::size_t i, const 
   }
 }
 
-/// Adds V_fP p_P + V_fQ p_Q to V sigma, p being the mean stress of the cells.
+/// Adds V_fP p_P + V_fQ p_Q to V sigma, where p is the mean stress of the cells.
 template <int D>
 inline void SymmetricKernel::add_pressure_of_cells(const Group& group, std::size_t i,
                                                    Four (&stress)[D][D]) const {
@@ -120,7 +120,7 @@ inline void SymmetricKernel::add_pressure_of_cells(const Group& group, std::size
   for (int a = 0; a < D; ++a) stress[a][a] += pressure;
 }
 
-// V sigma of four faces, and what it does to their nodes and points.
+// Adds the forces of V sigma of four faces to their nodes and points.
 template <int D>
 inline void SymmetricKernel::faces_loop() {
   const double* values = space_.values();
@@ -134,7 +134,7 @@ inline void SymmetricKernel::faces_loop() {
   }
 }
 
-/// V_fP tr e_f to the cells.
+/// Adds V_fP tr e_f to the cells.
 template <int D>
 inline void SymmetricKernel::volumes_loop() {
   for (const Group* group : {&plain_, &sharing_})
@@ -147,7 +147,7 @@ inline void SymmetricKernel::volumes_loop() {
     }
 }
 
-// The faces' own part, kept, and t V / 3 e to the edges.
+// Stores the faces' own part and adds t V / 3 e to the edges.
 inline void SymmetricKernel::shared_first_loop() {
   const double* values = space_.values();
   for (std::size_t i = 0; i < sharing_.blocks.size(); ++i) {
@@ -172,7 +172,7 @@ inline void SymmetricKernel::shared_first_loop() {
   }
 }
 
-// With the stress of the edges.
+// Adds the forces including the stress of the edges.
 inline void SymmetricKernel::shared_second_loop() {
   double* forces = space_.forces();
   for (std::size_t i = 0; i < sharing_.blocks.size(); ++i) {
@@ -194,7 +194,7 @@ inline void SymmetricKernel::shared_second_loop() {
 
 namespace {
 
-// The loops for several generations of processors; the right one is picked when the program starts.
+// Loops compiled for several generations of processors, selected at program start.
 COUPLET_PROCESSOR_CLONES void plane_faces_pass(SymmetricKernel& kernel) { kernel.faces_loop<2>(); }
 COUPLET_PROCESSOR_CLONES void space_faces_pass(SymmetricKernel& kernel) { kernel.faces_loop<3>(); }
 COUPLET_PROCESSOR_CLONES void shared_first_pass(SymmetricKernel& kernel) { kernel.shared_first_loop(); }
@@ -205,7 +205,7 @@ COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel& kernel, int dim) {
 
 }  // namespace
 
-/// V theta of the owned cells, in the places of their pressures.
+/// Sums V theta of the owned cells, stored in place of their pressures.
 std::span<double> SymmetricKernel::sum_volumes() {
   std::ranges::fill(pressure_, 0.0);
   volumes_pass(*this, mesh_.dim);
@@ -288,7 +288,7 @@ void SymmetricKernel::face_gradients(const ElasticKernel::TakeGradient& take, In
           if (j == k || face.has_shear) gradient(j, k) += b[j] * u[k];
       gradient(2, 2) += b[2] * u[0];
     }
-    // At the surface itself: that of half a cell's middle would be the surface's to first order only.
+    // Uses the surface itself, because the middle of the half cell would be only first-order accurate.
     if (face.is_ring && f >= mesh_.n_interior && face.has_shear)
       gradient(2, 2) = space_.value(face.row[1].place)[0] / rows_.geometry().face_centre[f][0];
     if (edges_ && shared_index_[f] >= 0) {
@@ -298,7 +298,7 @@ void SymmetricKernel::face_gradients(const ElasticKernel::TakeGradient& take, In
       gradient += SharedEdges::share * (of_edges - own);
     }
     if (!pressure_.empty()) {
-      // What Hooke's law then makes of it is 2 mu dev(e) + p I.
+      // With Hooke's law this gives 2 mu dev(e) + p I.
       const auto [here, there] = pyramids(mesh_, rows_.geometry(), f);
       const LameConstants lame = face_lame(mesh_, rows_, f);
       double mean = here * pressure_[std::size_t(mesh_.owner[f])];
@@ -311,7 +311,7 @@ void SymmetricKernel::face_gradients(const ElasticKernel::TakeGradient& take, In
   }
 }
 
-/// Where the volume strain is that of the cells it takes no part in the sharing, nor does the pressure that acts on it.
+/// Shared pressure of the faces. Nothing is shared if the volume strain is that of the cells.
 std::vector<double> SymmetricKernel::shared_pressure(std::span<const double> pressure) {
   std::vector<double> result(pressure.begin(), pressure.end());
   if (!edges_ || rows_.volume_by_cells()) return result;
@@ -334,7 +334,7 @@ std::vector<double> SymmetricKernel::shared_pressure(std::span<const double> pre
 void SymmetricKernel::spread_pressure(std::span<const double> pressure) {
   const std::vector<double> shared = shared_pressure(pressure);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;  // another rank's
+    if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;  // belongs to another rank
     const FaceRows face = face_rows(mesh_, rows_, f);
     for (const FaceRows::Row& row : face.all()) {
       const Vec3 b = face.is_ring ? Vec3(row.b[0] + row.b[2], row.b[1], 0) : row.b;

@@ -12,31 +12,31 @@
 
 namespace couplet::elastic {
 
-/// K = B^T C V B: the thesis's face gradient kept, its forces taken as its transpose, so that the operator is
-/// the second derivative of the energy E = sum_f V_f W(G_f), W = mu |sym G|^2 + lambda/2 (tr G)^2: symmetric,
-/// positive, exact for linear fields, without resultant on any mesh whose cells lie behind their faces. With
-/// sigma_f = C : sym G_f the forces are f_i += V_f sigma_f b_i on the nodes and points of the face, and the vertices'
-/// forces go to their nodes by the transposed weights (SymmetricSpace). Three-cornered faces in space share their
-/// strain with their edges (SharedEdges). Loads and mass use the same trial functions. Of a body of revolution the
-/// rows are those of rings: energies, forces and masses are those of the whole body.
+/// Operator K = B^T C V B, with the face gradient of the thesis and its transpose for the forces. It is the
+/// second derivative of E = sum_f V_f W(G_f), W = mu |sym G|^2 + lambda/2 (tr G)^2. K is symmetric, positive,
+/// exact for linear fields and free of resultants on any mesh whose cells lie behind their faces. Forces f_i
+/// += V_f sigma_f b_i with sigma_f = C : sym G_f act on nodes and points. Vertex forces are distributed to
+/// nodes by the transposed weights (SymmetricSpace). Triangles in 3-D share their strain with edges
+/// (SharedEdges). For a body of revolution the rows are those of rings, with energies, forces and masses of
+/// the whole body.
 ///
-/// One pass over the vertices, one over the faces in blocks of four, one back over the vertices; a message
-/// more than the other kernels: the forces on ghosts go to their owners.
+/// A product loops over vertices, over faces in blocks of four, and over vertices again. Compared to the
+/// other kernels one more message returns the forces on ghosts to their owners.
 class SymmetricKernel {
  public:
   SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   SymmetricSpace& space() { return space_; }
-  /// Adds those of the stress to the forces of the space, of its displacement. Collective.
+  /// Adds the internal forces for the displacement of the space. Collective.
   void add_internal_forces();
-  /// The same with these mean stresses [Pa] of the owned cells. Gives the volume that they miss [m^3]: `defect`.
+  /// Overload with given mean stresses [Pa] of the owned cells. Sets `defect` to the missing volume [m^3].
   void add_internal_forces(std::span<const double> pressure, std::span<double> defect);
-  /// Of the displacement in the space; of a ring with the hoop strain as entry (2, 2). Collective.
+  /// Visits the face gradients of the displacement; for a ring the hoop strain is entry (2, 2). Collective.
   void face_gradients(const ElasticKernel::TakeGradient& take, Index first, Index end);
-  /// Adds the forces of a pressure [Pa] on the flux faces, as three-cornered ones share it with their edges. Collective.
+  /// Adds the forces of a pressure [Pa] on flux faces, which triangles share with their edges. Collective.
   void spread_pressure(std::span<const double> pressure);
 
-  // The loops; public for the clones by processor.
+  // The loops are public so that they can be cloned for several processors.
   template <int D>
   [[gnu::always_inline]] inline void faces_loop();
   [[gnu::always_inline]] inline void shared_first_loop();
@@ -45,17 +45,17 @@ class SymmetricKernel {
   [[gnu::always_inline]] inline void volumes_loop();
 
  private:
-  /// Hooke's isotropic law of four faces: Lame's constants times V.
+  /// Isotropic law of four faces: Lame constants times V.
   struct Hooke {
     double mu[4], lambda[4];
   };
-  /// In its place: the upper triangle of the elastic matrix times V, row by row; in the plane that of xx, yy, xy.
+  /// Anisotropic law: upper triangle of the elastic matrix times V, row by row; in 2-D that of xx, yy, xy.
   struct Anisotropic {
     double c[21][4];
   };
   struct Group : FaceGroup {
     std::vector<Hooke> hooke;
-    std::vector<Anisotropic> matrix;  // empty: Hooke's isotropic law
+    std::vector<Anisotropic> matrix;  // empty for the isotropic law
   };
   struct RingFace {
     double b[4][3];              // d/dr, d/dz, hoop
@@ -83,9 +83,9 @@ class SymmetricKernel {
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   SymmetricSpace space_;
-  Group plain_, sharing_;  // sharing_: with their edges
+  Group plain_, sharing_;  // sharing_: faces with shared edges
   std::vector<RingFace> rings_;
-  std::vector<Index> shared_index_;  // of each flux face in edges_, -1: it shares nothing
+  std::vector<Index> shared_index_;  // of each flux face in edges_, or -1
   std::vector<Kept> kept_;           // own part of V sigma of the blocks of sharing_
   std::unique_ptr<SharedEdges> edges_;
   std::vector<double> pressure_, bulk_;  // of nodes; K / V of owned cells [Pa/m^3]

@@ -32,20 +32,20 @@ GradientStiffness stiffness_of(const ElasticMatrix& matrix) {
   return c;
 }
 
-/// I (x) sigma: the work of a stress that is there on the square of the displacement gradient.
+/// I (x) sigma: work of an initial stress on the square of the displacement gradient.
 GradientStiffness stiffness_of_stress(const Tensor3& stress) {
   GradientStiffness c = GradientStiffness::Zero();
   for (int k = 0; k < 3; ++k) c.block<3, 3>(3 * k, 3 * k) = stress;
   return c;
 }
 
-/// A term on its way to the rank that owns the edge.
+/// Term sent to the rank that owns the edge.
 struct Sent {
   GlobalIndex edge, block;
   double b[3], turn[9];
 };
 
-/// The mean gradients of the owned edges, one list an edge (empty: of another rank). Collective.
+/// Mean gradients of the owned edges, one list per edge (empty for another rank's). Collective.
 std::vector<FaceTermList> edge_terms(const mesh::Mesh& mesh, FaceTerms& terms, const SharedFaces& shared,
                                      const SharedEdges& edges) {
   std::vector<FaceTermList> result(edges.n_edges());
@@ -73,7 +73,7 @@ std::vector<FaceTermList> edge_terms(const mesh::Mesh& mesh, FaceTerms& terms, c
     for (int a = 0; a < 9; ++a) turn(a / 3, a % 3) = s.turn[a];
     add_term(result[std::size_t(e)], {s.block, Vec3(s.b[0], s.b[1], s.b[2]), turn});
   }
-  // On a symmetry plane the mean holds the mirror images, too.
+  // On a symmetry plane the mean includes the mirror images.
   for (const auto& [e, n] : edges.mirrors()) {
     FaceTermList& of_edge = result[std::size_t(e)];
     const Tensor3 mirror = Tensor3::Identity() - 2 * n * n.transpose();
@@ -182,7 +182,7 @@ void Assembly::add_volume_terms(Index f, const FaceTermList& terms, const Tensor
   }
 }
 
-/// A block may stand there several times.
+/// Adds squares of terms. A block may occur several times.
 void Assembly::add_squares(VolumeTerms& terms, double modulus) {
   std::ranges::sort(terms, {}, &VolumeTerms::value_type::first);
   VolumeTerms merged;
@@ -228,7 +228,7 @@ void Assembly::add_mass(double factor, std::span<const double> density) {
   }
 }
 
-/// The stiffness of a displacement that is a sum of terms.
+/// Adds the stiffness of a displacement that is a sum of terms.
 void Assembly::add_mean(const FaceTermList& terms, const Tensor3& stiffness) {
   for (const FaceTerm& i : terms)
     for (const FaceTerm& j : terms)

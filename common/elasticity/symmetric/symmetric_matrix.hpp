@@ -16,14 +16,14 @@
 
 namespace couplet::elastic {
 
-/// The rows of the symmetric operator assembled, without shares of edges: V_f B_f^T C B_f over the faces,
-/// springs, the rows of supports, and the kernel's mass of `inertia`, mass factor times density of the owned cells
-/// [N/m^4]; empty: none. Where no face shares it is the kernel's K + factor M; else a preconditioner of it. In
-/// space some 90 nodes a row on hexahedra and 200 on tetrahedra: for small bodies. Collective.
+/// Assembled symmetric operator without shared edges: V_f B_f^T C B_f over the faces, springs, rows of
+/// supports, and the mass of `inertia` (mass factor times density of owned cells [N/m^4], or empty). It
+/// equals the kernel's K + factor M if no face shares, and otherwise preconditions it. For small bodies,
+/// since a row in 3-D has about 90 nodes on hexahedra and 200 on tetrahedra. Collective.
 linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const double> inertia);
 
-/// dP/dF or C, entry (3 k + a, 3 m + c): what the derivative c of component m does to the stress (k, a) [Pa].
+/// dP/dF or C, entry (3 k + a, 3 m + c): effect of derivative c of component m on the stress (k, a) [Pa].
 using GradientStiffness = Eigen::Matrix<double, 9, 9>;
 
 /// Weights of the parts of an assembled operator, stiffness K + mass M + stress K_sigma.
@@ -35,26 +35,26 @@ struct EnergyParts {
   const Prestress* prestress = nullptr;  ///< for `stress`
 };
 
-/// Adds up blocks between unknowns, pair by pair, and makes a matrix of them. A face of a tetrahedron couples some sixty
-/// nodes, and each pair of nodes shares many faces: summed up here there is a fiftieth of the entries for PETSc to sort (a
-/// tenth of the time on 1000 tetrahedra).
+/// Sums blocks between pairs of unknowns and builds a matrix from them. A face of a tetrahedron couples about
+/// sixty nodes, and each pair shares many faces. Summing here leaves a fiftieth of the entries for PETSc to
+/// sort (a tenth of the time on 1000 tetrahedra).
 class Assembly {
  public:
-  /// Keeps all arguments by reference. Numbers are below 2^32.
+  /// Keeps references to all arguments. Numbers must be below 2^32.
   Assembly(const mesh::Mesh& mesh, const ElasticOperator& rows, const Numbering& number);
 
   FaceTerms& terms() { return terms_; }
   void add(GlobalIndex i, GlobalIndex j, const Tensor3& block);
   /// Adds sum_ij T_i^T [b_i . stiffness . b_j] T_j for one gradient; `stiffness` includes the volume [N m].
   void add(const FaceTermList& terms, const GradientStiffness& stiffness);
-  /// Adds stiffness and stress of the faces of owned cells; `own` is the share that triangles of a three-dimensional mesh
-  /// keep for themselves (the rest goes to their edges, see SharedEdges).
+  /// Adds stiffness and stress of the faces of owned cells. `own` is the share of triangles in 3-D that is
+  /// not assigned to their edges, see SharedEdges.
   void add_faces(const EnergyParts& parts, double own);
   /// Adds the share of the edges. Collective.
   void add_edges(const EnergyParts& parts);
   /// Adds the bulk modulus that acts on the volume strain of cells.
   void add_volumes(const EnergyParts& parts);
-  /// Tells that V_P theta_P of the owned cells beside a face changes by V_fP cofactors b . u.
+  /// Records that V_P theta_P of the owned cells beside a face changes by V_fP cofactors b . u.
   void add_volume_terms(Index f, const FaceTermList& terms, const Tensor3& cofactors);
   /// Adds modulus(cell) g g^T for the terms collected by add_volume_terms().
   template <class Modulus>
@@ -64,11 +64,11 @@ class Assembly {
   }
   /// Adds the rows of supports, and their springs on the mean displacement of a face.
   void add_supports();
-  /// Adds the mass of the trial functions times `factor` [1/s^2].
+  /// Adds the mass of the test functions times `factor` [1/s^2].
   void add_mass(double factor, std::span<const double> density);
   /// Adds one value per unknown node to the diagonal; empty means none.
   void add_diagonals(std::span<const double> of_nodes);
-  /// Adds blocks between places times `factor`.
+  /// Adds blocks between locations times `factor`.
   void add_places(double factor, std::span<const PlaceBlock> blocks);
   /// Mean of |first entry| of the diagonal blocks. Collective.
   double mean_diagonal() const;

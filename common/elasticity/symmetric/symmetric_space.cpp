@@ -50,7 +50,7 @@ inline void SymmetricSpace::interpolate_free() {
   }
 }
 
-// The weights' transpose.
+// Applies the transpose of the interpolation weights.
 inline void SymmetricSpace::to_nodes_loop() {
   double* force = force_.data();
   const double* point_force = force + std::size_t(n_nodes_) * stride;
@@ -65,11 +65,11 @@ inline void SymmetricSpace::to_nodes_loop() {
 
 namespace {
 
-// The loops for several generations of processors; the right one is picked when the program starts.
+// Loops compiled for several generations of processors, selected at program start.
 COUPLET_PROCESSOR_CLONES void vertices_pass(SymmetricSpace& space) { space.interpolate_free(); }
 COUPLET_PROCESSOR_CLONES void to_nodes_pass(SymmetricSpace& space) { space.to_nodes_loop(); }
 
-/// Of a body of revolution what makes the two halves of the force on a pyramid that on a ring, together by its mean radius.
+/// Circumferences at the mean radii of both halves of a pyramid, or 1 without rotational symmetry.
 std::array<double, 2> around(const ElasticOperator& rows, Index f, double tip) {
   if (!is_axisymmetric(rows)) return {1, 1};
   const double base = rows.geometry().face_centre[f][0];
@@ -80,7 +80,7 @@ Vec3 mirrored(const Vec3& v, const Vec3& n) { return v - 2 * n.dot(v) * n; }
 
 }  // namespace
 
-/// All that stands before the faces.
+/// Sets all values that precede the loop over faces.
 template <int D>
 void SymmetricSpace::fill_nodes(std::span<const double> unknowns, std::span<const double> known) {
   nodes_.fill<D>(unknowns, known, true);
@@ -111,7 +111,7 @@ void SymmetricSpace::negate_forces() {
   for (double& f : force_) f = -f;
 }
 
-/// F_V takes what the constraints hold.
+/// Multiplies by F_V, which removes the part held by constraints.
 void SymmetricSpace::points_to_nodes() {
   for (const Index v : vertices_.constrained) {
     Place f = force(place_of_point(v));
@@ -211,7 +211,7 @@ void SymmetricSpace::spread_over_base(Index f, const Vec3& force_on_base) {
     force(place_of_point(points[i])) += shares[i] * force_on_base;
 }
 
-/// Around a body of revolution: as the integral of r over the two halves of the face gives it to its node and points.
+/// Distributes a force around a body of revolution, by the integral of r over the two halves of the face.
 void SymmetricSpace::spread_around(Index f, const Vec3& force_on_base) {
   const double middle = geometry_.face_centre[f][0];
   force(node_of_face(f)) += 0.5 * circumference(middle) * force_on_base;
@@ -286,9 +286,9 @@ double SymmetricSpace::work() const {
   return sum;
 }
 
-// Reactions at the patches that hold a body: the forces that the trial functions leave where displacements are known.
+// Reactions at patches: the residual forces where displacements are known.
 
-/// The face's node at a symmetry plane is the mirror image of the cell's center.
+/// Position of a node or point. At a symmetry plane a face's node is the mirror image of the cell center.
 Vec3 SymmetricSpace::position(Index place, bool moved) const {
   Vec3 at;
   if (place >= n_nodes_) {
@@ -306,8 +306,8 @@ Vec3 SymmetricSpace::position(Index place, bool moved) const {
   return moved ? Vec3(at + value(place)) : at;
 }
 
-/// At the points, by the sources of what is known there and the symmetry planes. The nodes of a point on a symmetry plane lie
-/// to one side of it, so that their images hold the couple that its free force makes with its parts at the nodes.
+/// Adds reactions at points, by the sources of their known values and the symmetry planes. On a symmetry
+/// plane all nodes are on one side, so their images take the couple of the free force and its nodal parts.
 void SymmetricSpace::held_at_points(std::span<const Index> patch_of, bool moved,
                                     std::vector<Wrench>& result) {
   std::vector<std::vector<std::pair<Index, Vec3>>> planes(mesh_.points.n_local());
@@ -342,13 +342,13 @@ void SymmetricSpace::held_at_points(std::span<const Index> patch_of, bool moved,
   }
 }
 
-/// dE/du of all that is held: at the points, at the faces' own nodes and at the mirror images of symmetry planes, whose forces go
-/// back to the cells mirrored, so that the plane takes the difference.
+/// Sums dE/du of all constraints: at points, at the nodes of faces and at mirror images. Forces on images are
+/// mirrored back to the cells, so the plane takes the difference.
 std::vector<Wrench> SymmetricSpace::held(std::span<const double> known, bool moved) {
   std::vector<Wrench> result(mesh_.patches.size());
   const std::vector<Index> patch_of = mesh_.patch_of_boundary();
   held_at_points(patch_of, moved, result);
-  // The remainder of the points' forces at nodes that are held.
+  // Remainder of the point forces at held nodes.
   points_to_nodes();
   for (Index b = 0; b < mesh_.boundary.n_local(); ++b) {
     const Index f = mesh_.n_interior + b, node = mesh_.cells.n_local() + b;

@@ -13,27 +13,26 @@
 
 namespace couplet::elastic {
 
-/// The trial functions of the symmetric face gradient: displacements of nodes (cells, boundary faces) and of
-/// points, and forces on them, taken back to the rows of ElasticOperator by the transposed weights,
-/// f_j += w_ij F_i f_i. What a strain makes of them (Hooke's law, large strain) stands in the kernels; loads,
-/// mass and springs act by the same functions and stand here. A cell's row is 1/dim of its balance, so that it
-/// carries 1/dim of what acts on its volume and the vertices carry the rest; a boundary face carries 1/dim of
-/// its traction, its vertices the rest.
+/// Trial and test functions of the symmetric face gradient: displacements of nodes (cells, boundary faces)
+/// and points, and forces on them. The transposed weights distribute forces to the rows of ElasticOperator,
+/// f_j += w_ij F_i f_i. The kernels define the material law. Loads, mass and springs use the same functions
+/// and are defined here. A cell's row carries 1/dim of the loads on its volume and the vertices the rest.
+/// Likewise a boundary face carries 1/dim of its traction.
 ///
-/// Use: fill(), clear_forces(), add forces, collect(), take_rows().
-/// Displacements and forces stand by places (see FaceRows), four doubles each; the last ones are zero, in the plane two.
+/// Usage: fill(), clear_forces(), add forces, collect(), take_rows(). Displacements and forces are stored by
+/// location (see FaceRows) with four doubles each, of which the last one (two in 2-D) is zero.
 class SymmetricSpace {
  public:
   static constexpr int stride = ElasticNodes::stride;
   using Place = Eigen::Map<Vec3>;
 
-  /// Keeps both by reference.
+  /// Keeps references to both.
   SymmetricSpace(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
   const mesh::Mesh& mesh() const { return mesh_; }
   const ElasticOperator& rows() const { return rows_; }
-  /// Displacements at all nodes and points. At symmetry planes the face's node is the mirror image of its cell.
-  /// Collective.
+  /// Sets the displacements at all nodes and points. The node of a symmetry face is the mirror image of its
+  /// cell. Collective.
   void fill(std::span<const double> unknowns, std::span<const double> known);
   const double* values() const { return nodes_[0]; }
   Vec3 value(Index place) const { return Eigen::Map<const Vec3>(nodes_[place]); }
@@ -42,9 +41,9 @@ class SymmetricSpace {
   Index node_of_face(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
   Index place_of_point(Index v) const { return n_nodes_ + v; }
   std::size_t n_nodes() const { return std::size_t(n_nodes_); }
-  /// dim values a local point; those of points without a value are left as they are.
+  /// Writes dim values per local point. Points without a value are not changed.
   void point_values(std::span<double> points) const;
-  /// Mean displacement of the trace of a boundary face: its node has the part 1/dim, its points the rest.
+  /// Mean displacement of the trace of a boundary face: weight 1/dim for its node, the rest for its points.
   Vec3 face_mean(Index f) const;
 
   void clear_forces();
@@ -54,26 +53,26 @@ class SymmetricSpace {
   void spread_face_forces(std::span<const double> forces);
   void spread_cell_forces(std::span<const double> forces);
   void set_density(std::span<const double> of_cells);
-  /// This rank's part of each place, after set_density() [kg].
+  /// Mass of each location on this rank, after set_density() [kg].
   const std::vector<double>& mass() const { return mass_; }
-  /// sum of force . displacement, this rank's; fill() may have changed the displacement since the forces.
+  /// Sum of force . displacement on this rank. fill() may have changed the displacement since.
   double work() const;
 
-  /// From points and mirror images to the nodes, over the ranks, and both sides of bonded faces into one.
-  /// Collective.
+  /// Distributes forces on points and mirror images to the nodes, sums over ranks, and merges both sides of
+  /// bonded faces. Collective.
   void collect();
-  /// The rows that ElasticOperator defines. `unknowns` empty: of loads, to which supports add no rows of their
-  /// own.
+  /// Computes the rows of ElasticOperator. If `unknowns` is empty, these are loads, without the rows of
+  /// supports.
   void take_rows(std::span<const double> unknowns, std::span<const double> known, std::span<double> result);
-  /// collect() and take_rows() of loads, added.
+  /// Adds collect() and take_rows() of loads to `rhs`.
   void add_collected(std::span<double> rhs);
-  /// Sum of those forces of this rank's boundary faces that act; see ElasticKernel::add_face_forces.
+  /// Sum of the effective forces of this rank's boundary faces, see ElasticKernel::add_face_forces.
   Vec3 acting(std::span<const double> forces) const;
-  /// Of the forces there are (inner ones less the loads), what is held at each patch, with the moment of the nodes where they
-  /// are, or `moved` by their displacement; this rank's part.
+  /// Reaction forces at each patch from the current forces (inner ones minus loads). Moments use the node
+  /// positions, displaced if `moved`. This rank's contribution.
   std::vector<Wrench> held(std::span<const double> known, bool moved);
 
-  // The loops; public for the clones by processor.
+  // The loops are public so that they can be cloned for several processors.
   [[gnu::always_inline]] inline void interpolate_free();
   [[gnu::always_inline]] inline void to_nodes_loop();
 
@@ -83,12 +82,12 @@ class SymmetricSpace {
   template <int D>
   void copy_rows(std::span<double> result);
   void points_to_nodes();
-  /// take(place, share) for the node and the points of a boundary face: the parts of its trace, or of a force on it.
+  /// Calls take(place, share) for the node and points of a boundary face, with their weights in its trace.
   template <class Take>
   void visit_trace(Index f, const Take& take) const;
   void spread_over_base(Index f, const Vec3& force_on_base);
   void spread_around(Index f, const Vec3& force_on_base);
-  /// Force k (u - g) of the springs on the mean of the trace of a face.
+  /// Force k (u - g) of the springs for the mean trace of a face.
   Vec3 pull_of_springs(Index f, std::span<const double> known) const;
   void held_at_points(std::span<const Index> patch_of, bool moved, std::vector<Wrench>& result);
   Vec3 position(Index place, bool moved) const;
@@ -97,16 +96,16 @@ class SymmetricSpace {
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   Index n_nodes_;
-  ElasticNodes nodes_;  // with the points behind
+  ElasticNodes nodes_;  // followed by the points
   ElasticVertices vertices_;
-  std::unique_ptr<JoinedVertices> joined_;  // on periodic patches; none without such
+  std::unique_ptr<JoinedVertices> joined_;  // nullptr without periodic patches
   std::vector<double> force_;
   std::vector<std::pair<Index, Vec3>> symmetry_;  // faces and normals
   std::vector<double> volume_;                    // sum of the pyramids of each owned cell
-  std::vector<double> mass_;                      // empty: none
+  std::vector<double> mass_;                      // empty if there is none
 };
 
-/// Sum of the pyramids of each owned cell: warped faces fill it only nearly.
+/// Sum of the pyramids of each owned cell, which equals its volume except for warped faces.
 std::vector<double> pyramid_volumes(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
 }  // namespace couplet::elastic

@@ -25,13 +25,13 @@ TiedMatrix::TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, cons
   n_ties_ = parallel::sum(mesh.comm, GlobalIndex(points_.size()) * mesh.dim);
 }
 
-/// Collective.
+/// Numbers nodes, points and multipliers. Collective.
 void TiedMatrix::number_all() {
   for (Index v = 0; v < mesh_.points.n_owned(); ++v)
     if (!rows_.constraints().is_fixed(v) && !rows_.vertices().nodes(v).empty()) points_.push_back(v);
   number_ = {fv::number_nodes(mesh_, rows_.unknown_faces()),
              std::vector<GlobalIndex>(std::size_t(mesh_.points.n_local()), -1)};
-  // The points and multipliers of the ranks before push the nodes of each rank on.
+  // Points and multipliers of lower ranks shift the node numbers of each rank.
   struct Rank {
     GlobalIndex first_node, shift;
   };
@@ -51,7 +51,7 @@ void TiedMatrix::number_all() {
   first_multiplier_ = first_point + n_points;
 }
 
-/// u_V = F_V sum_i w_i u_i, times `tie_`.
+/// Adds the ties u_V = F_V sum_i w_i u_i, times `tie_`.
 void TiedMatrix::add_ties(Assembly& assembly) const {
   const auto both = [&](GlobalIndex i, GlobalIndex j, const Tensor3& block) {
     assembly.add(i, j, block);
@@ -80,7 +80,7 @@ linalg::SparseMatrix TiedMatrix::assemble(const EnergyParts& parts) {
   return assembly.matrix(n_nodes_ + 2 * points_.size());
 }
 
-/// The ties give the vertices, and their transpose takes the forces on these back.
+/// Multiplies by A. The ties give the vertices, and their transpose returns the forces.
 void TiedMatrix::apply(std::span<const double> x, std::span<double> y) {
   const std::size_t dim = std::size_t(mesh_.dim), n = n_nodes_ * dim, m = points_.size() * dim;
   std::ranges::fill(from_, 0);

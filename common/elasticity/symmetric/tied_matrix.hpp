@@ -12,25 +12,25 @@
 
 namespace couplet::elastic {
 
-/// A symmetric operator with the rows of ElasticOperator, held with the vertices as unknowns of their own, which multipliers
-/// tie to the means of their nodes: exact where SymmetricKernel is (edges' shares, volume strain of cells, springs), and
-/// with factors that are cheap: on 2161 tetrahedra 2.7e6 entries where the rows of the nodes alone have 1.6e7.
+/// Symmetric operator with the rows of ElasticOperator, stored with the vertices as additional unknowns that
+/// Lagrange multipliers tie to the means of their nodes. It is as exact as SymmetricKernel, and cheap to
+/// factorize: for 2161 tetrahedra it has 2.7e6 entries instead of 1.6e7.
 class TiedMatrix {
  public:
-  /// Periodic meshes have vertices on several ranks at once: not those.
+  /// Returns false for periodic meshes, whose vertices exist on several ranks at once.
   static bool suits(const mesh::Mesh& mesh);
-  /// Mesh and rows by reference. Collective.
+  /// Keeps references to mesh and rows. Collective.
   TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const EnergyParts& parts);
 
-  /// y = A x on the rows of ElasticOperator. Collective.
+  /// Computes y = A x on the rows of ElasticOperator. Collective.
   void apply(std::span<const double> x, std::span<double> y);
-  /// LDL^T; what follows needs it. Throws SolveFailure. Collective.
+  /// Computes the LDL^T factorization that the following functions need. Throws SolveFailure. Collective.
   void factorise();
-  /// y = A^-1 x. Throws SolveFailure. Collective.
+  /// Computes y = A^-1 x. Throws SolveFailure. Collective.
   void solve(std::span<const double> x, std::span<double> y);
-  /// Eigenvalues of A below zero, by Sylvester's law of inertia.
+  /// Number of negative eigenvalues of A, by Sylvester's law of inertia.
   GlobalIndex negative() const { return factors_->negative_pivots() - n_ties_; }
-  /// Rows of all ranks with the vertices and ties.
+  /// Number of rows over all ranks, including vertices and multipliers.
   GlobalIndex n_rows() const { return n_rows_; }
 
  private:
@@ -41,8 +41,8 @@ class TiedMatrix {
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   std::size_t n_nodes_;        // unknown, of this rank; in the order of ElasticOperator
-  std::vector<Index> points_;  // owned ones that are not known, in the order of their numbers
-  Numbering number_;           // rank by rank: nodes, points, a multiplier for each of these
+  std::vector<Index> points_;  // owned unknown ones, in the order of their numbers
+  Numbering number_;           // rank by rank: nodes, points, a multiplier per point
   GlobalIndex first_multiplier_ = 0;
   double tie_ = 0;
   linalg::SparseMatrix matrix_;

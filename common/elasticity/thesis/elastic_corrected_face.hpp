@@ -13,24 +13,24 @@ using lanes::Lane;
 using lanes::load;
 using lanes::store;
 
-/// What a face needs beyond the mesh: its vectors are made from the places of points and cells when they are
-/// wanted, which costs less than to keep and read them.
+/// Face data beyond the mesh. Its vectors are recomputed from the positions of points and cells, which is
+/// cheaper than reading them.
 struct CorrectedFace {
   double inverse_dn;     // [1/m]
   double inverse_area;   // [1/m^2], in 2-D [1/m]
-  std::uint32_t edges;   // two bits an edge: its EdgeKind
-  std::uint32_t curved;  // whether the cells' gradients tell the second derivative across it
+  std::uint32_t edges;   // two bits per edge: its EdgeKind
+  std::uint32_t curved;  // true if the cell gradients give the second derivative across it
 };
 
-// The gradients of a pyramid, or of two cells of different kind, err too differently for their difference to
-// tell the second derivative.
+// The gradient errors of a pyramid, or of two cells of different kind, differ too much to estimate the second
+// derivative from their difference.
 inline bool alike(const mesh::Mesh& mesh, Index f) {
   const mesh::CellType here = mesh.cell_type[mesh.owner[f]];
   return here == mesh.cell_type[mesh.neighbour[f]] && here != mesh::CellType::pyramid;
 }
 
-// Far off the cells' line the correction outweighs the difference that it corrects, and the operator loses
-// its positive eigenvalues (on tetrahedra of an isosurface). Lines of cells that stretch stay below one half.
+// Far off the line between the cells the correction exceeds the corrected difference, and the operator loses
+// its positive eigenvalues (on tetrahedra of an isosurface). Stretched lines of cells stay below one half.
 inline bool near_line(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   constexpr double farthest = 0.5;
   const Vec3 &from = geometry.cell_centre[mesh.owner[f]], &to = geometry.cell_centre[mesh.neighbour[f]];
@@ -57,11 +57,11 @@ template <int D>
   return sum;
 }
 
-/// A displacement (or q), then the rows of the gradient, without padding: the last lane that is read or
-/// written reaches into the next record.
+/// Record of a displacement (or q) and the rows of the gradient, without padding. The last lane extends into
+/// the next record.
 template <int D>
 constexpr int record = (D + 1) * D;
-/// So many doubles hold n of them.
+/// Number of doubles for n records.
 template <int D>
 constexpr std::size_t record_space(std::size_t n) {
   return n * record<D> + lanes::width<D> - D;
@@ -78,7 +78,7 @@ template <int D>
   lanes::store_components<D>(to + D * D, gradient.row[D - 1]);
 }
 
-/// The tangential part of a gradient at a face, and where the face looks.
+/// Tangential part of a gradient at a face, its normal and area.
 template <int D>
 struct Surface {
   Rows<D> grad;
@@ -102,9 +102,8 @@ template <int D>
   return result;
 }
 
-/// grad_t u from `value(i, L)`: on edge i (of vector L) of the face's `corners`; in 2-D at its two points.
-/// The edges add up to nothing, so the last one needs no vector; a triangle's third one stands for the
-/// fourth.
+/// grad_t u from `value(i, L)` on edge i (of vector L) of the face's `corners`, in 2-D at its two points. The
+/// edges sum to zero, so the last one needs no vector. The third edge of a triangle replaces the fourth.
 template <int D, class Value>
 [[gnu::always_inline]] inline Surface<D> surface(const CorrectedFace& face, std::span<const Index> corners,
                                                  const Vec3* x, const Value& value) {
@@ -121,7 +120,7 @@ template <int D, class Value>
     for (int e = 0; e < 3; ++e)
       edge[e] = between<3>(x[corners[e]], x[corners[e == 2 && is_triangle ? 0 : e + 1]]);
     edge[3] = -(edge[0] + edge[1] + edge[2]);
-    // Half the product of the diagonals; of a triangle, of two sides.
+    // Half the cross product of the diagonals, or of two sides of a triangle.
     const elastic::lanes::Lane<3> vector = 0.5 * lanes::cross(edge[0] + edge[1], edge[1] + edge[2]);
     const elastic::lanes::Lane<3> last = is_triangle ? value(2, edge[2]) : value(3, edge[3]);
     Rows<3> t;
@@ -136,9 +135,9 @@ template <int D, class Value>
   return result;
 }
 
-/// grad_t u in 3-D from the values at the corners, with means of the edges' ends: since the c_V of thesis (2.56) add up to
-/// nothing, grad_t u = sum_i c_i (u_plus - u_minus) with two differences, the diagonals of a quadrilateral or two sides of
-/// a triangle.
+/// grad_t u in 3-D from the corner values with linear edges. The c_V of thesis (2.56) sum to zero, so grad_t
+/// u = sum_i c_i (u_plus - u_minus) has two differences: diagonals of a quadrilateral or two sides of a
+/// triangle.
 template <class Value>
 [[gnu::always_inline]] inline Surface<3> plain_surface(const CorrectedFace& face,
                                                        std::span<const Index> corners, const Vec3* x,
@@ -161,7 +160,7 @@ template <class Value>
   return result;
 }
 
-/// n . grad u from `along` = d . grad u at the face centre: with k = n - d / (d . n) and grad_t across n,
+/// n . grad u from `along` = d . grad u at the face center: with k = n - d / (d . n) and grad_t across n,
 /// g = along / (d . n) + k . grad_t u = (along - d . grad_t u) / (d . n).
 template <int D>
 [[gnu::always_inline]] inline elastic::lanes::Lane<D> normal_derivative(const CorrectedFace& face,
@@ -173,7 +172,7 @@ template <int D>
   return rest * face.inverse_dn;
 }
 
-/// sigma . S for grad u = n g + grad_t u, as in the thesis's kernel.
+/// Force sigma . S for grad u = n g + grad_t u, as in the kernel of the thesis.
 template <int D>
 [[gnu::always_inline]] inline elastic::lanes::Lane<D> force_on(const LameConstants& lame,
                                                                const elastic::lanes::Lane<D>& g,

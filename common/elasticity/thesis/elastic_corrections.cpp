@@ -12,9 +12,9 @@
 namespace couplet::elastic {
 namespace {
 
-// Normals of a symmetry patch closer than about 2 degrees are one plane.
+// Normals of a symmetry patch within about 2 degrees belong to one plane.
 constexpr double same_plane = 0.9994;
-// Above the edge of hexahedra (9), see VertexInterpolation::magnification.
+// Limit above the value at the edge of hexahedra (9), see VertexInterpolation::magnification.
 constexpr double most_magnified = 10;
 
 }  // namespace
@@ -58,7 +58,7 @@ CellGradients::CellGradients(const mesh::Mesh& mesh, const ElasticOperator& rows
                                           : mesh.owner[f]);
       weight.push_back(w);
     }
-    // The zz entry of a plane mesh does not matter.
+    // The zz entry is irrelevant for a plane mesh.
     if (mesh.dim == 2) m(2, 2) = m.trace();
     const Tensor3 back = m.inverse();
     inverse.push_back({back(0, 0), back(0, 1), back(0, 2), back(1, 1), back(1, 2), back(2, 2)});
@@ -68,7 +68,7 @@ CellGradients::CellGradients(const mesh::Mesh& mesh, const ElasticOperator& rows
 }
 
 std::vector<std::uint32_t> edge_kinds(const mesh::Mesh& mesh, const ElasticOperator& rows) {
-  // Known vertices have no gradient, those between materials several.
+  // Known vertices have no gradient, and those between materials have several.
   std::vector<std::uint8_t> uncorrected(mesh.points.n_local(), 0);
   for (Index v = 0; v < mesh.points.n_local(); ++v) uncorrected[v] = rows.constraints().is_fixed(v);
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)

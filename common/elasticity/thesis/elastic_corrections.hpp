@@ -13,8 +13,8 @@ namespace couplet::elastic {
 ///   G_P = M^-1 sum_i w_i d_i (u_i - u_P),   M = sum_i w_i d_i d_i^T,   w_i = 1 / |d_i|^3;
 /// a symmetry plane gives the mirrored cell, u_mirror - u_P = -2 n (n . u_P).
 struct CellGradients {
-  std::vector<Index> offset{0}, node;  ///< nodes as in VertexInterpolation
-  std::vector<float> weight;           ///< w_i over the largest of the cell; M holds these very numbers
+  std::vector<Index> offset{0}, node;          ///< nodes as in VertexInterpolation
+  std::vector<float> weight;                   ///< w_i over the largest of the cell, as used in M
   std::vector<std::array<double, 6>> inverse;  ///< M^-1: xx, xy, xz, yy, yz, zz
   struct Mirror {
     Index cell;
@@ -25,20 +25,19 @@ struct CellGradients {
   CellGradients(const mesh::Mesh& mesh, const ElasticOperator& rows);
 };
 
-/// What is asked of an edge of a face (3-D): its middle value on a quadrilateral; its mean on a triangle (for
-/// a quadratic field the mean gradient of a triangle is that at its centre); no correction where a vertex is
-/// known or stands between materials.
+/// Value used on an edge of a face (3-D): the middle on a quadrilateral, or the mean on a triangle (whose
+/// mean gradient of a quadratic field is that at its center). No correction if a vertex is known or lies
+/// between materials.
 enum class EdgeKind : std::uint8_t { plain, middle, mean };
-/// Of the faces that carry a force, two bits an edge; edge i joins points i and i + 1.
+/// Kinds of the edges of faces with a force, two bits per edge. Edge i joins points i and i + 1.
 std::vector<std::uint32_t> edge_kinds(const mesh::Mesh& mesh, const ElasticOperator& rows);
 
-/// Of these points those that the nodes around reach from too far for gradients to be carried over: the
-/// weights that extrapolate magnify what the gradients err by, and the operator loses its positive
-/// eigenvalues.
+/// Selects points whose nodes are too far away to extrapolate gradients. Their weights would amplify gradient
+/// errors, and the operator would lose its positive eigenvalues.
 std::vector<Index> plain_points(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                 const std::vector<Index>& points);
 
-/// Of these points those on symmetry planes, with the normals that differ.
+/// Point on symmetry planes with their distinct normals.
 struct MirrorVertex {
   Index point;
   std::vector<Vec3> normals;

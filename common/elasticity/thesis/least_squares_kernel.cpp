@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// ElasticKernel with the published least-squares face gradient, and with its corrections. Passes of the published one:
-// vertices, faces. Of the corrected one: gradients of the cells; vertices of open boundaries and from them the gradients
-// of the boundary nodes; all vertices; faces, which find the middles of their edges.
+// ElasticKernel with the published least-squares face gradient and its corrections. The published one loops
+// over vertices and faces. The corrected one computes gradients of cells; vertices of open boundaries and
+// from them gradients of boundary nodes; all vertices; and faces with the middles of their edges.
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -54,14 +54,14 @@ class LeastSquaresKernel final : public ElasticKernel::LeastSquares {
   ElasticNodes nodes_;
   ElasticRows boundary_;
   ElasticVertices vertices_;
-  std::optional<CellGradients> gradients_;       // here and below what only the corrections need
-  std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
-  std::vector<Index> plain_points_;  // whose value takes nothing from the gradients; all without corrections
+  std::optional<CellGradients> gradients_;       // this and the following are only used by the corrections
+  std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include ghosts
+  std::vector<Index> plain_points_;              // interpolated without gradients; all if uncorrected
   std::vector<MirrorVertex> mirrors_;
   FaceLames lame_;
   std::vector<CorrectedFace> faces_;
   Vec3 origin_ = Vec3::Zero();
-  // q = u - 1/2 x . G and G of the nodes; u and G of the vertices: sum w (u_i + 1/2 r_i . G_i) is then
+  // q = u - 1/2 x . G and G of the nodes; u and G of the vertices. Then sum w (u_i + 1/2 r_i . G_i) equals
   // sum w q_i + 1/2 x_V . sum w G_i.
   std::vector<double> records_, points_;
 };
@@ -96,7 +96,7 @@ LeastSquaresKernel<D, Corrected>::LeastSquaresKernel(const mesh::Mesh& mesh, con
   }
   for (const Index v : vertices_.free)
     if (open[v]) open_points_.push_back(v);
-  // Any place near the mesh will do, the same on all ranks: it only keeps x . G small beside u.
+  // Any origin near the mesh keeps x . G small compared to u. It must be the same on all ranks.
   for (int a = 0; a < D; ++a) {
     double lowest = std::numeric_limits<double>::max();
     for (const Vec3& x : geometry.points) lowest = std::min(lowest, x[a]);
@@ -109,9 +109,9 @@ using Corrected = LeastSquaresKernel<D, true>;
 template <int D>
 using Published = LeastSquaresKernel<D, false>;
 
-// Passes over cells and vertices: their values and gradients.
+// Loops over cells and vertices for values and gradients.
 
-/// Gradient rows and q of a node at `place`.
+/// Sets the gradient rows and q of a node at `place`.
 template <int D, bool Corrected>
 template <class Take>
 inline void LeastSquaresKernel<D, Corrected>::set_record(Index node, const Vec3& place, const Take& row) {
@@ -188,7 +188,7 @@ inline void LeastSquaresKernel<D, Corrected>::find_vertices(std::span<const Inde
   }
 }
 
-// u = sum w u_i, exact for linear fields.
+// Interpolates u = sum w u_i, exact for linear fields.
 template <int D, bool Corrected>
 inline void LeastSquaresKernel<D, Corrected>::find_plain_vertices() {
   for (const Index v : plain_points_) {
@@ -200,8 +200,7 @@ inline void LeastSquaresKernel<D, Corrected>::find_plain_vertices() {
   }
 }
 
-// On a symmetry plane: the mean of the gradient and its mirror image, G - NG -
-// GN + 2 NGN with N = n n^T.
+// Averages the gradient and its mirror image on a symmetry plane: G - NG - GN + 2 NGN with N = n n^T.
 template <int D, bool Corrected>
 void LeastSquaresKernel<D, Corrected>::mirror_vertex_gradients() {
   for (const MirrorVertex& mirror : mirrors_) {
@@ -219,7 +218,7 @@ void LeastSquaresKernel<D, Corrected>::mirror_vertex_gradients() {
   }
 }
 
-// The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
+// The middle value is L^2/8 u'' below the trapezoidal one, the mean L^2/12 u''.
 template <int D, bool Corrected>
 inline Surface<D> LeastSquaresKernel<D, Corrected>::around(Index f) {
   const CorrectedFace& face = faces_[f];
@@ -259,7 +258,7 @@ inline Lane<D> LeastSquaresKernel<D, Corrected>::inner(Index f, const Rows<D>& g
   return normal_derivative<D>(face, to - from, along, grad);
 }
 
-// On the boundary d . grad u = 2 (u_B - u_P) - d . G_P; without corrections u_B - u_P.
+// d . grad u = 2 (u_B - u_P) - d . G_P on the boundary; without corrections u_B - u_P.
 template <int D, bool Corrected>
 inline Lane<D> LeastSquaresKernel<D, Corrected>::outer(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
@@ -269,7 +268,7 @@ inline Lane<D> LeastSquaresKernel<D, Corrected>::outer(Index f, const Rows<D>& g
   return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
 }
 
-// The mirrored difference is central already.
+// The mirrored difference is already central.
 template <int D, bool Corrected>
 inline Lane<D> LeastSquaresKernel<D, Corrected>::at_symmetry(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
@@ -284,7 +283,7 @@ inline void LeastSquaresKernel<D, Corrected>::find_boundary_gradients() {
     const CorrectedFace& face = faces_[f];
     const auto point = mesh_.face_points[f];
     const auto n_points = static_cast<int>(point.size());
-    // In 3-D means of the edges' end points.
+    // In 3-D the mean of an edge's end points.
     const Surface<D> here = surface<D>(
         face, point, geometry_.points.data(), [&](int e, const Lane<D>&) __attribute__((always_inline)) {
           const Lane<D> first = load<D>(vertex(point[e]));
@@ -325,8 +324,8 @@ inline void LeastSquaresKernel<D, Corrected>::collect_forces(std::span<const dou
 
 namespace {
 
-// The loops for several generations of processors; the right one is picked when the program starts. Halo
-// exchanges stand between them.
+// Loops compiled for several generations of processors, selected at program start. Halo exchanges separate
+// them.
 using Fields = std::span<const double>;
 
 COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<3>& kernel) { kernel.find_cell_gradients(); }
@@ -358,7 +357,7 @@ COUPLET_PROCESSOR_CLONES void faces_pass(Published<2>& kernel, Fields known, std
 
 }  // namespace
 
-/// All that stands before the faces: node records, vertices.
+/// Computes node records and vertices before the loop over faces.
 template <int D, bool Corrected>
 void LeastSquaresKernel<D, Corrected>::prepare(std::span<const double> unknowns,
                                                std::span<const double> known) {
@@ -369,14 +368,14 @@ void LeastSquaresKernel<D, Corrected>::prepare(std::span<const double> unknowns,
   mirror_vertex_gradients();
 }
 
-/// Gradients of cells and boundary nodes, and the vertices by them.
+/// Computes gradients of cells and boundary nodes, and the vertices that use them.
 template <int D, bool Corrected>
 void LeastSquaresKernel<D, Corrected>::find_gradients(std::span<const double> known) {
   cells_pass(*this);
   const std::span<double> all(records_);
   const std::size_t n_cells = mesh_.cells.n_local();
   mesh_.cells.update_ghosts(all.first(n_cells * record<D>), record<D>);
-  // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
+  // Boundary nodes start with the gradient of their cell. Its error is equal for neighbors with equal cells.
   for (const Index f : open_faces_) {
     const double* owner = cell(mesh_.owner[f]);
     set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, geometry_.face_centre[f],

@@ -20,10 +20,10 @@ constexpr std::size_t most_fields = 1000;  // of one kind in one output
 
 std::string step_name(int number) { return fmt::format("steps/{:06d}", number); }
 
-// Cells in the words of XDMF: one kind only, then a table of points a cell; or mixed, then a flat list of
-// code, points.
+// Cells in the format of XDMF: a table of points for one cell type, or a flat list of code and points for
+// mixed ones.
 struct Topology {
-  std::int64_t kind = 0;  // XDMF code of all cells; 0: mixed
+  std::int64_t kind = 0;  // XDMF code of all cells; 0 if mixed
   std::uint64_t width = 1;
   std::vector<std::int64_t> values;
 };
@@ -49,7 +49,7 @@ Topology make_topology(const mesh::Mesh& mesh) {
   for (Index c = 0; c < n; ++c) {
     if (topology.kind == 0) topology.values.push_back(code_of(mesh, c));
     const auto points = mesh.cell_points[c];
-    // VTK's prism stands on its head: the normal of its first triangle looks outwards, ours looks inwards.
+    // VTK's prism is inverted: the normal of its first triangle points outwards, ours points inwards.
     constexpr int prism[6] = {0, 2, 1, 3, 5, 4};
     for (std::size_t i = 0; i < points.size(); ++i)
       topology.values.push_back(
@@ -66,13 +66,13 @@ struct FieldWriter::State {
   std::string name;
   bool moving;
   std::string format;
-  xdmf::Series index;  // complete on rank 0 only
+  xdmf::Series index;  // complete only on rank 0
   int number = 0;      // of the next entry
   hdf5::Rows point_rows, cell_rows;
-  std::vector<GlobalIndex> points_there{},
-      cells_there{};  // numbers on file, of as many rows as this rank has
+  // Numbers in the file, of as many rows as this rank has.
+  std::vector<GlobalIndex> points_there{}, cells_there{};
   int compression = 0;
-  std::optional<parallel::GlobalOrder> point_order{}, cell_order{};  // of the file; none: as they stand here
+  std::optional<parallel::GlobalOrder> point_order{}, cell_order{};  // of the file; empty if in local order
 
   std::filesystem::path file() const { return folder / (name + ".h5"); }
 
@@ -115,7 +115,7 @@ struct FieldWriter::State {
   void start(std::span<const Vec3> places);
   bool continue_from(double restart_time);
   void find_order();
-  /// What the file of an earlier run holds up to `restart_time`, and the names of the outputs behind it.
+  /// Reads the entries of an earlier run up to `restart_time`. Returns the names of later outputs.
   std::vector<std::string> read_index(double restart_time);
   void read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps, double restart_time);
 };
@@ -184,7 +184,7 @@ std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
   return {all.begin() + std::ptrdiff_t(index.entries.size()), all.end()};
 }
 
-/// Of a file that other ranks have begun: what is added to it stands as the rest does.
+/// Finds the order of a file written on other ranks, so that new entries have the same order.
 void FieldWriter::State::find_order() {
   try {
     const auto here = [](const std::vector<GlobalIndex>& ids, const hdf5::Rows& rows) {
@@ -213,7 +213,7 @@ bool FieldWriter::State::continue_from(double restart_time) {
   return true;
 }
 
-/// Makes the folder; continues the series that is there or begins one. Collective.
+/// Creates the folder and continues an existing series or begins one. Collective.
 void FieldWriter::State::begin(std::span<const Vec3> places, double restart_time) {
   point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
   cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);

@@ -13,29 +13,28 @@
 
 namespace couplet::io {
 
-/// Time series of one participant: <folder>/<name>.h5 with an XDMF index <folder>/<name>.xdmf that Debian's
-/// ParaView opens while the run goes on. The HDF5 file is opened, written and closed each time; the index is
-/// rewritten atomically. Moving meshes write their points each time; fixed ones once. Collective over
-/// mesh.comm.
+/// Time series of one participant: <folder>/<name>.h5 with an XDMF index <folder>/<name>.xdmf that ParaView
+/// can open during the run. Each output opens, writes and closes the HDF5 file and replaces the index
+/// atomically. Moving meshes write their points at each output, fixed ones once. Collective over mesh.comm.
 class FieldWriter {
  public:
-  /// restart_time: entries later than this in an existing series are dropped; NaN starts a new series.
-  /// `places`: of the local points [m], written once; looked at while the writer is made. Of `choice` box and compression;
-  /// where no cell lies in the box there is no file.
+  /// Drops entries later than `restart_time` from an existing series; NaN starts a new one. `places` are the
+  /// local points [m], read and written here. `choice` sets box and compression. If no cell lies in the box,
+  /// no file is written.
   FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, std::filesystem::path folder,
               std::string name, bool moving, double restart_time, const FieldChoice& choice = {});
-  /// Of a surface, which `cells` are the faces of.
+  /// Writes a surface, whose `cells` are its faces.
   FieldWriter(const MeshPart& surface, std::filesystem::path folder, std::string name, bool moving,
               double restart_time);
   ~FieldWriter();
   FieldWriter(const FieldWriter&) = delete;
-  /// `points`: per local point; used when moving.
+  /// Writes an output. `points` per local point are used if the mesh moves.
   void write(double time, std::span<const Vec3> points, const std::vector<OutputField>& fields);
 
  private:
   struct State;
   std::optional<MeshPart> part_;
-  std::unique_ptr<State> state_;  // none: nothing lies in the box
+  std::unique_ptr<State> state_;  // nullptr if no cell lies in the box
 };
 
 }  // namespace couplet::io

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Index unused = -1;
 
-/// Collective.
+/// Numbers the points of a part over all ranks. Collective.
 parallel::IndexMap map_points(const mesh::Mesh& body, std::span<const Index> points,
                               std::span<const Index> number) {
   std::vector<GlobalIndex> there(number.begin(), number.end());
@@ -29,7 +29,7 @@ parallel::IndexMap map_points(const mesh::Mesh& body, std::span<const Index> poi
   return {body.comm, static_cast<Index>(points.size() - owner.size()), owner, remote};
 }
 
-/// The part of `entries`, whose points `points_of` gives; without types and ids. Collective.
+/// Makes a part of `entries`, whose points are given by `points_of`, without types and ids. Collective.
 template <class PointsOf>
 MeshPart part_of(const mesh::Mesh& body, std::span<const Vec3> places, std::vector<Index> entries,
                  const PointsOf& points_of) {
@@ -40,7 +40,7 @@ MeshPart part_of(const mesh::Mesh& body, std::span<const Vec3> places, std::vect
   std::vector<double> uses(body.points.n_local(), 0);
   for (const Index e : part.entries)
     for (const Index v : points_of(e)) uses[v] = 1;
-  body.points.add_to_owners(uses);  // also points that only other ranks use
+  body.points.add_to_owners(uses);  // includes points used only by other ranks
   std::vector<Index> number(uses.size(), unused);
   for (std::size_t v = 0; v < uses.size(); ++v) {
     if (uses[v] == 0) continue;
@@ -81,7 +81,7 @@ MeshPart make_surface(const mesh::Mesh& body, std::span<const Vec3> places, cons
   MeshPart surface = part_of(body, places, std::move(faces), [&](Index f) { return body.face_points[f]; });
   surface.mesh.dim = body.dim - 1;
   for (const Index f : surface.entries) {
-    // An edge has no type of its own: FieldWriter knows it by its two points.
+    // An edge has no type of its own; FieldWriter recognizes it by its two points.
     surface.mesh.cell_type.push_back(body.face_points[f].size() == 4 ? mesh::CellType::quadrilateral
                                                                      : mesh::CellType::triangle);
     surface.mesh.cell_id.push_back(body.boundary_id[f - body.n_interior]);

@@ -12,9 +12,9 @@
 
 namespace couplet::io {
 
-/// What of the fields in the volume is written, and how.
+/// Selection and compression of the volume fields that are written.
 struct FieldChoice {
-  int every = 1;        ///< at each n-th output; 0: never
+  int every = 1;        ///< at each n-th output, or 0 for never
   int compression = 0;  ///< level of deflate, 0 to 9
   struct Box {
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]
@@ -33,25 +33,25 @@ struct OutputField {
   std::span<const double> values;  ///< per local cell or point (ghosts are ignored), entry by entry
 };
 
-/// Some cells or boundary faces of a body as a mesh, for what is written of them; without faces. Its points are those of these
-/// cells or faces, each owned by the rank that owns it in the body.
+/// Some cells or boundary faces of a body as a mesh of their own, without faces. The rank that owns a point
+/// in the body owns it here.
 struct MeshPart {
-  mesh::Mesh mesh;             ///< ids are those of the body, cell_id of a surface its boundary_id
-  std::vector<Index> points;   ///< per local point: that of the body
-  std::vector<Index> entries;  ///< per local cell: the cell or face of the body
-  std::vector<Vec3> places;    ///< of the points [m]
+  mesh::Mesh mesh;             ///< ids are those of the body; for a surface cell_id is its boundary_id
+  std::vector<Index> points;   ///< per local point: point of the body
+  std::vector<Index> entries;  ///< per local cell: cell or face of the body
+  std::vector<Vec3> places;    ///< positions of the points [m]
 };
 
-/// Part of the owned cells with a flag. `places`: per local point of the body [m]. Collective.
+/// Makes a part of the flagged owned cells. `places` are the local points of the body [m]. Collective.
 MeshPart make_part(const mesh::Mesh& body, std::span<const Vec3> places,
                    const std::vector<std::uint8_t>& flags);
-/// Flags of the owned cells the mean of whose points lies in a box. `places`: per local point [m].
+/// Flags the owned cells whose mean of points lies in a box. `places` are the local points [m].
 std::vector<std::uint8_t> cells_within(const mesh::Mesh& mesh, std::span<const Vec3> places,
                                        const FieldChoice::Box& box);
-/// The faces of one patch as cells of one dimension less, in their order (edges in 2-D). Collective.
+/// Makes a mesh of the faces of one patch (edges in 2-D), in their order. Collective.
 MeshPart make_surface(const mesh::Mesh& body, std::span<const Vec3> places, const mesh::Patch& patch);
 
-/// The same field at some of its entries; its values go to `values`.
+/// Restricts a field to some of its entries. Its values are copied to `values`.
 OutputField picked(const OutputField& field, std::span<const Index> entries, std::vector<double>& values);
 
 }  // namespace couplet::io

@@ -15,7 +15,7 @@
 namespace couplet::io {
 namespace {
 
-/// Patches of the boundary that have faces, in the order of the mesh. Collective.
+/// Boundary patches with faces, in the order of the mesh. Collective.
 std::vector<const mesh::Patch*> patches_with_faces(const mesh::Mesh& body) {
   std::vector<const mesh::Patch*> found;
   for (const mesh::Patch& patch : body.patches)

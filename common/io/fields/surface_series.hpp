@@ -14,10 +14,10 @@
 
 namespace couplet::io {
 
-/// What is wrong with the list `output.surfaces`: patches, or the one word "all"; empty: nothing.
+/// Reason why the list `output.surfaces` (patches, or only the word "all") is invalid. Empty if it is valid.
 std::string wrong_surfaces(const std::vector<std::string>& names, const std::vector<std::string>& patches);
 
-/// The same of patches that are keys.
+/// Overload for patches that are the keys of a map.
 template <class T>
 std::string wrong_surfaces(const std::vector<std::string>& names,
                            const std::map<std::string, T>& of_patches) {
@@ -26,23 +26,23 @@ std::string wrong_surfaces(const std::vector<std::string>& names,
   return wrong_surfaces(names, patches);
 }
 
-/// Time series of some patches, <folder>/surface-<patch>.h5 with .xdmf as FieldWriter makes them.
+/// Time series of some patches, written to <folder>/surface-<patch>.h5 and .xdmf as by FieldWriter.
 class SurfaceSeries {
  public:
-  /// `places`: per local point of the body [m]. `names`: patches, or the one word "all". `body` by reference. Throws Error, which names `key`, for
-  /// wrong_surfaces(). Collective.
+  /// Keeps a reference to `body`. `places` are its local points [m], `names` patches or only the word "all".
+  /// Throws Error with `key` if wrong_surfaces() finds a reason. Collective.
   SurfaceSeries(const mesh::Mesh& body, std::span<const Vec3> places, const std::vector<std::string>& names,
                 const std::string& key);
   ~SurfaceSeries();
-  /// Where to write from now on; see FieldWriter.
+  /// Opens the series in `folder`, see FieldWriter.
   void open(std::filesystem::path folder, bool moving, double restart_time);
 
   const std::vector<const mesh::Patch*>& patches() const { return patches_; }
-  /// Flags of the local points of the body on these patches, on all ranks that share them. Collective.
+  /// Flags the local points of the body on these patches, on all ranks that share them. Collective.
   std::vector<std::uint8_t> points() const;
 
-  /// Of patches()[i]. `places`: per local point of the body. Of a field the place "cells" stands for the body's boundary
-  /// faces, whose owned ones have a value at least; "points" for its local points. Collective.
+  /// Writes fields of patches()[i]. `places` are the local points of the body. Fields on "cells" have values
+  /// at least at the body's owned boundary faces, others at its points. Collective.
   void write(std::size_t i, double time, std::span<const Vec3> places,
              const std::vector<OutputField>& fields);
 
@@ -50,7 +50,7 @@ class SurfaceSeries {
   struct Surface;
   const mesh::Mesh& body_;
   std::vector<const mesh::Patch*> patches_;
-  std::vector<std::unique_ptr<Surface>> surfaces_;  // one a patch
+  std::vector<std::unique_ptr<Surface>> surfaces_;  // one per patch
 };
 
 }  // namespace couplet::io

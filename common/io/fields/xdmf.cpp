@@ -33,7 +33,7 @@ struct Kind {
   const char* name;
   std::uint64_t points;
 };
-/// In the order of mesh::CellType, then edges.
+/// In the order of mesh::CellType, followed by edges.
 constexpr Kind kinds[] = {{4, "Triangle", 3},        {5, "Quadrilateral", 4}, {6, "Tetrahedron", 4},
                           {9, "Hexahedron", 8},      {8, "Wedge", 6},         {7, "Pyramid", 5},
                           {edge_code, "Polyline", 2}};

@@ -8,14 +8,14 @@
 
 #include "common/mesh/mesh.hpp"
 
-/// The XDMF 2 index of an HDF5 series: plain text, written whole each time.
+/// Writes the XDMF 2 index of an HDF5 series: plain text, replaced as a whole at each output.
 namespace couplet::io::xdmf {
 
-/// XDMF's own number of a cell type in a mixed topology; its points go in VTK order.
+/// XDMF number of a cell type in a mixed topology, whose points are in VTK order.
 std::int64_t cell_code(mesh::CellType type);
-/// Of the edges of a 2-D mesh's surface.
+/// XDMF number of an edge on the surface of a 2-D mesh.
 inline constexpr std::int64_t edge_code = 2;
-/// Points of a cell with this code.
+/// Number of points of a cell with this code.
 std::uint64_t points_of(std::int64_t code);
 
 struct Field {
@@ -32,13 +32,13 @@ struct Entry {
 
 struct Series {
   std::string file;       ///< HDF5 file, relative to the index
-  std::int64_t kind = 0;  ///< code of all cells; 0: mixed
+  std::int64_t kind = 0;  ///< code of all cells; 0 if mixed
   std::uint64_t topology_size = 0, n_cells = 0, n_points = 0;
   bool moving = false;
   std::vector<Entry> entries;
 };
 
-/// Replaces the index in one go (rename), so that a viewer never sees half of it.
+/// Replaces the index by a rename, so that a viewer never reads half of it.
 void write(const std::filesystem::path& index, const Series& series);
 
 }  // namespace couplet::io::xdmf

@@ -22,7 +22,7 @@ namespace {
 
 bool is_flat(mesh::CellType type) { return mesh::shape_of(type).dim == 2; }
 
-// Reference coordinates r, s, t of a hexahedron corner in VTK order; the quadrilateral uses the first four.
+// Reference coordinates r, s, t of hexahedron corners in VTK order. A quadrilateral uses the first four.
 constexpr int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                               {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
@@ -68,7 +68,7 @@ ShapeValues prism(const Vec3& x) {
   return v;
 }
 
-// A brick whose upper four corners are the apex.
+// Brick whose upper four corners coincide in the apex.
 ShapeValues pyramid(const Vec3& x) {
   const ShapeValues b = brick(x, 8, 3);
   ShapeValues v;
@@ -123,8 +123,8 @@ std::optional<std::array<double, 8>> weights_in_cell(mesh::CellType type, std::s
   if (((place - low).array() < -slack * size).any() || ((place - high).array() > slack * size).any())
     return std::nullopt;
 
-  // Newton on sum_i N_i(x) (X_i - X_0) = place - X_0 (differences: no round-off from a far origin); one step
-  // for simplices, few for the others.
+  // Newton's method for sum_i N_i(x) (X_i - X_0) = place - X_0, with differences to avoid round-off far from
+  // the origin. Simplices need one step, others a few.
   Vec3 x = Vec3::Constant(is_flat(type) ? 1.0 / 3 : 0.25);
   ShapeValues shape;
   for (int iteration = 0; iteration < 30; ++iteration) {
@@ -185,7 +185,7 @@ std::vector<Index> Balls::near(const Vec3& x, double slack) const {
 
 namespace {
 
-/// About the mean of some points.
+/// Adds a ball around the mean of some points.
 void add_ball(std::span<const Vec3> places, std::span<const Index> points, std::vector<Vec3>& centres,
               std::vector<double>& radii) {
   Vec3 centre = Vec3::Zero();
@@ -238,7 +238,7 @@ std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
 
 void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
   constexpr double smallest = 1e-6, largest = 2e3;  // [m]
-  constexpr double corner = 1.0 / 300;  // between sizes that occur in one scene and millimetres for metres
+  constexpr double corner = 1.0 / 300;              // between sizes in one scene and a confusion of mm and m
   const double size = mesh_size(mesh, points);
   if (size < smallest || size > largest)
     diagnostics::finding(parallel::comm_rank(mesh.comm),

@@ -10,28 +10,28 @@
 
 namespace couplet::io {
 
-/// Values of the shape functions of a cell at one place, one a cell point in VTK order. They sum to one and,
-/// summed over the points' coordinates, give the place: so they interpolate linear fields exactly.
+/// Shape functions of a cell at one position, one per cell point in VTK order. They sum to one and
+/// interpolate linear fields exactly.
 struct ShapeValues {
   std::array<double, 8> weight{};
-  std::array<Vec3, 8> gradient{};  ///< by the reference coordinates
+  std::array<Vec3, 8> gradient{};  ///< with respect to the reference coordinates
 };
 ShapeValues shape_functions(mesh::CellType type, const Vec3& reference);
 
-/// The weights of the cell's points at `place`, or nothing when the place is outside the cell by more than
-/// `slack` (in reference coordinates, where the cell has about unit size). A triangle or quadrilateral is
-/// taken in the plane z = 0.
+/// Weights of the cell's points at `place`. Returns nothing if the position is outside the cell by more than
+/// `slack` in reference coordinates, where a cell has about unit size. A triangle or quadrilateral lies in
+/// the plane z = 0.
 std::optional<std::array<double, 8>> weights_in_cell(mesh::CellType type, std::span<const Vec3> points,
                                                      const Vec3& place, double slack);
 
-/// Balls of very different sizes, asked for those that hold a place: k-d trees of their centres, one for
-/// each power of two of the radius. n log n to build; log n a question and what it finds.
+/// Finds the balls that contain a position. Their radii may differ widely, so each power of two of the radius
+/// has a k-d tree of centers. Building takes n log n, a query log n plus the number of results.
 class Balls {
  public:
   Balls(std::vector<Vec3> centres, std::vector<double> radii);
   ~Balls();
   Balls(Balls&&) noexcept;
-  /// Those within radius + slack of x, in ascending order, and perhaps some more.
+  /// Balls within radius + slack of x in ascending order. A few others may be included.
   std::vector<Index> near(const Vec3& x, double slack) const;
 
  private:
@@ -39,18 +39,18 @@ class Balls {
   std::vector<std::unique_ptr<Group>> groups_;
 };
 
-/// Diagonal of the box around the reference mesh [m]. Collective.
+/// Diagonal of the bounding box of the reference mesh [m]. Collective.
 double mesh_size(const mesh::Mesh& mesh, std::span<const Vec3> places);
 
-/// What of a mesh in its reference configuration may hold a place, for many places: owned points, owned cells,
-/// boundary faces of this rank. The mesh must outlive it. Making one is collective.
+/// Finds candidates for positions in the reference configuration: owned points, owned cells and boundary
+/// faces of this rank. The mesh must outlive it. The constructor is collective.
 class PlaceSearch {
  public:
   PlaceSearch(const mesh::Mesh& mesh, std::span<const Vec3> places);
   const mesh::Mesh& mesh() const { return mesh_; }
   std::span<const Vec3> places() const { return places_; }
   double size() const { return size_; }  ///< [m]
-  /// Within `slack` [m] of x, ascending, and perhaps some more.
+  /// Candidates within `slack` [m] of x in ascending order. A few others may be included.
   std::vector<Index> points(const Vec3& x, double slack) const { return points_.near(x, slack); }
   std::vector<Index> cells(const Vec3& x, double slack) const { return cells_.near(x, slack); }
   std::vector<Index> faces(const Vec3& x, double slack) const;
@@ -62,8 +62,8 @@ class PlaceSearch {
   Balls points_, cells_, faces_;
 };
 
-/// Doubts a mesh in millimetres that is read in metres: its size is no body's, or all `places` of the YAML (probes) lie
-/// within a three-hundredth of it. Collective.
+/// Warns about a mesh in millimeters that is read in meters. It judges the mesh size, or whether all `places`
+/// of the YAML (probes) lie within 1/300 of it. Collective.
 void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places);
 
 }  // namespace couplet::io

@@ -16,10 +16,10 @@ namespace couplet::io {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
-// Of the mesh's size: nearer to a point is that point, nearer to the boundary is on it.
+// Tolerances relative to the mesh size for a position on a point and on the boundary.
 constexpr double on_point = 1e-10, on_boundary = 1e-6;
 
-// One rank's best way to hold the probe; the ranks agree on the smallest key.
+// Best candidate of one rank for the probe. The ranks agree on the smallest key.
 struct Candidate {
   double key = none;
   Vec3 place = Vec3::Zero();
@@ -27,7 +27,7 @@ struct Candidate {
   std::vector<double> weights;
 };
 
-// Of those that are looked at, here as below: all, or those that a search found.
+// Nearest point among all candidates, or those that a search found; likewise below.
 Candidate nearest_point(std::span<const Vec3> places, const auto& candidates, const Vec3& place) {
   Candidate best;
   for (const Index p : candidates) {
@@ -43,7 +43,7 @@ Candidate containing_cell(const mesh::Mesh& mesh, std::span<const Vec3> places, 
   Candidate best;
   std::vector<Vec3> corners;
   for (const Index c : candidates) {
-    // The first cell of the file that contains it, so that a place on a face has the same cell on any
+    // Takes the first containing cell of the file, so a position on a face has the same cell on any
     // partition.
     if (double(mesh.cell_id[c]) > best.key) continue;
     const auto points = mesh.cell_points[c];
@@ -92,7 +92,7 @@ Candidate nearest_on_boundary(const mesh::Mesh& mesh, std::span<const Vec3> plac
   return best;
 }
 
-// The rank with the smallest key, and that key. Collective.
+// Finds the smallest key and its rank. Collective.
 std::pair<double, int> agree(MPI_Comm comm, double key) {
   struct {
     double key;
@@ -102,11 +102,11 @@ std::pair<double, int> agree(MPI_Comm comm, double key) {
   return {value.key, value.rank};
 }
 
-// At a mesh point, in a cell, else at the place of the boundary that is nearest: what this rank has, and the rank that
-// has the best with its key. `look` gives what to look at: points, cells, faces within a distance. Collective.
+// Finds a mesh point, a cell, or else the nearest boundary position: this rank's candidate, and the best key
+// with its rank. `look` returns points, cells and faces within a distance. Collective.
 struct Chosen {
   Candidate candidate;
-  double key = none;  // [m] from the boundary if it is outside
+  double key = none;  // distance from the boundary if outside [m]
   int rank = 0;
   bool outside = false;
 };
@@ -125,7 +125,7 @@ Chosen choose(const mesh::Mesh& mesh, std::span<const Vec3> places, const Vec3& 
   return chosen;
 }
 
-// For a single place, which pays for no tree.
+// Candidates for a single position, without the cost of a tree.
 struct Everything {
   const mesh::Mesh& mesh;
   auto points(const Vec3&, double) const { return std::views::iota(Index(0), mesh.points.n_owned()); }
@@ -173,7 +173,7 @@ std::vector<double> Probe::sample(std::span<const double> values, int components
   for (std::size_t i = 0; i < points_.size(); ++i)
     for (int c = 0; c < components; ++c)
       result[c] += weights_[i] * values[std::size_t(points_[i]) * components + c];
-  // All ranks but one bring zeros.
+  // All ranks but one contribute zeros.
   const bool root = parallel::comm_rank(comm_) == 0;
   MPI_Reduce(root ? MPI_IN_PLACE : result.data(), result.data(), components, MPI_DOUBLE, MPI_SUM, 0, comm_);
   if (!root) result.clear();

@@ -11,27 +11,27 @@
 
 namespace couplet::io {
 
-/// One place in the reference configuration where values are watched. It moves with the material it lies in.
+/// Position in the reference configuration where values are monitored. It moves with the material.
 ///
-/// The value is a weighted sum of point values that is exact for linear fields: at a mesh point exactly that
-/// point, in a cell its shape functions. A place outside the mesh by less than `tolerance` is taken to the
-/// nearest place on the boundary; farther out is an Error that tells the distance. Same place and weights
-/// whatever the number of ranks.
+/// The value is a weighted sum of point values that is exact for linear fields: a mesh point gives its own
+/// value, a cell uses its shape functions. A position outside the mesh by less than `tolerance` is moved to
+/// the nearest position on the boundary. Farther out is an Error that states the distance. Position and
+/// weights do not depend on the number of ranks.
 class Probe {
  public:
-  /// Collective over mesh.comm. `name` is for messages; tolerance [m], by default 1e-6 of the mesh's size.
+  /// `name` is for messages. `tolerance` [m] is 1e-6 of the mesh size by default. Collective over mesh.comm.
   Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
         std::optional<double> tolerance = {});
-  /// One of many in a mesh: nothing if the place lies outside it. Collective.
+  /// Finds one of many probes in a mesh. Returns nothing if the position lies outside. Collective.
   static std::optional<Probe> in(const PlaceSearch& search, const Vec3& place);
 
-  /// `values`: per local point (ghosts up to date), `components` each. The value on rank 0, empty elsewhere.
+  /// Value on rank 0, empty elsewhere. `values` has `components` per local point, with ghosts up to date.
   /// Collective.
   std::vector<double> sample(std::span<const double> values, int components) const;
 
-  /// Where the probe really is (reference configuration) [m].
+  /// Position of the probe in the reference configuration [m].
   const Vec3& place() const { return place_; }
-  /// Local points and their weights on the one rank that holds the probe; empty elsewhere.
+  /// Local points and their weights on the one rank that holds the probe. Empty elsewhere.
   const std::vector<Index>& points() const { return points_; }
   const std::vector<double>& weights() const { return weights_; }
 

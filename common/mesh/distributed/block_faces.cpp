@@ -12,7 +12,7 @@
 namespace couplet::mesh {
 namespace {
 
-/// Record of a cell of another block, or of this one.
+/// Record of a cell of any block.
 struct RecordOfCell {
   GlobalIndex cell;
   FaceRecord record;
@@ -43,7 +43,7 @@ class BlockFaces {
   }
 
  private:
-  /// Numbers of this block's points, as far as its cells use them, and cells turned right side out.
+  /// Renumbers the points used by this block's cells and orients the cells.
   RawMesh oriented_cells() {
     CellList& cells = block_.cells;
     const PointNumbers numbers(cells.points);
@@ -74,7 +74,7 @@ class BlockFaces {
     material_of_zone_ = materials_of_zones(block_);
     HalfFaces halves(raw);
     within_.reserve(halves.size() / 2);
-    // A face of three cells or more is refused here if they are all in this block, and else where the parts are put together.
+    // Rejects a face of three or more cells in this block. Others are rejected when parts are merged.
     std::vector<FaceFault> faults;
     halves.for_each_face([&](std::span<const HalfFace> cells) {
       if (cells.size() == 1) {
@@ -96,7 +96,7 @@ class BlockFaces {
     return !material_of_zone_.empty() && material_of_zone_[zone] != material_of_zone_[other];
   }
 
-  /// Joined faces leave the boundary.
+  /// Removes joined faces from the boundary.
   void join_periodic_of(std::vector<BoundedCell>& bounded, GlobalIndex first_element) {
     if (block_.periodic.empty()) return;
     PeriodicFaces found = find_periodic_faces(comm_, block_, bounded, first_element);
@@ -112,7 +112,7 @@ class BlockFaces {
     joined_ = parallel::exchange(comm_, parallel::sort_by_rank(comm_, joined_, at_cell)).items;
   }
 
-  /// Boundary faces are numbered in the order of their elements; of elements that are there twice the first counts.
+  /// Numbers boundary faces in the order of their elements. Of duplicate elements the first counts.
   void number_boundary(const std::vector<BoundedCell>& bounded, GlobalIndex first_element) {
     GlobalIndex number = parallel::exclusive_scan(comm_, GlobalIndex(bounded.size()));
     n_boundary_ = parallel::sum(comm_, GlobalIndex(bounded.size()));
@@ -120,7 +120,7 @@ class BlockFaces {
       records_.push_back({b.cell, {b.face, 0, block_.element_patch[b.element - first_element], number++}});
   }
 
-  /// Two boundary faces of each face between two materials, numbered by the cells of the face.
+  /// Creates two boundary faces for each face between two materials, numbered by the face's cells.
   void split_materials_of(const std::vector<FacePair>& pairs) {
     for (const FacePair& p : pairs)
       if (p.cell < p.other && is_bonded(block_.cells.zone[p.cell - first_cell_], p.other_zone))
@@ -152,7 +152,7 @@ class BlockFaces {
     within_ = {};
     for (const FacePair& p : pairs) graph_.neighbours[next[p.cell - first_cell_]++] = p.other;
     for (const auto& [cell, other] : joined_) graph_.neighbours[next[cell - first_cell_]++] = other;
-    // Cells that share an inner and a periodic face, or two of these, are neighbours once.
+    // Cells that share several inner or periodic faces are neighbors only once.
     GlobalIndex* to = graph_.neighbours.data();
     for (Index c = 0, first = 0; c < block_.cells.size(); ++c) {
       const auto begin = graph_.neighbours.begin() + first,
@@ -184,11 +184,11 @@ class BlockFaces {
   MeshBlock& block_;
   GlobalIndex first_cell_, n_boundary_ = 0;
   std::vector<int> material_of_zone_;
-  std::vector<FaceSide> sides_;  // without another side in this block
+  std::vector<FaceSide> sides_;  // without a partner in this block
   std::vector<BlockGraph::Pair> within_;
-  std::vector<std::array<GlobalIndex, 2>>
-      joined_;                    // cells that share a periodic face, the first of this block
-  std::vector<FacePair> bonded_;  // as the cell with the smaller number sees them
+  // Cells that share a periodic face, the one of this block first.
+  std::vector<std::array<GlobalIndex, 2>> joined_;
+  std::vector<FacePair> bonded_;  // as seen by the cell with the smaller number
   std::vector<RecordOfCell> records_;
   BlockGraph graph_;
 };

@@ -9,7 +9,7 @@ namespace {
 
 using GridPlace = std::array<GlobalIndex, 3>;
 
-/// Numbers on a grid of `n` entries a side, the first side running first.
+/// Numbers on a grid with `n` entries per direction, the first direction fastest.
 struct GridNumbers {
   GridPlace n;
   GlobalIndex count() const { return n[0] * n[1] * n[2]; }
@@ -49,7 +49,7 @@ class BoxBlock {
     for (int i = 0; i < 8; ++i)
       corners[i] = points_.number({at[0] + steps[i][0], at[1] + steps[i][1], at[2] + steps[i][2]});
     if (!box_.tetrahedra) return push(CellType::hexahedron, corners);
-    // Kuhn's cut along the diagonal 0-6, as make_box() has it.
+    // Kuhn's subdivision along the diagonal 0-6, as in make_box().
     constexpr std::array<int, 7> ring{1, 2, 3, 7, 4, 5, 1};
     const auto t = cell % 6;
     push(CellType::tetrahedron, std::array{corners[0], corners[ring[t]], corners[ring[t + 1]], corners[6]});
@@ -67,7 +67,7 @@ class BoxBlock {
     }
   }
 
-  /// The side of the box that these points lie on, or -1.
+  /// Side of the box that contains these points, or -1.
   int side_of(std::span<const GlobalIndex> face) const {
     for (int axis = 0; axis < 3; ++axis)
       for (const int upper : {0, 1}) {

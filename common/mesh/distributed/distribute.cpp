@@ -15,7 +15,7 @@ bool holds(const std::vector<GlobalIndex>& numbers, GlobalIndex number) {
   return std::ranges::binary_search(numbers, number);
 }
 
-/// Wide points of own cells, whose surroundings are complete after one ring, ascending. `own_points`: ascending.
+/// Wide points of own cells, whose surroundings are complete after one ring. All points are ascending.
 std::vector<GlobalIndex> own_wide_points(const Piece& piece, const std::vector<GlobalIndex>& own_points) {
   std::vector<GlobalIndex> wide;
   for (const Index p : wide_points(piece))
@@ -23,7 +23,7 @@ std::vector<GlobalIndex> own_wide_points(const Piece& piece, const std::vector<G
   return wide;
 }
 
-/// The points of all cells around wide points, as far as own cells do not have them: whose cells are the second ring.
+/// Points of all cells around wide points that own cells do not have. Their cells are the second ring.
 std::vector<GlobalIndex> points_around(const std::vector<GlobalIndex>& wide,
                                        const std::vector<GlobalIndex>& own_points, const CellList& cells) {
   std::vector<GlobalIndex> around;
@@ -39,7 +39,7 @@ std::vector<GlobalIndex> points_around(const std::vector<GlobalIndex>& wide,
   return around;
 }
 
-/// All points of the piece that are wide, as the ranks whose own cells have them know. Collective.
+/// All wide points of the piece, as known by the ranks whose own cells have them. Collective.
 std::vector<Index> wide_points_here(MPI_Comm comm, const Shares& shares,
                                     const std::vector<GlobalIndex>& own_wide,
                                     const std::vector<GlobalIndex>& points) {
@@ -54,8 +54,8 @@ std::vector<Index> wide_points_here(MPI_Comm comm, const Shares& shares,
   return result;
 }
 
-/// With MPI's own allocator settings, memory that is freed stays with the process until it is asked for. Alone, a rank soon uses it
-/// again.
+/// Returns freed memory to the system, because MPI's allocator settings keep it. A single rank soon reuses
+/// it.
 void give_back(MPI_Comm comm) {
   if (parallel::comm_size(comm) > 1) malloc_trim(0);
 }

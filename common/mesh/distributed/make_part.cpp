@@ -14,7 +14,7 @@
 namespace couplet::mesh {
 namespace {
 
-/// Index map of entries known by `ids` (owned ones first); the owners tell where they keep what is a ghost here. Collective.
+/// Index map of entries `ids` (owned ones first). Owners send their local indices of the ghosts. Collective.
 parallel::IndexMap make_index_map(MPI_Comm comm, std::span<const GlobalIndex> ids, Index n_owned,
                                   const std::vector<int>& ghost_owner) {
   std::vector<std::pair<GlobalIndex, Index>> owned;
@@ -45,7 +45,7 @@ class Part {
         piece_(std::move(piece)),
         point_owner_(std::move(point_owner)) {}
 
-  /// The mesh and its points. What is used up on the way is given back at once.
+  /// Builds the mesh and its points. Intermediate data are freed as soon as possible.
   std::pair<Mesh, std::vector<Vec3>> build(const std::vector<Index>& wide) {
     mesh_.comm = comm_;
     mesh_.dim = raw_.dim;
@@ -69,8 +69,8 @@ class Part {
  private:
   struct Inner {
     Index owner, neighbour;  // cells of the piece
-    Index joined;            // 0: no periodic face, else what its record says for a patch
-    std::int8_t face;        // of the owner's shape
+    Index joined;            // 0 without periodic face, else `patch` of its record
+    std::int8_t face;        // in the owner's shape
   };
 
   bool is_own(Index cell) const { return local_.owner[cell] == rank_; }
@@ -86,7 +86,7 @@ class Part {
     return place(sum, raw_.dim);
   }
 
-  /// Faces between two cells of the piece, one of them of this rank.
+  /// Finds faces between two cells of the piece, at least one of which is owned.
   void find_inner_faces() {
     if (parallel::comm_size(comm_) == 1) return take_inner_faces();
     HalfFaces halves(raw_);
@@ -113,7 +113,7 @@ class Part {
     });
   }
 
-  /// The cells of the block are those of the piece.
+  /// Takes the faces from the block if its cells are those of the piece.
   void take_inner_faces() {
     inner_.reserve(source_.graph.within.size());
     for (const BlockGraph::Pair& p : source_.graph.within)
@@ -123,7 +123,7 @@ class Part {
         inner_.push_back({p.cell, p.other, 0, p.face});
   }
 
-  /// Periodic faces of own cells, seen from the cell with the smaller number.
+  /// Finds periodic faces of own cells, seen from the cell with the smaller number.
   void find_joined_faces() {
     const CellList& cells = local_.cells;
     for (Index c = 0; c < cells.size(); ++c)
@@ -137,7 +137,7 @@ class Part {
       }
   }
 
-  /// Own cells in the order of reverse Cuthill-McKee, then the copies, rank by rank.
+  /// Numbers own cells in reverse Cuthill-McKee order, then the copies by rank.
   void number_cells() {
     std::vector<Index> number_of_own(local_.owner.size(), -1), cell, first, second;
     for (Index c = 0; c < local_.cells.size(); ++c) {
@@ -168,7 +168,7 @@ class Part {
     mesh_.cells = make_index_map(comm_, mesh_.cell_id, n_owned, ghost_owner);
   }
 
-  /// Points in the order in which the cells name them, own ones first.
+  /// Numbers points in the order of the cells, own ones first.
   void number_points() {
     std::vector<Index> own, ghosts;
     point_local_.assign(raw_.points.size(), -1);
@@ -208,7 +208,7 @@ class Part {
     }
   }
 
-  /// Offset that moves places of the neighbour to where the owner sees them.
+  /// Translation from the neighbor's position to that seen by the owner.
   Vec3 shift_of(const Inner& f) const {
     if (f.joined == 0) return Vec3::Zero();
     const FaceRecord record{f.face, 0, f.joined, 0};
@@ -232,7 +232,7 @@ class Part {
     }
     mesh_.n_interior = static_cast<Index>(inner_.size());
     inner_ = {};
-    mesh_.face_points.index.shrink_to_fit();  // triangles take less
+    mesh_.face_points.index.shrink_to_fit();  // triangles need less memory
   }
 
   void fill_boundary_faces() {
@@ -293,7 +293,7 @@ class Part {
   std::vector<Inner> inner_;
   std::vector<std::pair<Index, Index>> bonded_;  // cells that share a face between materials
   std::vector<Index> cells_;                     // cells of the piece in the order of the part
-  std::vector<Index> cell_local_, point_local_;  // number in the part of each cell and point of the piece
+  std::vector<Index> cell_local_, point_local_;  // local number of each cell and point of the piece
   Mesh mesh_;
   std::vector<Vec3> points_;  // per local point, as read
 };
@@ -303,7 +303,7 @@ class Part {
 LoadedMesh make_part(const PieceSource& source, LocalCells local, Piece piece, const std::vector<Index>& wide,
                      std::vector<int> point_owner) {
   auto [mesh, points] = Part(source, std::move(local), std::move(piece), std::move(point_owner)).build(wide);
-  malloc_trim(0);  // with MPI, memory that is given back stays with the process otherwise
+  malloc_trim(0);  // with MPI, freed memory would stay with the process
   Geometry geometry = compute_geometry(mesh, std::move(points));
   return {std::move(mesh), std::move(geometry)};
 }

@@ -48,7 +48,7 @@ std::string faces_in_no_patch(GlobalIndex n, const std::vector<std::string>& pla
 
 constexpr std::size_t most_told = 3;
 
-/// Their middles, as text. Collective.
+/// Centers of the faces as text. Collective.
 std::vector<std::string> places_of(MPI_Comm comm, const MeshBlock& block,
                                    const std::vector<FaceFault>& faults) {
   std::vector<GlobalIndex> all;
@@ -68,7 +68,7 @@ std::vector<std::string> places_of(MPI_Comm comm, const MeshBlock& block,
   return places;
 }
 
-/// How many cells of all blocks have each of these faces. Collective.
+/// Number of cells of all blocks that have each of these faces. Collective.
 std::vector<GlobalIndex> cells_with(MPI_Comm comm, const MeshBlock& block,
                                     const std::vector<FaceFault>& faults) {
   std::vector<GlobalIndex> count(faults.size(), 0);
@@ -83,7 +83,7 @@ std::vector<GlobalIndex> cells_with(MPI_Comm comm, const MeshBlock& block,
 
 int at_place(std::uint8_t order, int i) { return order >> 2 * i & 3; }
 
-/// The faces whose smallest point is in this rank's share.
+/// Faces whose smallest point is in this rank's share.
 class MeetingFaces {
  public:
   explicit MeetingFaces(std::vector<FaceSide> sides) : sides_(std::move(sides)) {
@@ -99,7 +99,7 @@ class MeetingFaces {
     }
   }
 
-  std::vector<FacePair> pairs;  // as each of the two is told
+  std::vector<FacePair> pairs;  // as reported to each cell
   std::vector<BoundedCell> bounded;
   std::vector<FaceFault> faults;
 
@@ -159,7 +159,7 @@ void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const std::vector<
       throw Error(cells[0] > 0 ? face_inside(patch(first.patch), places[0])
                                : face_without_cell(patch(first.patch), places[0]));
     case unassigned:
-      // Others that met each other in their own block may have the face, too.
+      // Faces matched within their own block may also have more than two cells.
       for (std::size_t i = 0; i < all.size(); ++i)
         if (cells[i] > 2) throw Error(face_of_many_cells(cells[i], places[i]));
       throw Error(faces_in_no_patch(

@@ -36,7 +36,7 @@ std::size_t packed_size(const CellList& cells, Index c) {
   return 2 + cells.points_of(c).size() + 2 * cells.records_of(c).size();
 }
 
-// number; type, number of records, zone; points; of each record: face, turn, patch; number.
+// Layout: number; type, number of records, zone; points; for each record: face, turn, patch; number.
 GlobalIndex* pack(const CellList& cells, Index c, GlobalIndex id, GlobalIndex* to) {
   const auto records = cells.records_of(c);
   *to++ = id;
@@ -85,7 +85,7 @@ CellList sorted(const CellList& cells) {
 PointNumbers::PointNumbers(std::span<const GlobalIndex> all) {
   if (all.empty()) return;
   const auto [least, most] = std::ranges::minmax(all);
-  // Points of a part are mostly numbered close together: a table of them is quicker than searching.
+  // Points of a part mostly have close numbers, for which a table is faster than a search.
   if (std::size_t(most - least) > all.size()) {
     numbers_.assign(all.begin(), all.end());
     std::ranges::sort(numbers_);

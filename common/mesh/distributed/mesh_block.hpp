@@ -16,8 +16,8 @@
 
 namespace couplet::mesh {
 
-/// Numbers 0 .. n - 1 in even shares, rank by rank, of the first `holders` ranks: where what has a number stands while
-/// no rank owns it.
+/// Even distribution of the numbers 0 .. n - 1 over the first `holders` ranks. It determines where data of an
+/// entity are stored before a rank owns it.
 struct Shares {
   GlobalIndex n = 0;
   int ranks = 1;
@@ -33,7 +33,7 @@ struct Shares {
   }
 };
 
-/// `numbers`, ascending, as parcels to the ranks in whose shares they are.
+/// Packs `numbers`, which must be ascending, as parcels for the ranks that hold them.
 inline parallel::Parcels<GlobalIndex> by_share(const Shares& shares, std::vector<GlobalIndex> numbers) {
   parallel::Parcels<GlobalIndex> parcels;
   for (int r = 0; r <= shares.ranks; ++r)
@@ -43,7 +43,7 @@ inline parallel::Parcels<GlobalIndex> by_share(const Shares& shares, std::vector
   return parcels;
 }
 
-/// The values at these numbers, ascending, of which each rank has those of its share. Collective.
+/// Fetches the values at these ascending numbers. `mine` holds those of this rank's share. Collective.
 template <class T>
 std::vector<T> fetch(MPI_Comm comm, const Shares& shares, std::span<const T> mine,
                      const std::vector<GlobalIndex>& numbers) {
@@ -55,22 +55,22 @@ std::vector<T> fetch(MPI_Comm comm, const Shares& shares, std::span<const T> min
   return std::move(parallel::exchange(comm, answers).items);
 }
 
-/// A face of a cell that no other cell shares, or that is bonded or periodic.
+/// Face of a cell that no other cell shares, or that is bonded or periodic.
 struct FaceRecord {
   std::int8_t face = 0;  ///< position among the faces of the cell's shape
-  std::int8_t turn = 0;  ///< bonded: which of the cell's points of the face comes first
+  std::int8_t turn = 0;  ///< bonded: position of the cell's point that comes first on the face
   int patch = 0;
-  GlobalIndex number = 0;  ///< of the boundary face
+  GlobalIndex number = 0;  ///< number of the boundary face
 
-  // A periodic face has, in place of a patch, the pair of patches that it joins and which of the two it was on; its number is that
-  // of the cell beyond.
+  // For a periodic face `patch` encodes the pair of patches that it joins and its side. `number` is then the
+  // cell across the face.
   static int joined(int pair, int side) { return -1 - 2 * pair - side; }
   bool is_joined() const { return patch < 0; }
   int pair() const { return (-1 - patch) / 2; }
   int side() const { return (-1 - patch) % 2; }
 };
 
-/// Cells with numbers of the mesh, as they travel from rank to rank.
+/// Cells with mesh numbers, as they are sent from rank to rank.
 struct CellList {
   std::vector<GlobalIndex> id;
   std::vector<CellType> type;
@@ -89,46 +89,46 @@ struct CellList {
   }
   /// Points of a face of a cell in the order of its shape.
   std::vector<GlobalIndex> face_of(Index c, int face) const;
-  /// Cell `c` of another list, under the number `number`.
+  /// Appends cell `c` of another list under the number `number`.
   void push(const CellList& other, Index c, GlobalIndex number);
 };
 
-/// Numbers that a packed cell takes.
+/// Number of integers in a packed cell.
 std::size_t packed_size(const CellList& cells, Index c);
-/// Writes a cell under the number `id`; gives the end of what is written.
+/// Packs a cell under the number `id` and returns the end of the written range.
 GlobalIndex* pack(const CellList& cells, Index c, GlobalIndex id, GlobalIndex* to);
-/// Appends all cells that are packed there.
+/// Appends all packed cells.
 void unpack(std::span<const GlobalIndex> packed, CellList& cells);
 
-/// The cells in ascending order of their numbers, each once.
+/// Sorts the cells by number and removes duplicates.
 CellList sorted(const CellList& cells);
 
-/// Numbers of points in ascending order, each once, and the place of each there.
+/// Unique point numbers in ascending order, with the position of each.
 class PointNumbers {
  public:
   explicit PointNumbers(std::span<const GlobalIndex> all);
   const std::vector<GlobalIndex>& numbers() const { return numbers_; }
-  /// Of a number that is among them.
+  /// Position of a number, which must be in the list.
   Index place(GlobalIndex number) const;
 
  private:
   std::vector<GlobalIndex> numbers_;
-  std::vector<Index>
-      table_;  // by number, from the smallest; empty where there would be many more than there are numbers
+  // Index from the smallest number; empty if it would be much longer than the list.
+  std::vector<Index> table_;
 };
 
-/// This rank's block of a mesh, as a file or a generator gives it: its share of the points and of the cells by their
-/// numbers, and some boundary elements, those of rank 0 first. A small mesh is a block of rank 0 with empty ones beside it; of
-/// a large one no rank has the whole.
+/// This rank's block of a mesh from a file or a generator: its share of points and cells by number, and some
+/// boundary elements, those of rank 0 first. A small mesh is entirely on rank 0. No rank holds a large mesh
+/// as a whole.
 struct MeshBlock {
   int dim = 3;
   Shares point_shares, cell_shares;
   std::vector<Vec3> points;  ///< of this rank's share
-  CellList cells;            ///< of this rank's share; without `id`
+  CellList cells;            ///< of this rank's share, without `id`
   std::vector<GlobalIndex> element_points;
   std::vector<Index> element_offset{0};
   std::vector<int> element_patch;
-  // These agree on all ranks, as in RawMesh:
+  // The following agree on all ranks, as in RawMesh:
   std::vector<std::string> zones, patches;
   std::vector<std::array<std::string, 2>> periodic;
   std::vector<std::vector<std::string>> materials;
@@ -143,58 +143,58 @@ struct MeshBlock {
   void push_element(int patch, std::span<const GlobalIndex> points_of_element);
 };
 
-/// This rank's block of a mesh that the first `holders` ranks share out evenly, each of which has it as a whole. `raw` is
-/// that of rank 0 elsewhere only in `periodic`, `materials` and `find_wide_points`. Collective.
+/// Block of this rank for a mesh that each of the first `holders` ranks holds as a whole. On the other ranks
+/// `raw` must match rank 0 only in `periodic`, `materials` and `find_wide_points`. Collective.
 MeshBlock block_of(MPI_Comm comm, const RawMesh& raw, int holders = 1);
 
 /// Size and number of cells of a mesh, for estimates before a run.
 struct MeshFacts {
-  int dim = 3;               ///< 2: cells in the plane only
+  int dim = 3;               ///< 2 if there are only 2-D cells
   Vec3 size = Vec3::Zero();  ///< of the box around the points [m]
-  double shortest_edge = 0;  ///< of any cell, diagonals included [m]
+  double shortest_edge = 0;  ///< of any cell, including diagonals [m]
   double mean_cell = 0;      ///< (volume of the box over the number of cells)^(1/dim) [m]
   std::size_t cells = 0;
   std::vector<std::string> patches;
-  double smallest_side() const;  ///< of the box, in the directions that the mesh has [m]
+  double smallest_side() const;  ///< of the box, in the dimensions of the mesh [m]
   double largest_side() const { return size.maxCoeff(); }
-  /// Sets mean_cell from the others.
+  /// Computes mean_cell from the other members.
   void find_mean_cell();
   void scale(double factor);
 };
-/// Facts of a whole mesh; needs no MPI.
+/// Computes the facts of a whole mesh. Needs no MPI.
 MeshFacts facts_of(const RawMesh& raw);
-/// Collective.
+/// Computes the facts over all ranks. Collective.
 MeshFacts facts_of(MPI_Comm comm, const MeshBlock& block);
 
-/// The same mesh as one piece, of a block that is all of it.
+/// Converts a block that contains the whole mesh.
 RawMesh raw_of(MeshBlock block);
 
-/// The material of each zone; empty with fewer than two materials. Throws Error for a zone without material or a material
-/// without zone.
+/// Material of each zone. Empty with fewer than two materials. Throws Error for a zone without material or a
+/// material without zone.
 std::vector<int> materials_of_zones(const MeshBlock& block);
 
-/// Takes out the points that no cell and no boundary element has (a .msh may carry centers of circles); the order of the others
-/// stays, and they are shared out anew. Collective.
+/// Removes points without a cell or boundary element (a .msh may contain centers of circles). The others keep
+/// their order and are redistributed. Collective.
 void drop_unused_points(MPI_Comm comm, MeshBlock& block);
 
-/// From blocks to this rank's part: faces are matched, cells shared out by PT-Scotch and sent to their ranks, and what
-/// surrounds them fetched, all in parallel: no rank holds more than its block and its part with its surroundings.
-/// `part`: the rank of each cell of the block, in place of PT-Scotch's. Every boundary face must belong to exactly one patch;
-/// errors name the place. Collective.
+/// Distributes a mesh: matches faces, partitions the cells by PT-Scotch and sends them with their
+/// surroundings to their ranks. No rank holds more than its block and its part with surroundings. `part`
+/// replaces PT-Scotch with a rank per cell of the block. Every boundary face must belong to exactly one
+/// patch; errors state the location. Collective.
 LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part = {});
 
-/// The same of a block of this file, all lengths times `scale`, checked and reported. Throws Error with the name of the
-/// file. Collective.
+/// Scales, distributes, checks and reports a block of this file. Throws Error with the name of the file.
+/// Collective.
 LoadedMesh load_block(MPI_Comm comm, MeshBlock block, const std::filesystem::path& file, double scale);
 
-/// A box of hexahedra, or of each cut into six tetrahedra: cells, points, patches and their order as make_box() has them.
+/// Box of hexahedra, or of six tetrahedra per hexahedron, numbered as by make_box().
 struct BlockedBox {
   bool tetrahedra = false;
-  std::array<GlobalIndex, 3> n{1, 1, 1};  ///< hexahedra a side
+  std::array<GlobalIndex, 3> n{1, 1, 1};  ///< hexahedra per side
   Vec3 lower = Vec3::Zero(), upper = Vec3::Ones();
 };
 
-/// This rank's block of it; each rank makes its own, without a word to the others. Throws Error for no box.
+/// Block of this rank, generated without communication. Throws Error for an invalid box.
 MeshBlock box_block(MPI_Comm comm, const BlockedBox& box);
 
 }  // namespace couplet::mesh

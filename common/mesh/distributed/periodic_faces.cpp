@@ -11,19 +11,19 @@
 namespace couplet::mesh {
 namespace {
 
-/// How far the middle of a face may be from its partner's, as a share of its size.
+/// Maximum distance of a face center from its partner's, relative to the size of the face.
 constexpr double periodic_tolerance = 1e-4;
 
 struct PeriodicSide {
   Vec3 centre;
-  double size;  // largest distance of a point from the centre
+  double size;  // largest distance of a point from the center
   GlobalIndex element, cell;
   std::int8_t face, side;
-  /// Place along a direction in which meshes have no order.
+  /// Coordinate along a direction in which meshes are not aligned.
   double key() const { return 0.5377 * centre[0] + 0.3315 * centre[1] + 0.7751 * centre[2]; }
 };
 
-/// The faces of both patches that this rank has. Collective.
+/// Faces of both patches on this rank. Collective.
 std::vector<PeriodicSide> sides_here(MPI_Comm comm, const MeshBlock& block,
                                      const std::array<std::string, 2>& names,
                                      const std::vector<BoundedCell>& bounded, GlobalIndex first_element) {
@@ -55,7 +55,7 @@ std::vector<PeriodicSide> sides_here(MPI_Comm comm, const MeshBlock& block,
   return sides;
 }
 
-/// From the middle of the first patch's faces to that of the second's.
+/// Translation from the mean center of the first patch's faces to that of the second's.
 Vec3 translation_of(const std::vector<PeriodicSide>& all, const std::array<std::string, 2>& names) {
   std::array<Vec3, 2> sum{Vec3::Zero(), Vec3::Zero()};
   std::array<GlobalIndex, 2> count{};
@@ -68,7 +68,7 @@ Vec3 translation_of(const std::vector<PeriodicSide>& all, const std::array<std::
   return sum[1] / double(count[1]) - sum[0] / double(count[0]);
 }
 
-/// The cell beyond each side, -1 where there is none. The first patch is moved onto the second.
+/// Cell across each side, or -1. The first patch is translated onto the second.
 std::vector<GlobalIndex> cells_beyond(std::vector<PeriodicSide> all, const Vec3& translation) {
   std::array<std::vector<std::size_t>, 2> order;
   for (std::size_t i = 0; i < all.size(); ++i) {

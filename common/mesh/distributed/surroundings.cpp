@@ -12,9 +12,9 @@ namespace couplet::mesh {
 
 namespace {
 
-using Shipments = std::vector<std::pair<int, Index>>;  // to which rank, which cell
+using Shipments = std::vector<std::pair<int, Index>>;  // rank and cell
 
-/// Sends cells under the numbers that `number` gives; what comes is unpacked by rank. Collective.
+/// Sends cells under the numbers returned by `number`. Received cells are sorted by rank. Collective.
 template <class Number>
 parallel::Parcels<GlobalIndex> ship(MPI_Comm comm, const CellList& cells, const Shipments& shipments,
                                     Number&& number) {
@@ -32,7 +32,7 @@ void sort_once(Shipments& shipments) {
   shipments.erase(std::ranges::unique(shipments).begin(), shipments.end());
 }
 
-/// Sends own cells to other ranks and takes in, beside what is there, what comes. Collective.
+/// Sends own cells to other ranks and adds received ones. Collective.
 void exchange_cells(MPI_Comm comm, const Shipments& shipments, LocalCells& local) {
   if (parallel::sum(comm, GlobalIndex(shipments.size())) == 0) return;
   const auto come = ship(comm, local.cells, shipments, [&](Index c) { return local.cells.id[c]; });
@@ -96,7 +96,7 @@ CellList send_to_owners(MPI_Comm comm, MeshBlock& block, std::span<const int> pa
   for (Index c = 0; c < block.cells.size(); ++c) shipments.emplace_back(part[c], c);
   const GlobalIndex first = block.cell_shares.first(parallel::comm_rank(comm));
   CellList cells;
-  // Blocks hold ascending numbers, rank by rank: what comes is in order.
+  // Blocks have ascending numbers, rank by rank, so received cells are sorted.
   unpack(ship(comm, block.cells, shipments, [&](Index c) { return first + c; }).items, cells);
   block.cells = {};
   return cells;
@@ -135,7 +135,7 @@ LocalCells with_one_ring(MPI_Comm comm, CellList own, const std::vector<GlobalIn
       for (const int r : sharers[Index(at - shared.begin())])
         if (r != rank) shipments.emplace_back(r, c);
     }
-  // Whom a cell is beyond a periodic face, to him it goes: he has the other side.
+  // A cell across a periodic face is sent to the rank of the other side.
   for (const CellAcross& a : across)
     if (a.rank != rank) shipments.emplace_back(a.rank, a.cell);
   sort_once(shipments);
@@ -216,8 +216,8 @@ Vec3 mean(const RawMesh& raw, std::span<const Index> points) {
   return x / double(points.size());
 }
 
-/// The least weights are those of the least-squares plane through the nodes, n sum w_i^2 = n e^T N^-1 e with
-/// its normal matrix N = sum (1, r_i) (1, r_i)^T: the inverse of 1 - s^T M^-1 s / n.
+/// Reach n sum w_i^2 of the smallest weights, which are those of the least-squares plane through the nodes: n
+/// e^T N^-1 e with the normal matrix N = sum (1, r_i) (1, r_i)^T, the inverse of 1 - s^T M^-1 s / n.
 double reach(const std::vector<Vec3>& nodes, const Vec3& point, int dim) {
   Tensor3 m = Tensor3::Zero();
   Vec3 s = Vec3::Zero();

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Rights of the first version of Landlock (Linux 5.13), which all later ones have.
+// Rights of the first version of Landlock (Linux 5.13), which all later versions support.
 constexpr std::uint64_t reading =
     LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
 constexpr std::uint64_t everything = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;
@@ -45,7 +45,7 @@ int create_rules(const landlock_ruleset_attr* attributes, std::size_t size, std:
 
 bool allow(int rules, const fs::path& path, std::uint64_t rights) {
   const int fd = open(path.c_str(), O_PATH | O_CLOEXEC);
-  if (fd < 0) return true;  // there is nothing to be used
+  if (fd < 0) return true;  // does not exist
   std::error_code ignored;
   landlock_path_beneath_attr below{};
   below.allowed_access = fs::is_directory(path, ignored) ? rights : rights & of_a_file;
@@ -55,8 +55,8 @@ bool allow(int rules, const fs::path& path, std::uint64_t rights) {
   return done;
 }
 
-// Calls that Landlock's first version does not look at and that reach beyond the process. A new process would be harmless by
-// itself, but not what is done in its name.
+// System calls with external effects that Landlock's first version does not restrict. A new process would be
+// harmless by itself, but not its actions.
 constexpr long refused_calls[] = {SYS_fchmod,
                                   SYS_fchmodat,
                                   SYS_fchown,
@@ -122,7 +122,7 @@ std::vector<sock_filter> filter() {
   std::vector<sock_filter> f{load(arch), equals(architecture, 1),
                              sock_filter(BPF_JUMP(BPF_JMP | BPF_JA, 1, 0, 0)), end(SECCOMP_RET_KILL_PROCESS),
                              load(number)};
-  // Calls that are newer than these lists, and those of another kind that some kernels have above: as on an older kernel.
+  // Newer calls than these lists, and calls of another range on some kernels, fail as on an older kernel.
   f.push_back(BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, SYS_landlock_restrict_self + 1, 0, 1));
   f.push_back(end(refusal(ENOSYS)));
   const auto refuse = [&](const auto& calls) {
@@ -133,9 +133,9 @@ std::vector<sock_filter> filter() {
   };
   refuse(refused_calls);
   refuse(older_calls);
-  f.push_back(equals(SYS_clone3, 1));  // its flags cannot be seen from here: the C library takes clone() then
+  f.push_back(equals(SYS_clone3, 1));  // its flags are not visible here; the C library falls back to clone()
   f.push_back(end(refusal(ENOSYS)));
-  f.push_back(equals(SYS_prlimit64, 4));  // its own limits
+  f.push_back(equals(SYS_prlimit64, 4));  // only its own limits
   f.push_back(load(first_argument));
   f.push_back(equals(0, 1));
   f.push_back(end(SECCOMP_RET_ALLOW));

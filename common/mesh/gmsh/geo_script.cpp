@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t deepest = 16;  // files that include files
+constexpr std::size_t deepest = 16;  // nested includes
 constexpr std::uintmax_t largest = 64 << 20;
 
 enum class Kind { word, text, symbol, end };
 struct Token {
   Kind kind = Kind::end;
-  std::string_view text;  ///< of a quoted text: without the quotes
+  std::string_view text;  ///< of a quoted text without the quotes
   std::size_t line = 0;   ///< counts from 1
 
   bool is(std::string_view symbol_or_word) const { return kind != Kind::text && text == symbol_or_word; }
@@ -33,7 +33,7 @@ using Tokens = std::vector<Token>;
 
 bool is_of_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Words, quoted texts and other characters, each with its line, without blanks and comments. They point into `all`.
+/// Splits a text into views of words, quoted texts and other characters, without blanks and comments.
 Tokens tokens_of(std::string_view all) {
   Tokens tokens;
   std::size_t line = 1;
@@ -74,7 +74,7 @@ std::string read_file(const fs::path& file) {
   return text.str();
 }
 
-/// The names and numbers of one file that must be known before gmsh gets it.
+/// Names and numbers of one file that must be known before gmsh reads it.
 class Facts {
  public:
   Facts(GeoScript& script, Tokens tokens) : script_(script), tokens_(std::move(tokens)) {
@@ -97,8 +97,8 @@ class Facts {
     if (word == "Physical") group(i + 1);
   }
 
-  /// A number of cells from here to `end` or 'Using': a name, perhaps with numbers around it. Of several names one
-  /// may well be 0.
+  /// Parses a number of cells up to `end` or 'Using': a name, possibly with numbers. If there are several
+  /// names, one of them may be 0.
   void count(std::size_t i, std::string_view end) {
     std::vector<std::string> names;
     bool whole = true;
@@ -123,7 +123,7 @@ class Facts {
     }
   }
 
-  /// Physical Curve("name") or Physical Curve("name", 3); a number or a computed name is none that could be listed.
+  /// Parses Physical Curve("name") or ("name", 3). A number or a computed name cannot be listed.
   void group(std::size_t i) {
     static constexpr std::array<std::pair<std::string_view, int>, 5> kinds{
         {{"Point", 0}, {"Line", 1}, {"Curve", 1}, {"Surface", 2}, {"Volume", 3}}};
@@ -143,7 +143,7 @@ class Facts {
   Tokens tokens_;
 };
 
-/// Looks into a .geo and whatever it includes.
+/// Scans a .geo and all files it includes.
 class Scan {
  public:
   explicit Scan(GeoScript& script) : script_(script) {}
@@ -174,7 +174,7 @@ class Scan {
     return text;
   }
 
-  /// A file that is not there gmsh reports, if it gets there. Each is read once.
+  /// Scans an included file once. gmsh reports a missing file if it gets there.
   void include(const fs::path& file) {
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored)) return;
@@ -188,7 +188,7 @@ class Scan {
       add(real);
   }
 
-  /// Of a last line without a newline gmsh reads one statement and leaves out the others.
+  /// Finds a last line without newline, of which gmsh reads only one statement.
   void find_lost(const fs::path& file, std::string_view text) {
     const std::string_view last = text.substr(text.find_last_of('\n') + 1);
     const std::size_t first = last.find(';');

@@ -9,24 +9,24 @@
 
 namespace couplet::mesh {
 
-/// A .geo with the files it includes or merges, as far as it must be understood before gmsh gets it.
+/// Contents of a .geo and the files it includes or merges, as far as they matter before gmsh reads it.
 struct GeoScript {
-  /// All of it, one file after the other, so that a change in any of them is seen.
+  /// Text of all files, so that a change in any of them is detected.
   std::string text;
-  /// The names in all DefineConstant [...]: `n = 8` or `n = {8, Name "..."}`.
+  /// Names in all DefineConstant [...]: `n = 8` or `n = {8, Name "..."}`.
   std::vector<std::string> constants;
-  /// Names that a number of cells is made of, by Layers or Transfinite Curve. `whole`: as they are or with something
-  /// added, so that only a whole number is meant.
+  /// Names that determine a number of cells, by Layers or Transfinite Curve. True if the name is used as it
+  /// is or in a sum, so that its value must be a whole number.
   std::map<std::string, bool> counts;
-  /// A last line of which gmsh would leave out all but one statement: "line 3 of 'plate.geo'"; empty: there is none.
+  /// Last line of which gmsh would read only one statement: "line 3 of 'plate.geo'". Empty if there is none.
   std::string lost;
-  /// An Include or Merge whose name is computed, so that changes of its file are not seen: "line 3 of 'plate.geo'"; empty: there is none.
+  /// Untracked Include or Merge with a computed name: "line 3 of 'plate.geo'". Empty if there is none.
   std::string computed;
-  /// Names of the physical groups by dimension (0 to 3); nothing where one of them is computed.
+  /// Names of the physical groups by dimension (0 to 3). Not available if one of them is computed.
   std::vector<std::optional<std::vector<std::string>>> groups;
 };
 
-/// Throws Error if a file cannot be read, or includes itself.
+/// Reads a script. Throws Error if a file cannot be read or includes itself.
 GeoScript read_geo(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

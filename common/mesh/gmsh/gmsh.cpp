@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Nothing if it cannot be read.
+/// Content of a file. Empty if it cannot be read.
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
@@ -28,7 +28,7 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-/// The beginning of gmsh's output, which a script can make as long as it likes.
+/// Beginning of gmsh's output, whose length a script can make arbitrary.
 std::string read_log(const fs::path& file) {
   std::string text(1 << 20, '\0');
   std::ifstream in(file, std::ios::binary);
@@ -37,7 +37,7 @@ std::string read_log(const fs::path& file) {
   return text;
 }
 
-/// Up to three different lines of gmsh's output that speak of errors.
+/// Up to three different lines of gmsh's output that mention errors.
 std::string complaints(const std::string& output) {
   std::istringstream in(output);
   std::string line, found, last;
@@ -50,14 +50,14 @@ std::string complaints(const std::string& output) {
   return found;
 }
 
-/// Tells whether these may be complaints about what the sandbox forbids.
+/// Returns true if the errors may result from restrictions of the sandbox.
 bool is_of_sandbox(const std::string& errors) {
   for (const char* words : {"open file", "system call", "socket", "directory"})
     if (errors.find(words) != std::string::npos) return true;
   return false;
 }
 
-/// A .geo of our own that includes it: gmsh would read the options in <source>.opt, too, if it were given the source itself.
+/// Creates a .geo that includes the source. Given the source, gmsh would also read options in <source>.opt.
 fs::path including(const fs::path& source, const fs::path& folder) {
   if (source.extension() != ".geo") return source;
   const fs::path own = folder / "main.geo";
@@ -72,8 +72,8 @@ std::string reason(const ProgramEnd& end) {
                          : fmt::format("exit code {}", end.code);
 }
 
-/// A name beside the result for this process alone: several programs of a job may mesh the same file at the same time, each
-/// writes its own, the last rename counts.
+/// File name beside the result, unique to this process. Several programs of a job may mesh the same file at
+/// once; each writes its own, and the last rename counts.
 fs::path own_name(const fs::path& result) {
   std::string host(256, '\0');
   gethostname(host.data(), host.size() - 1);
@@ -84,8 +84,8 @@ fs::path own_name(const fs::path& result) {
 void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
   const fs::path own = own_name(result);
   std::error_code error;
-  fs::remove(own, error);           // of a run that was killed, or a link that somebody put there:
-  fs::copy_file(mesh, own, error);  // only what is not there is made
+  fs::remove(own, error);           // from a killed run, or a foreign link:
+  fs::copy_file(mesh, own, error);  // copies only to a new file
   if (error) {
     fs::remove(own, error);
     throw Error(
@@ -104,7 +104,7 @@ std::string seal_of(std::string_view text, const std::string& name) {
   return fmt::format("{}{:016x}\n$EndComments\n", head, digest);
 }
 
-/// Appends a digest of the file and of its `name` to a .msh 4.1, as a section that every reader passes over.
+/// Appends a digest of the file and its `name` to a .msh 4.1, as a section that readers ignore.
 void seal_cache(const std::filesystem::path& file, const std::string& name) {
   const std::string seal = seal_of(text_of(file), name);
   std::ofstream out(file, std::ios::binary | std::ios::app);
@@ -155,7 +155,7 @@ void run_gmsh(const std::vector<std::string>& options, const fs::path& source, b
   put(mesh, result, source);
 }
 
-// What gmsh does not know it would take for a script.
+// gmsh would treat unknown options as scripts.
 bool gmsh_has(const std::string& library) {
   const OwnFolder folder;
   try {

@@ -9,37 +9,37 @@
 
 namespace couplet::mesh {
 
-/// Runs the gmsh program on the file `source` with these options; its .msh 4.1 gets the name `result` once it is whole. Several
-/// programs of a job may do so at the same time. `verb`: for messages, "mesh" or "read". In the sandbox gmsh reads only what is in the
-/// folder of the source; a trusted source has the user's rights. Throws Error with gmsh's own complaints.
+/// Runs gmsh on `source` with these options and renames its complete .msh 4.1 to `result`. Several programs
+/// may do so at the same time. `verb` is for messages: "mesh" or "read". In the sandbox gmsh reads only the
+/// folder of the source; a trusted source has the user's rights. Throws Error with gmsh's messages.
 void run_gmsh(const std::vector<std::string>& options, const std::filesystem::path& source, bool trusted,
               const std::filesystem::path& result, const std::string& verb);
 
-/// Tells whether a cached mesh is as it was sealed under its name. One that is not (damaged, or of somebody else) is named in the
-/// log, and is to be made anew.
+/// Returns true if a cached mesh matches its seal. A damaged or foreign one is logged and must be
+/// regenerated.
 bool is_sound_cache(const std::filesystem::path& file);
 
-/// A mesh of another program (.unv; .med and .cgns where the gmsh at hand was built with them) as .msh, kept beside it as
-/// <stem>.<hash>.cache.msh; groups become patches and zones. Throws Error for a format that gmsh does not read.
+/// Converts a mesh of another program (.unv; .med and .cgns if gmsh supports them) to <stem>.<hash>.cache.msh
+/// beside it. Groups become patches and zones. Throws Error for a format that gmsh does not read.
 std::filesystem::path convert_mesh(const std::filesystem::path& file);
-/// Whether the gmsh at hand was built with a library, "Med" or "Cgns". False where there is none.
+/// Returns true if gmsh is available and was built with this library, "Med" or "Cgns".
 bool gmsh_has(const std::string& library);
 
-/// This rank's block of a mesh in a .msh, .inp or .geo (meshed with these parameters) file, or of another program. Throws Error if
-/// it has not `dim` dimensions. Collective.
+/// Block of this rank for a mesh in a .msh, .inp, .geo (meshed with these parameters) or foreign file. Throws
+/// Error if it does not have `dim` dimensions. Collective.
 MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                     const MeshParameters& parameters = {});
 
-/// Of a .msh or .geo (meshed, with its cache), its lengths times `scale`: in three dimensions if it names a physical
-/// volume. Throws Error.
+/// Facts of a .msh or .geo (meshed, with its cache), with lengths multiplied by `scale`. It is
+/// three-dimensional if it names a physical volume. Throws Error.
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
 
-/// Formats that the Python module meshio reads for us: .med, .exo, .e, .ex2.
+/// Returns true for formats read by the Python module meshio: .med, .exo, .e, .ex2.
 bool is_read_by_meshio(const std::string& extension);
 
-/// Reads such a mesh: python3 runs meshio in a sandbox, as gmsh runs, and hands it over as an input deck (read_inp): groups of cells are
-/// zones, groups of faces and sets of nodes patches. Throws Error where python3 or the module is not there, with what to
-/// install, and with what meshio has said.
+/// Reads a mesh by running meshio in a sandbox, which passes it on as an input deck (read_inp). Groups of
+/// cells become zones, groups of faces and sets of nodes patches. Throws Error with what to install if
+/// python3 or meshio is missing, or with meshio's message.
 RawMesh read_by_meshio(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

@@ -20,10 +20,10 @@ namespace couplet::mesh {
 
 namespace {
 
-// Larger ones are read by all ranks together, so that none holds the mesh: some 500 000 cells.
+// Larger files (about 500 000 cells) are read by all ranks together, so that none holds the mesh.
 constexpr std::uintmax_t bytes_of_large_msh = std::uintmax_t(64) << 20;
 
-/// Tells whether the mesh is read as an input deck; otherwise it is a .msh, or gmsh makes one of it.
+/// Returns true if the mesh is read as an input deck. Others are .msh files or converted by gmsh.
 bool is_deck(const std::filesystem::path& file) {
   const std::string kind = file.extension().string();
   return kind == ".inp" || (is_read_by_meshio(kind) && !(kind == ".med" && gmsh_has("Med")));
@@ -37,11 +37,11 @@ std::filesystem::path finished_msh(const std::filesystem::path& file) {
   return file.extension() == ".msh" ? file : convert_mesh(file);
 }
 
-/// This rank's block of a mesh; a .geo is meshed in `dim` dimensions. Collective.
+/// Reads this rank's block of a mesh. A .geo is meshed in `dim` dimensions. Collective.
 MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters) {
   RawMesh deck;
-  std::string msh;  // empty: the mesh is a deck
+  std::string msh;  // empty if the mesh is a deck
   int holders = 1;
   on_root(comm, [&] {
     if (file.extension() == ".geo")
@@ -137,7 +137,7 @@ MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters&
   int dim = 3;
   if (file.extension() == ".geo") {
     const auto volumes = read_geo(file).groups.at(3);
-    if (volumes && volumes->empty()) dim = 2;  // nothing: some name is computed
+    if (volumes && volumes->empty()) dim = 2;  // not set if some name is computed
   }
   const auto msh = [&] {
     return file.extension() == ".geo" ? mesh_geo(file, dim, parameters) : finished_msh(file);
@@ -163,7 +163,7 @@ void check_names(const std::filesystem::path& geo, const std::vector<std::string
   }
 }
 
-/// gmsh takes the amount of a negative number of cells, drops what follows the point, and makes another kind of mesh of 0.
+/// Checks numbers of cells. gmsh ignores a sign and decimals, and makes another kind of mesh for 0.
 void check_counts(const std::filesystem::path& geo, const std::map<std::string, bool>& counts,
                   const MeshParameters& parameters) {
   for (const auto& [name, value] : parameters) {
@@ -177,7 +177,7 @@ void check_counts(const std::filesystem::path& geo, const std::map<std::string, 
   }
 }
 
-/// gmsh calls it a success when it makes nothing, and when it makes points or curves alone.
+/// Rejects an empty mesh, because gmsh reports success even if it makes nothing, or only points or curves.
 void refuse_empty(const std::filesystem::path& geo, const std::filesystem::path& mesh, int dim) {
   if (has_cells(mesh, dim)) return;
   std::filesystem::remove(mesh);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 constexpr int no_module = 3;  // exit code of the script
 constexpr std::size_t most_complaints = 3;
 
-// From any mesh of meshio to an input deck: blocks of cells by their smallest group, sets of points as node sets.
+// Converts a meshio mesh to an input deck: cell blocks by their smallest group, sets of points as node sets.
 constexpr const char* script = R"(
 import sys
 try:
@@ -83,7 +83,7 @@ with open(sys.argv[2], 'w', encoding='utf-8') as deck:
             deck.write('%d\n' % (int(i) + 1))
 )";
 
-/// The last lines of what Python has printed: its complaint stands at the end.
+/// Last lines printed by Python, which contain its error.
 std::string complaint(const fs::path& log) {
   std::string text;
   std::vector<std::string> lines = csv::read_lines(log, "output of python3", {.text_only = false});

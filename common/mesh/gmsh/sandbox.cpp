@@ -26,13 +26,13 @@ namespace couplet::mesh {
 namespace {
 
 struct ChildProcess {
-  std::vector<std::string> command;      ///< the program with its whole path
+  std::vector<std::string> command;      ///< program with its full path
   std::vector<std::string> environment;  ///< "NAME=value"
-  std::filesystem::path folder;          ///< to work in; empty: as it is
+  std::filesystem::path folder;          ///< working directory; unchanged if empty
   std::filesystem::path output;
-  const Barrier* barrier = nullptr;  ///< around the program; nullptr: none
+  const Barrier* barrier = nullptr;  ///< around the program, or nullptr
 
-  // Filled before the fork: between fork and exec only calls to the kernel are sound.
+  // Prepared before the fork, because only system calls are safe between fork and exec.
   std::vector<char*> arguments{}, variables{};
   rlim_t memory = 0;
   pid_t parent = 0;
@@ -56,7 +56,7 @@ void limit(__rlimit_resource_t what, rlim_t most) {
   setrlimit(what, &now);
 }
 
-/// The step that failed goes to the parent as errno.
+/// Sends errno of a failed step to the parent.
 [[noreturn]] void fail(int pipe) {
   const int error = errno;
   [[maybe_unused]] const auto n = write(pipe, &error, sizeof error);
@@ -64,7 +64,7 @@ void limit(__rlimit_resource_t what, rlim_t most) {
 }
 
 [[noreturn]] void be_child(const ChildProcess& p) {
-  // This is of the thread that forked, not of the process: it waits, and so it is there as long as the child.
+  // The death signal depends on the thread that forked. It waits for the child and therefore exists as long.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != p.parent) _exit(127);
   limit(RLIMIT_CORE, 0);
@@ -82,15 +82,15 @@ void limit(__rlimit_resource_t what, rlim_t most) {
     fail(p.failures);
   if (!p.folder.empty() && chdir(p.folder.c_str()) != 0) fail(p.failures);
   if (p.barrier != nullptr && !p.barrier->put_up()) fail(p.failures);
-  // Neither files nor sockets of this program. The pipe closes itself.
+  // Closes files and sockets of this program. The pipe closes itself.
   for (int fd = 3; fd < 4096; ++fd)
     if (fd != p.failures) close(fd);
   execve(p.arguments[0], p.arguments.data(), p.variables.data());
   fail(p.failures);
 }
 
-/// Starts it and waits. It gets SIGKILL when the thread that called this ends, so that nothing is left behind by a program
-/// that is killed. Throws Error if it cannot be started.
+/// Starts a program and waits. It receives SIGKILL when the calling thread ends, so that no process remains
+/// if the program is killed. Throws Error if it cannot be started.
 ProgramEnd run_child(ChildProcess p) {
   p.arguments = pointers(p.command);
   p.variables = pointers(p.environment);
@@ -118,7 +118,7 @@ ProgramEnd run_child(ChildProcess p) {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// The file that a shell would start; nothing if there is none on the PATH.
+/// File that a shell would start, or nothing if it is not on PATH.
 std::optional<std::string> on_path(const std::string& program) {
   const char* path = std::getenv("PATH");
   for (const std::string& folder : base::split(path != nullptr ? path : "/usr/bin:/bin", ':')) {
@@ -144,8 +144,8 @@ bool begins_with_any(std::string_view entry, std::initializer_list<std::string_v
   return false;
 }
 
-/// All but the variables by which an MPI program finds its job: a gmsh that was built with MPI must not take itself for a
-/// rank of this one.
+/// Environment without the variables by which an MPI program finds its job, so that a gmsh built with MPI
+/// does not join this one.
 Words environment_without_mpi() {
   Words kept;
   for (char** entry = environ; *entry != nullptr; ++entry)
@@ -154,21 +154,21 @@ Words environment_without_mpi() {
   return kept;
 }
 
-/// What a program needs to be found and to start, and a home of its own: no .gmshrc, no .gmsh-options is read.
+/// Variables needed to start a program. A separate home avoids that .gmshrc or .gmsh-options is read.
 Words clean_environment(const fs::path& folder) {
   Words kept{"HOME=" + folder.string(), "TMPDIR=" + folder.string(), "OMP_NUM_THREADS=1"};
   for (char** entry = environ; *entry != nullptr; ++entry)
     if (begins_with_any(*entry, {"PATH=", "LD_LIBRARY_PATH=", "LANG=", "LC_",
                                  "PYTHONPATH=", "CONDA_PREFIX=", "VIRTUAL_ENV="}))
       kept.emplace_back(*entry);
-  // A gmsh that pip installed for this user looks for its library under the home.
+  // A gmsh installed by pip for this user has its library below the home folder.
   if (const char* home = std::getenv("HOME"); home != nullptr && std::getenv("PYTHONUSERBASE") == nullptr)
     kept.push_back(fmt::format("PYTHONUSERBASE={}/.local", home));
   return kept;
 }
 
-/// Files that a program needs to start: the system's libraries, and what lies beside a program or an environment that is installed
-/// elsewhere. No file of the user's but these.
+/// Files needed to start a program: system libraries, and those beside a program or environment installed
+/// elsewhere. No other user files are readable.
 std::vector<fs::path> of_the_system(const fs::path& program) {
   std::vector<fs::path> paths{"/usr",
                               "/lib",
@@ -185,7 +185,7 @@ std::vector<fs::path> of_the_system(const fs::path& program) {
   std::error_code ignored;
   for (const fs::path& file : {program, fs::canonical(program, ignored)})
     for (const fs::path& part : {file, file.parent_path().parent_path() / "lib"}) paths.push_back(part);
-  // A script of Python names the interpreter beside it.
+  // A Python script names the interpreter beside it.
   if (const fs::path python = fs::canonical(program.parent_path() / "python3", ignored); !python.empty())
     for (const fs::path& part : {python, python.parent_path().parent_path() / "lib"}) paths.push_back(part);
   for (const char* folder : {"CONDA_PREFIX", "VIRTUAL_ENV", "PYTHONUSERBASE"})
@@ -198,7 +198,7 @@ std::vector<fs::path> of_the_system(const fs::path& program) {
   return paths;
 }
 
-/// pyenv has scripts on the PATH that find the program by starting others, which is not possible in the sandbox.
+/// Finds the program behind a pyenv shim, which starts other processes and therefore fails in the sandbox.
 std::string behind_shim(const std::string& program, const fs::path& folder) {
   const fs::path file = program, answer = folder / "shim.log";
   if (file.parent_path().filename() != "shims") return program;

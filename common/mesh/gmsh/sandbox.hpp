@@ -9,19 +9,19 @@
 
 namespace couplet::mesh {
 
-/// Rules for a program that reads a file of somebody else: Landlock for files, seccomp for all the rest. It needs no
-/// privileges and no namespaces, so it holds in containers and chroots, too. The program may read and start what lies below some
-/// folders and write below one; it cannot start a process, open a socket, send a signal, or change modes, owners or times of files.
+/// Restricts a program that reads a foreign file, by Landlock for files and seccomp for everything else. It
+/// needs no privileges or namespaces, so it works in containers. The program may read and execute files below
+/// some folders and write below one. It cannot start processes, open sockets or change file attributes.
 class Barrier {
  public:
-  /// Tells whether the kernel has it.
+  /// Returns true if the kernel supports it.
   static bool is_possible();
 
-  /// Paths of `readable` that do not exist are left out. Throws Error if the kernel refuses the rules.
+  /// Ignores paths of `readable` that do not exist. Throws Error if the kernel rejects the rules.
   Barrier(const std::vector<std::filesystem::path>& readable, const std::filesystem::path& writable);
   ~Barrier();
   Barrier(const Barrier&) = delete;
-  /// Puts it up around this process, for good. Only calls to the kernel, as is sound between fork and exec. False: errno says why.
+  /// Restricts this process for good, only by system calls (safe after fork). False: errno holds the reason.
   bool put_up() const;
 
  private:
@@ -29,7 +29,7 @@ class Barrier {
   std::vector<sock_filter> filter_;
 };
 
-/// A new folder for one run of a program, only for this user, in the folder for temporary files; gone with this object.
+/// Private temporary folder of the user for one run of a program. The destructor removes it.
 class OwnFolder {
  public:
   OwnFolder();
@@ -43,20 +43,20 @@ class OwnFolder {
 };
 
 struct ProgramEnd {
-  int code = 0;    ///< -1: by a signal
-  int signal = 0;  ///< 0: none
+  int code = 0;    ///< -1 if ended by a signal
+  int signal = 0;  ///< 0 if none
 };
 
-/// Runs a program found on PATH, its output in `output`, and waits for it. It ends with the thread that started it, however
-/// that ends. Limits on memory, processor time and size of files. Its working directory, home and temporary folder are
-/// `folder`. Where the kernel has Landlock, it can write nowhere else, reads only `readable` and what it needs of the system, and
-/// starts no process; see Barrier. Throws Error if it cannot be started.
+/// Runs a program found on PATH with its output in `output` and waits for it. The program ends with the
+/// thread that started it. Memory, processor time and file sizes are limited. Working directory, home and
+/// temporary folder are `folder`. With Landlock, it can write nowhere else, reads only `readable` and system
+/// files, and starts no process; see Barrier. Throws Error if it cannot be started.
 ProgramEnd run_in_sandbox(const std::vector<std::string>& command, const std::filesystem::path& folder,
                           const std::filesystem::path& output,
                           std::vector<std::filesystem::path> readable = {});
 
-/// The same with the user's rights, environment and working directory, but for the limits and the end: for what the user
-/// trusts.
+/// Runs a trusted program with the user's rights, environment and working directory. The limits and the end
+/// with the thread remain.
 ProgramEnd run_trusted(const std::vector<std::string>& command, const std::filesystem::path& output);
 
 }  // namespace couplet::mesh

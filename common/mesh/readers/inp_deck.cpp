@@ -24,13 +24,13 @@ constexpr Row rows[] = {
     {"C3D", 5, CellType::pyramid},       {"CPS", 3, CellType::triangle},     {"CPS", 6, CellType::triangle},
     {"CPS", 4, CellType::quadrilateral}, {"CPS", 8, CellType::quadrilateral}};
 
-// Bars and beams with their numbers of nodes; 0: what has no part in a mesh.
+// Bars and beams with their number of nodes, or 0 for elements that are not part of a mesh.
 constexpr std::pair<std::string_view, int> others[] = {
     {"T2D2", 2},    {"T2D3", 3},    {"T3D2", 2},     {"T3D3", 3},   {"B21", 2},    {"B22", 3},
     {"B31", 2},     {"B32", 3},     {"B31R", 2},     {"B32R", 3},   {"MASS", 0},   {"SPRINGA", 0},
     {"SPRING1", 0}, {"SPRING2", 0}, {"DASHPOTA", 0}, {"GAPUNI", 0}, {"ROTARYI", 0}};
 
-/// `name` in capitals.
+/// Type of an element whose `name` is in capitals.
 InpType inp_type(std::string_view name) {
   for (const auto& [other, n] : others)
     if (name == other) return {n > 0 ? InpType::Use::edge : InpType::Use::nothing, {}, n};
@@ -40,14 +40,14 @@ InpType inp_type(std::string_view name) {
   int n = 0;
   for (; !rest.empty() && rest[0] >= '0' && rest[0] <= '9' && n < 100; rest.remove_prefix(1))
     n = 10 * n + (rest[0] - '0');
-  // The letters that follow say how they are integrated: reduced, hybrid, incompatible modes, modified.
+  // The remaining letters select the integration: reduced, hybrid, incompatible modes, modified.
   if (rest.find_first_not_of("RHIMS") != std::string_view::npos) return {};
   for (const Row& row : rows)
     if (row.family == family && row.n_nodes == n) return {InpType::Use::cell, row.cell, n};
   return {};
 }
 
-/// Why an element of unknown type is not read.
+/// Reason why an element of unknown type is not read.
 std::string why_not_read(std::string_view name) {
   const auto begins = [&](std::initializer_list<const char*> all) {
     return std::ranges::any_of(all, [&](const char* n) { return name.starts_with(n); });
@@ -63,10 +63,10 @@ std::string why_not_read(std::string_view name) {
       name.substr(0, 40), reason);
 }
 
-/// Members of all sets together, sets within sets counted: a deck of sets of sets would grow without end.
+/// Limit on members of all sets, including nested ones, because sets of sets could grow without bound.
 constexpr std::size_t most_members = 20000000;
 
-/// Keywords that make or move nodes and elements, or part the deck: what they do is not done here.
+/// Rejected keywords, which create or move nodes and elements or divide the deck.
 constexpr std::pair<std::string_view, std::string_view> refused[] = {
     {"NGEN", "it generates nodes"},      {"NFILL", "it generates nodes"},
     {"NCOPY", "it generates nodes"},     {"NMAP", "it transforms nodes"},
@@ -86,7 +86,7 @@ class DeckReader {
   }
 
  private:
-  /// One keyword with its lines. False at the end.
+  /// Reads one keyword with its lines. Returns false at the end.
   bool block() {
     const InpKeyword k = lines_.keyword();
     for (const auto& [word, reason] : refused)
@@ -165,7 +165,7 @@ class DeckReader {
     return lines_.is_keyword();
   }
 
-  /// "1.5D+03" of old programs.
+  /// Converts "1.5D+03" of old programs.
   std::string_view fortran(std::string_view cell) {
     const std::size_t d = cell.find_first_of("dD");
     if (d == std::string_view::npos) return cell;
@@ -207,7 +207,7 @@ class DeckReader {
     return lines_.is_keyword();
   }
 
-  /// Consecutive numbers become one range.
+  /// Merges consecutive numbers into one range.
   void add(InpSet& set, const InpRange& range) {
     if (!set.members.empty() && range.step == 1 && set.members.back().step == 1 &&
         set.members.back().last + 1 == range.first) {
@@ -219,7 +219,7 @@ class DeckReader {
     set.members.push_back(range);
   }
 
-  /// A number, or the name of a set that was given before.
+  /// Adds a number, or the members of a set defined before.
   void add_named(InpSet& set, std::string_view cell, const InpSets& sets, const char* kind) {
     if (const std::int64_t id = identifier_of(cell); id > 0) return add(set, {id, id, 1});
     const InpSet* other = sets.find(std::string(cell));
@@ -305,7 +305,7 @@ class DeckReader {
   int parts_ = 0, instances_ = 0;
 };
 
-/// Abaqus puts the instance before the name of a set: "Part-1-1.top".
+/// Key of a set. Abaqus writes the instance before its name: "Part-1-1.top".
 std::string key_of(const std::string& name) { return upper(name.substr(name.rfind('.') + 1)); }
 
 }  // namespace

@@ -18,38 +18,38 @@ namespace couplet::mesh {
 
 std::string upper(std::string_view text);
 
-/// "*ELEMENT, TYPE=C3D8, ELSET=beam": word and parameters, both in capitals without blanks at their ends; values as they stand.
+/// Keyword line such as "*ELEMENT, TYPE=C3D8, ELSET=beam". Words and parameter names are in capitals.
 struct InpKeyword {
   std::string word;
-  std::vector<std::pair<std::string, std::string>>
-      parameters;  ///< a parameter without "=" has an empty value
-  /// Null: not given.
+  /// A parameter without "=" has an empty value.
+  std::vector<std::pair<std::string, std::string>> parameters;
+  /// Value of a parameter. nullptr if it is not given.
   const std::string* find(std::string_view name) const;
 };
 
-/// The lines of an input deck of CalculiX or Abaqus, those of included files in their place. Comments ("**") and empty lines are
-/// passed over.
+/// Lines of a CalculiX or Abaqus input deck with included files in place. Comments ("**") and empty lines are
+/// skipped.
 class InpLines final {
  public:
   explicit InpLines(const std::filesystem::path& file);
 
-  /// The next line that counts, which stays until the next call. False at the end. Throws Error.
+  /// Reads the next relevant line, valid until the next call. Returns false at the end. Throws Error.
   bool next();
   bool is_keyword() const { return line_.starts_with('*'); }
   std::string_view text() const { return line_; }
-  /// The present line, with those that go on from it: its last character is a comma. Throws Error.
+  /// Parses the current line and its continuations (a line that ends with a comma continues). Throws Error.
   InpKeyword keyword();
-  /// The numbers of the present line and, while there are fewer than `n`, of those that follow it. Throws Error for what is no
-  /// whole number above 0.
+  /// Appends the numbers of the current line and, up to `n`, of the following lines. Throws Error for
+  /// anything but a whole number above 0.
   void identifiers(std::size_t n, std::vector<std::int64_t>& numbers);
-  /// Goes into this file, below the folder of the first. Throws Error.
+  /// Opens an included file, which must lie below the folder of the first. Throws Error.
   void include(const std::string& name);
   [[noreturn]] void fail(const std::string& what) const;
-  /// Of the deck.
+  /// Name of the deck.
   const std::string& name() const { return name_; }
-  /// "folder/file.inp:12"
+  /// Location "folder/file.inp:12".
   std::string place() const { return files_.empty() ? name_ : files_.back()->place(); }
-  /// For place_of() later on.
+  /// Mark of the current line, for place_of().
   std::uint64_t mark() const;
   std::string place_of(std::uint64_t mark) const;
 
@@ -60,32 +60,32 @@ class InpLines final {
   std::string name_;
   std::vector<std::unique_ptr<csv::LineReader>> files_;  // the included one last
   std::vector<std::string> opened_;                      // all names
-  std::vector<std::size_t> number_;                      // into opened_, as files_
+  std::vector<std::size_t> number_;                      // index into opened_, parallel to files_
   std::string_view line_;
   std::vector<std::string_view> cells_;
 };
 
-/// A whole number above 0, as nodes and elements have them; 0: none.
+/// Parses a whole number above 0, as used for nodes and elements. Returns 0 if it is not valid.
 std::int64_t identifier_of(std::string_view text);
 
-// Corners come first in CalculiX and Abaqus, in the order of VTK and gmsh, and their faces S1, S2, ... are those of CellShape.
+// CalculiX and Abaqus list corners first, in VTK order. Their faces S1, S2, ... match those of CellShape.
 
-/// Meaning of a name such as "C3D10".
+/// Meaning of an element type such as "C3D10".
 struct InpType {
   enum class Use {
     cell,     ///< of a body
-    edge,     ///< a bar of two or three nodes: boundary of a 2-D mesh, else passed over
-    nothing,  ///< a spring, a mass: passed over with all its nodes
+    edge,     ///< a bar of two or three nodes: boundary of a 2-D mesh, otherwise skipped
+    nothing,  ///< a spring or mass, skipped with all its nodes
     unknown
   };
   Use use = Use::unknown;
   CellType cell = CellType::triangle;  ///< of cells
-  int n_nodes = 0;                     ///< in the file; more than the corners: of second order
+  int n_nodes = 0;                     ///< in the file; more than the corners for second order
   bool is_cell() const { return use == Use::cell; }
   const CellShape& shape() const { return shape_of(cell); }
 };
 
-/// Numbers of nodes or elements: first, first + step, ..., last.
+/// Range of node or element numbers: first, first + step, ..., last.
 struct InpRange {
   std::int64_t first = 0, last = 0, step = 1;
   auto operator<=>(const InpRange&) const = default;
@@ -93,17 +93,17 @@ struct InpRange {
 struct InpSet {
   std::string name;  ///< as it was written first
   std::vector<InpRange> members;
-  bool is_given = false;  ///< by *NSET or *ELSET, not beside nodes or elements alone
+  bool is_given = false;  ///< by *NSET or *ELSET, not only beside nodes or elements
 };
 /// Sets by their names in capitals, in the order of the file.
 struct InpSets {
   std::vector<InpSet> all;
   std::map<std::string, std::size_t> number;  ///< into `all`
-  InpSet& at(const std::string& name);        ///< made where it is missing
+  InpSet& at(const std::string& name);        ///< created if missing
   const InpSet* find(const std::string& name) const;
 };
 
-/// Faces of elements, "beam, S3", or nodes.
+/// Surface made of element faces ("beam, S3") or of nodes.
 struct InpSurface {
   struct Part {
     std::vector<InpRange> elements;
@@ -112,10 +112,10 @@ struct InpSurface {
   };
   std::string name;
   std::vector<Part> parts;
-  std::vector<InpRange> nodes;  ///< of a surface of nodes
+  std::vector<InpRange> nodes;  ///< for a surface of nodes
 };
 
-/// Elements of one kind: their nodes lie one after the other.
+/// Elements of a deck with their corners stored contiguously.
 struct InpElements {
   struct Element {
     std::int64_t id = 0;
@@ -125,24 +125,24 @@ struct InpElements {
     std::size_t group = 0;  ///< into `groups`: the set of its *ELEMENT
   };
   std::vector<Element> all;
-  std::vector<std::int64_t> nodes;  ///< corners alone
+  std::vector<std::int64_t> nodes;  ///< only corners
   std::vector<std::string> groups;
 };
 
-/// What a deck says of a mesh.
+/// Mesh data of an input deck.
 struct InpDeck {
   std::vector<Vec3> points;
   std::unordered_map<std::int64_t, Index> point_of_node;
   InpElements elements;
   InpSets node_sets, element_sets;
   std::vector<InpSurface> surfaces;
-  std::vector<std::pair<std::string, std::vector<InpRange>>>
-      sections;                            ///< *SOLID SECTION: name of its set, its elements
-  std::map<std::string, int> passed_over;  ///< keywords and types that say nothing of the mesh
-  std::size_t second_order = 0;            ///< elements taken by their corners
+  /// *SOLID SECTION: name of its set, its elements.
+  std::vector<std::pair<std::string, std::vector<InpRange>>> sections;
+  std::map<std::string, int> passed_over;  ///< keywords and types that are irrelevant for the mesh
+  std::size_t second_order = 0;            ///< elements reduced to their corners
 };
 
-/// Reads the deck; `lines` stays for the places of what is found wrong later. Throws Error with file and line.
+/// Reads the deck. `lines` is kept to locate faults found later. Throws Error with file and line.
 InpDeck read_inp_deck(InpLines& lines);
 
 }  // namespace couplet::mesh

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 4 GB hold 50 million nodes, more than one machine takes.
+// 4 GB hold 50 million nodes, more than fits one machine.
 constexpr csv::Limits limits{.bytes = std::uint64_t(4) << 30, .lines = 200000000};
 constexpr std::size_t most_deep = 8, most_files = 1000, longest_keyword = 1 << 14;
 
@@ -68,7 +68,7 @@ bool InpLines::next() {
   while (!files_.empty()) {
     if (!files_.back()->next(line_)) {
       line_ = {};
-      if (files_.size() == 1) return false;  // its name and number stay for messages
+      if (files_.size() == 1) return false;  // its name and number are kept for messages
       files_.pop_back();
       number_.pop_back();
       continue;
@@ -100,7 +100,7 @@ InpKeyword InpLines::keyword() {
   if (!csv::split_cells(text, ',', cells_)) fail("unclosed quotation mark.");
   for (const std::string_view cell : cells_) {
     if (result.word.empty()) {
-      // "SOLID  SECTION" is "SOLID SECTION".
+      // "SOLID  SECTION" equals "SOLID SECTION".
       for (const std::string& part : base::split(upper(cell), ' '))
         if (!part.empty()) result.word += (result.word.empty() ? "" : " ") + part;
       if (result.word.empty()) fail("'*' without a keyword.");

@@ -12,7 +12,7 @@
 namespace couplet::mesh {
 namespace {
 
-constexpr std::size_t window = 1 << 25;  // bytes, a multiple of the size of a page
+constexpr std::size_t window = 1 << 25;  // bytes, a multiple of the page size
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
@@ -48,7 +48,7 @@ void MshCursor::fail(const std::string& what) const {
   if (binary)
     throw Error("{}, byte {}, in ${}: {}", file_.string(), at, section_.empty() ? "MeshFormat" : section_,
                 what);
-  // The cursor stands behind what it read last; a line break just before it belongs to that line.
+  // The cursor is behind the last item. A line break just before it belongs to the item's line.
   const auto end = text_.begin() + static_cast<std::ptrdiff_t>(at > 0 && text_[at - 1] == '\n' ? at - 1 : at);
   throw Error("{}:{}: {}", file_.string(), 1 + std::count(text_.begin(), end, '\n'), what);
 }

@@ -16,16 +16,16 @@
 namespace couplet::mesh {
 namespace {
 
-/// A mesh on its way from the deck.
+/// Mesh under construction from a deck.
 struct InpBody {
   InpLines& lines;
   InpDeck deck;
   RawMesh raw;
   std::unordered_map<std::int64_t, Index> cell_of_element;
   std::vector<const InpElements::Element*> elements;  ///< per cell
-  std::int64_t work = 300000000;                      ///< members of ranges that may still be looked at
+  std::int64_t work = 300000000;                      ///< remaining limit on visited members of ranges
 
-  /// Calls use(number in `index`) for the members that are there, each as often as it is named. Throws Error where a crafted
+  /// Calls use(number in `index`) for existing members, as often as they are named. Throws Error if a crafted
   /// deck has too many.
   template <class Use>
   void visit(const std::vector<InpRange>& members, const std::unordered_map<std::int64_t, Index>& index,
@@ -44,7 +44,7 @@ struct InpBody {
   }
 };
 
-/// Number of a name, whose case does not count; appended to `names` where it is new.
+/// Number of a name, ignoring case. A new name is appended to `names`.
 int number_in(std::vector<std::string>& names, std::map<std::string, int>& numbers, const std::string& name) {
   const auto [found, is_new] = numbers.try_emplace(upper(name), static_cast<int>(names.size()));
   if (is_new) names.push_back(name);
@@ -53,7 +53,7 @@ int number_in(std::vector<std::string>& names, std::map<std::string, int>& numbe
 
 using Corners = std::array<Index, 4>;
 constexpr Index none = -1;
-/// Name of the boundary that no surface and no set names.
+/// Patch name of the boundary without a surface or set.
 constexpr const char* rest = "rest";
 
 Corners key_of(std::span<const Index> points) {
@@ -63,8 +63,8 @@ Corners key_of(std::span<const Index> points) {
   return key;
 }
 
-/// Gives every boundary face of the cells its patch: by *SURFACE, by elements of one dimension less with an ELSET, by the smallest
-/// NSET that has all its nodes; the patch "rest" is what is left.
+/// Assigns a patch to every boundary face: by *SURFACE, by lower-dimensional elements with an ELSET, or by
+/// the smallest NSET with all its nodes. The remaining faces form the patch "rest".
 class InpPatches {
  public:
   explicit InpPatches(InpBody& body)
@@ -78,7 +78,7 @@ class InpPatches {
     std::ranges::sort(faces_);
   }
 
-  /// Returns how many faces of surfaces lie between two cells. Throws Error.
+  /// Returns the number of surface faces between two cells. Throws Error.
   std::size_t name() {
     for (const InpSurface& surface : deck_.surfaces) take_surface(surface);
     take_flat_elements();
@@ -90,7 +90,7 @@ class InpPatches {
  private:
   int number_of(const std::string& name) { return number_in(raw_.patches, numbers_, name); }
 
-  /// Into outer_; none: it lies between two cells, or is a face of no cell.
+  /// Index into outer_, or `none` if it lies between two cells or belongs to none.
   Index outer_face(std::span<const Index> points) const {
     const Corners key = key_of(points);
     const auto found = std::ranges::lower_bound(faces_, key, {}, &std::pair<Corners, Index>::first);
@@ -133,7 +133,7 @@ class InpPatches {
     if (!surface.nodes.empty()) take_nodes(surface.nodes, patch, true);
   }
 
-  /// Elements of one dimension less, as meshers write them for the groups of their surfaces: by the smallest *ELSET that they are in,
+  /// Uses lower-dimensional elements, as meshers write them for groups of surfaces: by their smallest *ELSET,
   /// else by that of their *ELEMENT.
   void take_flat_elements() {
     std::unordered_map<std::int64_t, Index> face_of_element;
@@ -163,8 +163,8 @@ class InpPatches {
       });
   }
 
-  /// Smaller sets first: "tip" within "top". A set of all points names nothing, and one with the name of a surface was the way
-  /// to it.
+  /// Uses node sets, smaller ones first ("tip" within "top"). Skips a set of all points and one with the name
+  /// of a surface, which only defines it.
   void take_node_sets() {
     std::vector<std::pair<std::size_t, const InpSet*>> by_size;
     std::vector<Index> seen(raw_.points.size(), none);
@@ -182,7 +182,7 @@ class InpPatches {
     for (const auto& [n, set] : by_size) take_nodes(set->members, number_of(set->name), false);
   }
 
-  /// The faces all of whose points are in this set.
+  /// Assigns the faces whose points are all in this set.
   void take_nodes(const std::vector<InpRange>& members, int patch, bool is_surface) {
     if (marked_.empty()) {
       marked_.assign(raw_.points.size(), none);
@@ -201,7 +201,7 @@ class InpPatches {
       }
   }
 
-  /// Patches without a face are left out.
+  /// Names the remaining faces and removes patches without faces.
   void name_rest() {
     for (Index f = 0; f < outer_.size(); ++f)
       if (patch_of_face_[std::size_t(f)] == none) patch_of_face_[std::size_t(f)] = number_of(rest);
@@ -227,13 +227,13 @@ class InpPatches {
   std::vector<std::pair<Corners, Index>> faces_;  // outer_ by its points, ascending
   std::vector<int> patch_of_face_;
   Csr faces_of_point_;
-  std::vector<int> marked_;  // per point: the patch whose points were marked last
+  std::vector<int> marked_;  // per point: the last patch that marked it
   std::size_t inner_ = 0;
 };
 
 constexpr std::size_t most_words = 20;  // in a message
 
-/// From the deck to cells, zones and patches.
+/// Converts a deck to cells, zones and patches.
 class InpMesh {
  public:
   explicit InpMesh(InpLines& lines) : lines_(lines), body_{lines, read_inp_deck(lines), {}, {}, {}} {}
@@ -280,7 +280,7 @@ class InpMesh {
     }
   }
 
-  /// Nodes between corners and reference nodes have no part in the mesh. The order of the others stays.
+  /// Removes midside and reference nodes. The others keep their order.
   void drop_unused() {
     std::vector<Index> renumbered(raw_.points.size(), -1);
     for (const Index p : raw_.cell_points.index) renumbered[std::size_t(p)] = 0;
@@ -296,7 +296,7 @@ class InpMesh {
     std::erase_if(deck_.point_of_node, [](const auto& node) { return node.second < 0; });
   }
 
-  /// By *SOLID SECTION, else by the ELSET of the *ELEMENT.
+  /// Sets zones by *SOLID SECTION, else by the ELSET of the *ELEMENT.
   void find_zones() {
     raw_.cell_zone.assign(raw_.cell_type.size(), -1);
     for (const auto& [name, members] : deck_.sections) {

@@ -12,15 +12,15 @@
 namespace couplet::mesh {
 namespace {
 
-/// Name of a physical group by (dimension, tag), in the order of the file.
+/// Names of physical groups by (dimension, tag), in the order of the file.
 using MshNames = std::vector<std::pair<std::pair<int, int>, std::string>>;
 
-/// Tag of a group as an entity names it; negative: turned around; the least int has no counterpart and names no group.
+/// Tag of a group without sign (negative if reversed). The smallest int has no counterpart and names no
+/// group.
 int msh_group(int tag) { return tag == std::numeric_limits<int>::min() ? tag : std::abs(tag); }
 
-/// Gives out patch (or zone) numbers for the physical groups of one dimension: names in the order of
-/// $PhysicalNames, then unnamed groups as "physical_<tag>" in the order in which elements use them. Groups
-/// without elements are left out.
+/// Numbers patches (or zones) for the physical groups of one dimension: names in the order of $PhysicalNames,
+/// then unnamed groups as "physical_<tag>" in order of first use. Groups without elements are omitted.
 class MshGroups {
  public:
   MshGroups(const MshNames& names, int dim) {
@@ -39,7 +39,7 @@ class MshGroups {
     used_[default_] = true;
     return default_;
   }
-  /// Drops the unused names; `numbers` are renumbered.
+  /// Removes unused names and renumbers `numbers`.
   std::vector<std::string> finish(std::vector<int>& numbers) const {
     std::vector<std::string> kept;
     std::vector<int> renumbered(names_.size(), -1);
@@ -55,7 +55,7 @@ class MshGroups {
   const std::string& name(int number) const { return names_[number]; }
 
  private:
-  /// Two tags may carry the same name: one patch.
+  /// Number of a group. Two tags with the same name are one patch.
   int number(int tag, const std::string& name) {
     const auto same = std::find(names_.begin(), names_.end(), name);
     const int g = static_cast<int>(same - names_.begin());
@@ -71,11 +71,11 @@ class MshGroups {
   int default_ = -1;
 };
 
-/// A type of elements that is read here.
+/// Supported type of elements.
 struct MshType {
   int gmsh, dim, n_nodes;
   const char* name;
-  CellType cell = CellType::triangle;  ///< of the types that may be cells
+  CellType cell = CellType::triangle;  ///< for types that may be cells
 };
 constexpr std::array<MshType, 8> msh_types{{{1, 1, 2, "line"},
                                             {2, 2, 3, "triangle", CellType::triangle},
@@ -102,17 +102,17 @@ struct NodeRun {
   std::size_t place;  ///< in the file, behind the first tag
 };
 
-/// Elements of one type and one entity of the drawing that lie one after the other in the file.
+/// Consecutive elements of the file with one type and one elementary entity.
 struct ElementRun {
   const MshType* type;
-  int entity;  ///< tag of the curve, surface or volume; 0: not named
+  int entity;  ///< tag of the curve, surface or volume; 0 if not named
   std::vector<int> groups;
   std::size_t count, place;  ///< in the file
-  std::size_t head, bytes;   ///< numbers of an element before its nodes; size of each number in a binary file
+  std::size_t head, bytes;   ///< number of values before its nodes; their size in a binary file
 };
 
-/// Reads the block of one rank of .msh 2.2 and 4.1, ASCII and binary. Goes through the file once to find where things lie, taking in the
-/// points, then to this rank's elements.
+/// Reads the block of one rank from .msh 2.2 and 4.1, ASCII and binary. First scans the file for positions
+/// and reads the points, then reads this rank's elements.
 class MshReader {
  public:
   MshReader(const std::filesystem::path& file, int rank, int ranks) : rank_(rank), ranks_(ranks), in_(file) {
@@ -152,7 +152,7 @@ class MshReader {
     return std::move(block_);
   }
 
-  /// Lists the entities of all boundary elements of the file.
+  /// Lists the entities of all boundary elements in the file.
   std::vector<int> boundary_entities() const {
     std::vector<int> entities;
     for (const ElementRun& e : elements_)
@@ -200,7 +200,7 @@ class MshReader {
         std::vector<int>& groups = groups_of_entity_[{dim, tag}];
         for (std::size_t n = in_.count(); n > 0; --n) groups.push_back(msh_group(in_.integer()));
         if (dim == 0) continue;
-        in_.skip(in_.count(), sizeof(int));  // entities that bound this one
+        in_.skip(in_.count(), sizeof(int));  // bounding entities
       }
   }
 
@@ -211,7 +211,7 @@ class MshReader {
       nodes_.push_back({tag, 1, index, in_.place()});
   }
 
-  /// Coordinates of the next node, and what follows them, if the point is in this rank's share.
+  /// Reads or skips the coordinates and parameters of the next node, depending on this rank's share.
   void read_point(GlobalIndex index, int n_parameters) {
     if (index < first_point_ || index >= end_point_) return in_.skip(std::size_t(3 + n_parameters));
     Vec3 x;
@@ -294,7 +294,7 @@ class MshReader {
         ++done;
         continue;
       }
-      // A header for a run of elements of one type.
+      // Header for a run of elements of one type.
       const MshType& type = type_or_fail(in_, in_.integer());
       const int count = in_.integer(), n_tags = in_.integer();
       if (count < 1) in_.fail("A block of elements is empty.");
@@ -307,7 +307,7 @@ class MshReader {
     }
   }
 
-  /// Tags: physical group (0: none; negative: turned), elementary entity, then partitions.
+  /// Tags are the physical group (0: none; negative: reversed), elementary entity, then partitions.
   void find_element_22(const MshType& type, int n_tags, std::size_t place, std::size_t head, bool follows) {
     ElementRun e{&type, 0, {}, 1, place, head + std::size_t(std::max(0, n_tags)), sizeof(int)};
     for (int t = 0; t < n_tags; ++t) {
@@ -336,7 +336,7 @@ class MshReader {
     return run->index + GlobalIndex(tag - run->tag);
   }
 
-  /// Goes to element `first` of the run.
+  /// Moves to element `first` of the run.
   void go_to(const ElementRun& e, std::size_t first) {
     in_.go_to(e.place, "Elements");
     in_.skip(first * (e.head + std::size_t(e.type->n_nodes)), e.bytes);
@@ -375,7 +375,7 @@ class MshReader {
     block_.zones = zones.finish(block_.cells.zone);
   }
 
-  /// An element in two groups goes in twice, and the check of the boundary names both with the place.
+  /// Adds an element in two groups twice. The boundary check then reports both with their location.
   void make_boundary() {
     MshGroups patches(names_, block_.dim - 1);
     GlobalIndex total = 0;
@@ -409,7 +409,7 @@ class MshReader {
   std::vector<NodeRun> nodes_;
   std::vector<ElementRun> elements_;
   GlobalIndex first_point_ = 0, end_point_ = 0;
-  std::vector<GlobalIndex> points_;  // of the element that was read last
+  std::vector<GlobalIndex> points_;  // of the last element read
   MeshBlock block_;
 };
 

@@ -13,11 +13,11 @@
 
 namespace couplet::mesh {
 
-/// A .msh file mapped into memory and read from front to back. Pages that have been read are given back, so that a rank
+/// Memory-mapped .msh file that is read from front to back. Pages are released after reading, so that a rank
 /// never holds a large file.
 class MshCursor {
  public:
-  /// Throws Error if it cannot be opened.
+  /// Maps the file. Throws Error if it cannot be opened.
   explicit MshCursor(std::filesystem::path file);
   ~MshCursor();
   MshCursor(const MshCursor&) = delete;
@@ -29,18 +29,18 @@ class MshCursor {
   const std::filesystem::path& file() const { return file_; }
 
   std::size_t place() const { return at_; }
-  /// Goes to a place in a section.
+  /// Moves to a position in a section.
   void go_to(std::size_t place, const std::string& section);
   bool at_end() const { return at_ >= text_.size(); }
-  /// The rest of the current line, trimmed; the cursor goes to the next line.
+  /// Returns the rest of the current line, trimmed, and moves to the next line.
   std::string line();
-  /// Next line that is not empty and starts a section: "Nodes" for "$Nodes"; "" at the end of the file.
+  /// Finds the next line that starts a section: "Nodes" for "$Nodes", "" at the end of the file.
   std::string next_section();
-  /// To behind "$End<section>".
+  /// Moves behind "$End<section>".
   void skip_section();
   void end_section();
 
-  /// Numbers: words of text or bytes, as the file is.
+  /// Reads a number as text or bytes, depending on the file.
   int integer() { return binary ? raw<int>() : static_cast<int>(text_integer()); }
   std::size_t size() { return binary ? raw<std::size_t>() : static_cast<std::size_t>(text_integer()); }
   double real() {
@@ -48,7 +48,7 @@ class MshCursor {
     if (!std::isfinite(value)) fail(fmt::format("Expected a finite number, found '{}'.", value));
     return value;
   }
-  /// Numbers that are text in binary files too.
+  /// Reads a number that is text in binary files, too.
   long text_integer();
   double text_real();
   template <class T>
@@ -59,9 +59,9 @@ class MshCursor {
     at_ += sizeof(T);
     return value;
   }
-  /// Passes over numbers of so many bytes, or as many words.
+  /// Skips numbers of `bytes` bytes each, or as many words of text.
   void skip(std::size_t numbers, std::size_t bytes = 8);
-  /// A count of things that take at least a byte each: refuses what the file cannot hold.
+  /// Reads a count of items of at least one byte each. Throws Error if the file is too short for them.
   std::size_t count() { return checked(size()); }
   std::size_t text_count() { return checked(static_cast<std::size_t>(text_integer())); }
   std::string quoted();
@@ -73,20 +73,20 @@ class MshCursor {
   void give_back_pages();
 
   std::filesystem::path file_;
-  std::string_view text_;  // the mapping
+  std::string_view text_;  // mapped file
   std::size_t at_ = 0, given_back_ = 0;
   std::string section_;
 };
 
-/// This rank's block of the mesh in a .msh, which the first `holders` ranks read; the order is that of read_msh(). Throws Error
-/// with file and line. Collective.
+/// Block of this rank for the mesh in a .msh, which the first `holders` ranks read. The order is that of
+/// read_msh(). Throws Error with file and line. Collective.
 MeshBlock read_msh_block(MPI_Comm comm, const std::filesystem::path& file, int holders);
 
-/// Tells whether a .msh has elements of this dimension. False for a file without any, or one that is none.
+/// Returns true if the file is a .msh with elements of this dimension.
 bool has_cells(const std::filesystem::path& file, int dim);
 
-/// The elementary entity (gmsh's tag of a curve or surface of the drawing) of each boundary element that read_msh() gives
-/// for this file, in the order of RawMesh::boundary_points; 0 where the file names none. Throws as read_msh().
+/// Elementary entity (gmsh's tag of a curve or surface) of each boundary element, in the order of
+/// RawMesh::boundary_points; 0 if the file names none. Throws as read_msh().
 std::vector<int> read_boundary_entities(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

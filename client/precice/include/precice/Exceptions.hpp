@@ -5,7 +5,7 @@
 
 namespace precice {
 
-/// A wrong call, a configuration that cannot be run, or what this library does not support: the text names it.
+/// Invalid call or configuration, or an unsupported feature. The text names it.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -5,7 +5,7 @@
 
 namespace precice {
 
-/// Versions of the interface and of the library behind it.
+/// Versions of the interface and of the library that implements it.
 std::string getVersionInformation();
 
 }  // namespace precice

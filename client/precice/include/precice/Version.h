@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The version of preCICE's interface that this library speaks; the library is Couplet's. */
+/* Version of preCICE's interface that this library of Couplet implements. */
 #ifndef COUPLET_PRECICE_VERSION_H
 #define COUPLET_PRECICE_VERSION_H
 

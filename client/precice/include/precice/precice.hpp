@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// preCICE's interface of version 3, spoken to a Couplet job (docs/precice.md): a program that is written for preCICE
-// takes part as it is. All calls throw precice::Error with a sentence.
+// Version 3 of preCICE's interface for Couplet jobs (docs/precice.md). Programs written for preCICE take part
+// without changes. All calls throw precice::Error.
 #pragma once
 
 #include <memory>
@@ -21,10 +21,10 @@ namespace precice {
 
 class Participant {
  public:
-  /// `configurationFileName`: the XML file, or the case that `couplet import` made of it. All processes of the participant, each with its rank and their number.
+  /// `configurationFileName` is the XML file or the case that `couplet import` made of it. Collective.
   Participant(string_view participantName, string_view configurationFileName, int solverProcessIndex,
               int solverProcessSize);
-  /// `communicator`: an MPI_Comm* of these processes.
+  /// Overload with `communicator`, an MPI_Comm* of these processes.
   Participant(string_view participantName, string_view configurationFileName, int solverProcessIndex,
               int solverProcessSize, void* communicator);
   ~Participant();
@@ -48,7 +48,7 @@ class Participant {
   bool requiresWritingCheckpoint();
   bool requiresReadingCheckpoint();
 
-  // Meshes: `coordinates` point by point; edges and faces by the ids of their vertices
+  // Meshes: `coordinates` point by point, edges and faces by the ids of their vertices
   bool requiresMeshConnectivityFor(string_view meshName) const;
   void resetMesh(string_view meshName);
   VertexID setMeshVertex(string_view meshName, span<const double> position);
@@ -67,11 +67,11 @@ class Participant {
   // Data: values vertex by vertex
   void writeData(string_view meshName, string_view dataName, span<const VertexID> ids,
                  span<const double> values);
-  /// `relativeReadTime`: from the start of the next time step, at most getMaxTimeStepSize().
+  /// `relativeReadTime` is measured from the start of the next time step, at most getMaxTimeStepSize().
   void readData(string_view meshName, string_view dataName, span<const VertexID> ids, double relativeReadTime,
                 span<double> values) const;
 
-  // Not supported by this library: each throws Error, the questions answer no
+  // Not supported by this library: each throws Error, queries return false
   void writeAndMapData(string_view meshName, string_view dataName, span<const double> coordinates,
                        span<const double> values);
   void mapAndReadData(string_view meshName, string_view dataName, span<const double> coordinates,
@@ -83,7 +83,7 @@ class Participant {
   void writeGradientData(string_view meshName, string_view dataName, span<const VertexID> ids,
                          span<const double> gradients);
 
-  // Accepted and not used: the coupler measures the time of all participants by itself
+  // Accepted but ignored: the coupler measures the time of all participants
   void startProfilingSection(string_view sectionName);
   void stopLastProfilingSection();
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* preCICE's interface of version 3 for C: one participant a process. What goes wrong ends the whole job with a sentence. */
+/* Version 3 of preCICE's C interface, with one participant per process. An error ends the whole job with a message. */
 #ifndef COUPLET_PRECICE_C_H
 #define COUPLET_PRECICE_C_H
 
@@ -11,7 +11,7 @@ extern "C" {
 
 void precicec_createParticipant(const char* participantName, const char* configFileName,
                                 int solverProcessIndex, int solverProcessSize);
-/* communicator: an MPI_Comm* */
+/* `communicator` is an MPI_Comm*. */
 void precicec_createParticipant_withCommunicator(const char* participantName, const char* configFileName,
                                                  int solverProcessIndex, int solverProcessSize,
                                                  void* communicator);
@@ -50,7 +50,7 @@ void precicec_writeData(const char* meshName, const char* dataName, int size, co
                         const double* values);
 void precicec_readData(const char* meshName, const char* dataName, int size, const int* ids,
                        double relativeReadTime, double* values);
-/* Not supported: */
+/* Not supported by this library: */
 void precicec_writeAndMapData(const char* meshName, const char* dataName, int size, const double* coordinates,
                               const double* values);
 void precicec_mapAndReadData(const char* meshName, const char* dataName, int size, const double* coordinates,
@@ -65,7 +65,7 @@ const char* precicec_getVersionInformation(void);
 void precicec_startProfilingSection(const char* sectionName);
 void precicec_stopLastProfilingSection(void);
 
-/* Couplet's own, for languages with exceptions: with `keep` an error ends nothing, but is there until the next call. */
+/* Extension for languages with exceptions: with `keep` an error does not end the job but is stored until the next call. */
 void couplet_precice_keep_errors(int keep);
 const char* couplet_precice_error(void);
 

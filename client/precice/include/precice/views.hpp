@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the interface takes texts and arrays by: views of memory that stays the caller's.
+// Argument types of the interface: views of texts and arrays owned by the caller.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace precice {
 
-/// Of a C text, a std::string, or anything with data() and size().
+/// View of a C string, a std::string, or anything with data() and size().
 class string_view {
  public:
   string_view(const char* text) : data_(text), size_(std::char_traits<char>::length(text)) {}
@@ -26,7 +26,7 @@ class string_view {
   std::size_t size_;
 };
 
-/// Of an array, a std::vector, a std::array, or a pointer and a number.
+/// View of an array, a std::vector, a std::array, or a pointer and a length.
 template <class T>
 class span {
  public:

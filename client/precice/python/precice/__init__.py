@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""preCICE's interface of version 3 for Python, spoken to a Couplet job (docs/precice.md): over the C interface of the library
-libprecice beside this package, or of the file that COUPLET_PRECICE_LIBRARY names. Arrays are numpy's; errors are RuntimeError."""
+"""Version 3 of preCICE's Python interface for Couplet jobs (docs/precice.md). It uses the C library libprecice beside this package, or the file that
+COUPLET_PRECICE_LIBRARY names. Arrays are numpy's; errors are RuntimeError."""
 import ctypes
 
 import numpy as np
@@ -48,7 +48,7 @@ def get_version_information():
 
 
 class Participant:
-    """A process has one. `communicator`: of mpi4py, of these processes."""
+    """Participant of this process, which has only one. `communicator` is an mpi4py communicator of its processes."""
 
     def __init__(self, participant_name, configuration_file_name, solver_process_index, solver_process_size, communicator=None):
         arguments = [_text(participant_name), _text(configuration_file_name), int(solver_process_index), int(solver_process_size)]
@@ -113,7 +113,7 @@ class Participant:
         return _call("precicec_getMeshVertexSize", _text(mesh_name), result=ctypes.c_int)
 
     def set_mesh_vertices(self, mesh_name, positions):
-        """positions: (vertices, dimensions); returns the ids."""
+        """Adds vertices at `positions` (vertices, dimensions). Returns their ids."""
         positions, dimensions = _reals(positions), self.get_mesh_dimensions(mesh_name)
         if positions.size == 0:
             positions = positions.reshape(0, dimensions)
@@ -158,7 +158,7 @@ class Participant:
 
     # -- data ---------------------------------------------------------------------------------------------------------
     def write_data(self, mesh_name, data_name, vertex_ids, values):
-        """values: (vertices,) of a scalar, (vertices, dimensions) of a vector."""
+        """Writes `values`: (vertices,) for a scalar, (vertices, dimensions) for a vector."""
         ids, values, n = _ids(vertex_ids), _reals(values), self.get_data_dimensions(mesh_name, data_name)
         if values.size != ids.size * n or (n > 1 and values.size and values.shape != (ids.size, n)):
             raise Error(f"write_data: values of '{data_name}' at {ids.size} vertices are of shape {(ids.size, n) if n > 1 else (ids.size,)}, not {values.shape}.")

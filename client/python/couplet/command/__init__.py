@@ -59,7 +59,7 @@ def overview():
 
 def dispatch(name, words):
     prog = f"couplet {name}"
-    raw = name == "validate" and words[:1] not in (["-h"], ["--help"])  # its words are those of scripts/validate
+    raw = name == "validate" and words[:1] not in (["-h"], ["--help"])  # its arguments are those of scripts/validate
     arguments = argparse.Namespace(words=words) if raw else parser_of(name).parse_args(words)
     from couplet.runs.case import Wrong, yaml
     try:
@@ -67,8 +67,8 @@ def dispatch(name, words):
     except (Wrong, yaml.YAMLError, UnicodeDecodeError) as error:
         print(f"{prog}: {error}", file=sys.stderr)
         return 2
-    except OSError as error:  # a folder that may not be written, a full disk
-        if isinstance(error, BrokenPipeError):  # `| head` has seen enough
+    except OSError as error:  # e.g. a read-only folder or a full disk
+        if isinstance(error, BrokenPipeError):  # e.g. `| head` has read enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
             return 0
         print(f"{prog}: " + ": ".join(str(part) for part in (error.filename, error.strerror or error) if part), file=sys.stderr)
@@ -79,7 +79,7 @@ def dispatch(name, words):
 
 
 def main(argv):
-    """`argv`: the command line, `couplet` first."""
+    """Runs `argv`, the command line starting with `couplet`."""
     words = argv[1:]
     if not words or words[0] in ("-h", "--help", "help"):
         print(overview())

@@ -17,7 +17,7 @@ def declare(parser):
 
 
 def ask(arguments, question):
-    """Yields (participant, exit code, answer, complaint) of all our programs of the case, asked at the same time."""
+    """Yields (participant, exit code, answer, complaint) of all our programs of the case, asked concurrently."""
     case = Case(arguments.case, build_of(arguments.bin))
     expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
     sets = [word for s in arguments.set for word in ("--set", s)]
@@ -34,7 +34,7 @@ def ask(arguments, question):
 
 
 def problem_of_plot(case):
-    """What is wrong with the section `plot`, which the programs ignore; empty if nothing is."""
+    """Error in the section `plot`, which the programs ignore. Empty if there is none."""
     from couplet.plots.section import check
     from couplet.runs.case import Wrong
     try:
@@ -49,7 +49,7 @@ def run(arguments):
     worst, told = 0, []
     for name, code, answer, complaint in ask(arguments, "--check"):
         worst = max(worst, code if code >= 0 else 1)
-        if code:  # what concerns the whole case is said by every program, but needs one reader only
+        if code:  # every program reports general errors, but once is enough
             told += [line for line in (complaint or answer).rstrip().splitlines() if line not in told]
     problem = problem_of_plot(Case(arguments.case))
     if problem:

@@ -26,7 +26,7 @@ def flat(node, name=""):
 
 
 def apart(a, b):
-    """(largest difference, over the largest value); None where they have not the same shape."""
+    """(largest difference, relative to the largest value), or None if the shapes differ."""
     import numpy as np
     if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
         return None
@@ -63,7 +63,7 @@ def arrays(folder):
 
 
 def by_number(series):
-    """The datasets of one file in the order of the numbers of its cells and points: files hold them rank by rank."""
+    """Datasets of one file in the order of cell and point numbers, since files store them rank by rank."""
     import numpy as np
     cells, points = series.get("mesh/cell-id"), series.get("mesh/point-id")
     if cells is None or points is None:
@@ -88,7 +88,7 @@ def of_mappings(first, second):
 
 
 def differences(first, second, tolerance):
-    """[(name, words, whether it is beyond the tolerance)] of all arrays."""
+    """[(name, text, True if beyond the tolerance)] of all arrays."""
     a, b = arrays(first), arrays(second)
     for name in [*a, *(n for n in b if n not in a)]:
         if name not in a or name not in b:

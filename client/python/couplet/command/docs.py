@@ -16,7 +16,7 @@ def declare(parser):
 
 
 def built(again):
-    """The folder with the site of this version."""
+    """Folder with the site of this version."""
     from couplet.command import version
     from couplet.places import ROOT
     cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "couplet" / f"site-{version()}-{ROOT.name}"

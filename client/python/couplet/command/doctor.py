@@ -54,7 +54,7 @@ def surroundings():
 
 
 def self_test():
-    """Two steps of the coupled flap in a folder of its own, on a coarse mesh."""
+    """Runs two steps of the coupled flap on a coarse mesh in a temporary folder."""
     from couplet.runs.gallery import copy, find
     from couplet.runs.job import run
     start = time.monotonic()
@@ -64,7 +64,7 @@ def self_test():
             results = run(case)
             tip = results.probes("solid")
             moved = next(values[-1] for head, values in tip.items() if "x [m]" in head)
-        except Exception as error:  # whatever it is, it is the answer
+        except Exception as error:  # any exception is reported as the result
             return f"failed: {error}", False
     return f"fluid, solid, mover and coupler: the flap's tip moved by {moved:.3g} m in {time.monotonic() - start:.1f} s", moved > 0
 

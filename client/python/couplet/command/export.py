@@ -23,7 +23,7 @@ def declare(parser):
 
 
 def made(case, arguments, work):
-    """What writes the case."""
+    """Writer of the case."""
     from couplet.peers.values import refuse
     names = [arguments.participant] if arguments.participant else list(case.participants)
     expect(len(names) == 1, f"{case.file}: --participant: which one of {', '.join(names)}?")

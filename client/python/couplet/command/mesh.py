@@ -30,7 +30,7 @@ def declare(parser):
 
 
 def tool(arguments, words, ranks=1):
-    """Exit code of mesh_tool, which does the work."""
+    """Runs mesh_tool, which does the work. Returns its exit code."""
     program = (build_of(arguments.bin) or places.build()) / "bin/mesh_tool"
     expect(program.exists(), f"{program}: is not built")
     launcher = ["mpirun", "--oversubscribe", "-n", ranks] if ranks > 1 else []
@@ -39,7 +39,7 @@ def tool(arguments, words, ranks=1):
 
 
 def meshes_of(case, arguments):
-    """{(mesh file, dimension, parameters): participants} of what the case opens."""
+    """{(mesh file, dimension, parameters): participants} of the meshes in the case."""
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
     data = with_changes(case.data, dict(s.split("=", 1) for s in arguments.set))
     entries, found = data["participants"], {}

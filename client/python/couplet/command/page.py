@@ -72,7 +72,7 @@ def handler_of(progress, token):
         def do_GET(self):
             address = urllib.parse.urlparse(self.path)
             given = urllib.parse.parse_qs(address.query).get("token", [""])[0]
-            # Another name that leads here is a page of somebody else that tries to read this one.
+            # A request with another host name comes from a foreign page that tries to read this one.
             mine = self.headers.get("Host", "") == f"127.0.0.1:{self.server.server_port}"
             if not mine or not secrets.compare_digest(given.encode(), token.encode()):
                 self.answer(403, "text/plain", "The token is missing or wrong: use the address printed by couplet watch.\n")
@@ -88,7 +88,7 @@ def handler_of(progress, token):
 
 
 def server(progress, port=0):
-    """(server, address with its token), on the loopback address alone."""
+    """(server, address with its token), only on the loopback address."""
     token = secrets.token_urlsafe(18)
     made = http.server.ThreadingHTTPServer(("127.0.0.1", port), handler_of(progress, token))
     return made, f"http://127.0.0.1:{made.server_port}/?token={token}"

@@ -19,7 +19,7 @@ def declare(parser):
 
 
 def without_restart(flags):
-    """Flags of the first start without the checkpoint that it began with."""
+    """Flags of the first start without its checkpoint."""
     at = flags.index("--restart") if "--restart" in flags else len(flags)
     return flags[:at] + flags[at + 2:]
 

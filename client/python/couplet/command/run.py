@@ -43,7 +43,7 @@ def options_of_programs(parser):
 
 
 def flags_of(arguments):
-    """Arguments that all programs get as they are."""
+    """Arguments that are passed unchanged to all programs."""
     words = [f"--{name.replace('_', '-')}" for name in ("restart_with_changes", "allow_commands", "verbose", "quiet") if getattr(arguments, name)]
     words += ["--restart", str(arguments.restart.absolute())] if arguments.restart else []
     words += [] if arguments.strict is None else ["--strict" + (f"={arguments.strict}" if arguments.strict else "")]
@@ -56,7 +56,7 @@ def pairs(words, option):
 
 
 def ranks_of(words, case, here=True):
-    """`here`: the job runs on this machine."""
+    """Number of ranks. `here` is true if the job runs on this machine."""
     words = [w for word in words for w in word.split(",")]
     if len(words) == 1 and words[0].isdigit():
         from couplet.runs.ranks import divide, fit_total
@@ -71,7 +71,7 @@ def ranks_of(words, case, here=True):
 
 
 def relays(words, case):
-    """{participant: command of the relay that stands in the job for it}; prints how the participants are to be started."""
+    """{participant: command of its relay in the job}. Prints how the participants must be started."""
     found = {}
     for word in words:
         name, _, listen = word.partition("=")
@@ -95,7 +95,7 @@ def batch_script(job, options):
     words += ["-n", ",".join(f"{name}={n}" for name, n in job.ranks.items())] if job.ranks else []
     words += ["--participant", job.alone] if job.alone else []
     words += [w for s in job.sets for w in ("--set", s)] + job.flags + [w for name, line in job.played_by.items() for w in ("--with", f"{name}={shlex.join(line)}")]
-    # Before its time is over the job is asked to end: it saves, and couplet resume goes on.
+    # Asks the job to end before its time limit, so that it saves and couplet resume can continue.
     head = {"--job-name": mapping_of(job.case.data.get("simulation")).get("name", job.case.file.stem), "--ntasks": ranks, "--signal": "B:TERM@60"}
     head = [f"{name}={value}" for name, value in head.items() if name not in {option.split("=")[0] for option in options}]
     return "\n".join(["#!/bin/bash", *(f"#SBATCH {shlex.quote(word)}" for word in (*head, *options)), "exec " + shlex.join(map(str, words)), ""])
@@ -124,7 +124,7 @@ def run(arguments):
 
 
 def shown_run(job, picture=False, verbose=False):
-    """Runs it; on a terminal as a digest, else with the programs' own lines."""
+    """Runs the job with a digest on a terminal, else with the programs' own lines."""
     from couplet.runs import ranks
     from couplet.runs.terminal import Digest, Plain
     ranks.fit(job.case, job.ranks, job.alone)
@@ -138,7 +138,7 @@ def shown_run(job, picture=False, verbose=False):
 
 
 def shown(path):
-    """A path as a person would type it."""
+    """Formats a path as a person would type it."""
     relative = os.path.relpath(path)
     return str(path) if relative.startswith("../..") else relative
 
@@ -148,7 +148,7 @@ def span(seconds):
 
 
 def line_of_picture(job, out):
-    """The command that draws this run."""
+    """Command that draws this run."""
     if not job.case.has_picture or (job.alone and job.case.coupled):
         return f"couplet plot {shlex.quote(out)}"
     elsewhere = job.output.absolute() != output_of(job.case, ()).absolute()
@@ -156,7 +156,7 @@ def line_of_picture(job, out):
 
 
 def picture_of(job):
-    """Makes the picture of the case; gives its part of the last line."""
+    """Draws the picture of the case. Returns its part of the last line."""
     done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file), *(["--out", str(job.output)] if "plot" in job.case.data else [])], capture_output=True, text=True, env={
         **os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[2])})
     name = next((line.removeprefix("picture: ") for line in reversed(done.stdout.splitlines()) if line.endswith(".png")), None)
@@ -166,7 +166,7 @@ def picture_of(job):
 
 
 def finish(job, code, picture):
-    """The last line: where the results lie, or what went wrong and what to do."""
+    """Prints the last line: where the results are, or what failed and what to do."""
     out, took = shown(job.output), span(job.seconds)
     again = f"couplet resume {shlex.quote(out)}"
     if code == 0 or code == 4:
@@ -178,10 +178,10 @@ def finish(job, code, picture):
         print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; continue: {again}", file=sys.stderr)
         return 3 if code == 3 or folders.sets_since(job.output, job.asked_at) else code
     fix = "fix the errors above"
-    if any("cannot start" in line for line in job.last):  # mistakes of the case; others, such as of --restart, it does not know
+    if any("cannot start" in line for line in job.last):  # errors of the case; it does not know others, such as of --restart
         fix += f"; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}" + "".join(f" --set {shlex.quote(s)}" for s in job.sets)
     left = f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}"
     what = fix if code == 2 else left
-    why = "" if code == 2 else f": {job.last_words()}"  # what is wrong with a case stands just above
+    why = "" if code == 2 else f": {job.last_words()}"  # errors of the case were printed just above
     print(f"failed after {took}, exit code {code}{why}\n{what}", file=sys.stderr)
     return code

@@ -22,14 +22,14 @@ def declare(parser):
 
 
 def ending(folder):
-    """How the run ended, by its reports."""
+    """Outcome of the run, according to its reports."""
     results = Results(folder)
     reports = {name: results.report(name) for name in results.participants()}
     driver = reports.get("coupler") or next(iter(reports.values()), {})
     if not driver:
         return "no run is active here, and none has finished"
     findings = results.findings()
-    at = f"t = {driver['time']:g} s" if driver.get("steps") else by_tables(folder) or "t = 0 s"  # a resumed run that was done has made no step
+    at = f"t = {driver['time']:g} s" if driver.get("steps") else by_tables(folder) or "t = 0 s"  # a resumed run that was complete has made no step
     text = f"{driver.get('state', 'ended')} at {at} after {driver.get('steps', 0)} steps, {driver.get('wall', 0):.1f} s"
     text += f": {driver['reason']}" if driver.get("reason") else ""
     return text + (f"; findings: {', '.join(sorted({f['id'] for f in findings}))}" if findings else "")

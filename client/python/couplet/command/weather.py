@@ -15,8 +15,8 @@ import zlib
 from couplet.runs.case import Wrong, expect
 
 NAN = math.nan
-DAYS = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)  # of the months of a reference year
-# Column written: what it is, names of it elsewhere, units of it as {unit: (factor, offset)}. The first unit is the one written.
+DAYS = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)  # per month of a reference year
+# Written column: description, names in other formats, and their units as {unit: (factor, offset)}. The first unit is written.
 QUANTITIES = {
     "dni_W_m2": ("direct normal irradiance", ("dni", "beam", "beam normal irradiance", "direct normal irradiance", "gb(n)"),
                  {"w/m2": (1, 0), "wh/m2": (1, 0), "kw/m2": (1000, 0), "kwh/m2": (1000, 0), "mj/m2": (1e6 / 3600, 0)}),
@@ -30,7 +30,7 @@ QUANTITIES = {
 QUANTITIES["dew"] = (*QUANTITIES["dew"][:2], QUANTITIES["T_degC"][2])
 WRITTEN = [name for name in QUANTITIES if name != "dew"]
 MISSING_BELOW = -90  # codes such as -9999, in the unit of the file
-# EnergyPlus: columns from 0 in the order of WRITTEN; this value and above stand for "missing".
+# EnergyPlus: columns from 0 in the order of WRITTEN. Values from this one on mean "missing".
 EPW = ((14, 9999), (6, 99.9), (21, 999), (8, 999), (9, 999999))
 TIMES = ("month", "day", "hour", "minute", "date (mm/dd/yyyy)", "time (hh:mm)", "time(utc)", "time", "date", "datetime", "timestamp")
 
@@ -41,7 +41,7 @@ def declare(parser):
 
 
 class Source:
-    """The lines of a file, and errors that name them."""
+    """Lines of a file, with errors that name it."""
 
     def __init__(self, file):
         expect(file.is_file(), f"{file}: this weather file does not exist.")
@@ -53,7 +53,7 @@ class Source:
                 raise Wrong(f"{file}: this file is damaged or truncated: {error}. Copy or compress it again.") from None
         expect(b"\0" not in data, f"{file}: this is not a text file.")
         self.file, self.lines = file, re.split(r"\r\n|\n|\r", data.decode("utf-8-sig", errors="replace").rstrip("\r\n"))
-        # Rows of a table with decimal commas have as many commas as semicolons at most.
+        # Rows of a table with decimal commas have at most as many commas as semicolons.
         self.separator = max(";,\t", key=lambda mark: max(line.count(mark) for line in self.lines[:100]))
 
     def cells(self, i):
@@ -66,7 +66,7 @@ class Source:
         expect(condition, f"{self.file}:{i + 1}: {text}")
 
     def number(self, text, i, name):
-        """A finite number, or NaN for a gap."""
+        """Returns a finite number, or NaN for a gap."""
         text = text.strip()
         if text in ("", "nan", "NaN", "NA"):
             return NAN
@@ -92,22 +92,22 @@ class Source:
 
 
 def hour_of_year(source, i, month, day, hour):
-    """From 0; None on 29 February, which a reference year does not have."""
+    """Hour of the year from 0, or None on 29 February, which a reference year does not have."""
     source.expect(1 <= month <= 12 and 1 <= day <= DAYS[month - 1] or (month, day) == (2, 29), i, f"'{month:02d}-{day:02d}' is not a date of a year of 365 days.")
     return None if (month, day) == (2, 29) else 24 * (sum(DAYS[:month - 1]) + day - 1) + hour
 
 
 def humidity_of(temperature, dew):
-    """Relative humidity [%], Magnus' formula; both in degC."""
+    """Relative humidity [%] by Magnus' formula; both temperatures in degC."""
     pressure = lambda t: math.exp(17.625 * t / (243.04 + t))
     return NAN if math.isnan(temperature + dew) else min(100.0, 100 * pressure(dew) / pressure(temperature))
 
 
 class Head:
-    """Which column of a table holds what, in which unit."""
+    """Columns of a table with their quantities and units."""
 
     def __init__(self, source, i, units):
-        """`units`: {quantity: unit} of columns whose heading names none."""
+        """`units` is {quantity: unit} for columns without a unit in their heading."""
         self.source, self.n, self.at, self.time = source, len(source.cells(i)), {}, {}
         for column, cell in enumerate(source.cells(i)):
             quantity, unit = quantity_of(cell)
@@ -116,7 +116,7 @@ class Head:
                     self.time.setdefault(cell.lower(), column)
                 continue
             if quantity in self.at and source.cells(i)[self.at[quantity][0]].lower() != cell.lower():
-                continue  # another name of what there is already
+                continue  # another name of a quantity already found
             source.expect(quantity not in self.at, i, f"the column '{cell}' appears twice.")
             known, unit = QUANTITIES[quantity][2], unit or units.get(quantity)
             source.expect(unit, i, f"the unit of the column '{cell}' is missing; write for example '{cell} [{list(known)[1]}]'.")
@@ -142,7 +142,7 @@ class Head:
 
 
 def quantity_of(cell):
-    """(quantity, unit) of a heading such as 'DNI (W/m^2)', 'Gb(n)' or 'T_degC'; (None, '') of another."""
+    """(quantity, unit) of a heading such as 'DNI (W/m^2)', 'Gb(n)' or 'T_degC'. (None, '') if unknown."""
     for name, (_, names, units) in QUANTITIES.items():
         if cell == name:
             return name, next(iter(units))
@@ -201,7 +201,7 @@ def table(source, first, head):
 
 
 def hourly(source, records):
-    """[[hour, values]], means of the records of each hour; the minutes of all records; whether an hour has several."""
+    """[[hour, values]] averaged over the records of each hour, minutes of all records, and true if an hour has several."""
     hours, minutes, several = [], [], False
     for i, hour, minute, values in records:
         if hour is None:
@@ -218,7 +218,7 @@ def hourly(source, records):
 
 
 def behind(source, first, word, without=None):
-    """(line, text) of 'Latitude (decimal degrees): text' above the head of PVGIS."""
+    """(line, text) of 'Latitude (decimal degrees): text' above the head of a PVGIS file."""
     for i in range(first):
         if source.lines[i].strip().startswith(word) and ":" in source.lines[i]:
             return i, source.lines[i].partition(":")[2]
@@ -227,7 +227,7 @@ def behind(source, first, word, without=None):
 
 
 def means_of_moments(hours, offset):
-    """The irradiance of moments `offset` hours after the full hour as means over the hours: of the straight lines between the moments."""
+    """Hourly means of irradiance given `offset` hours after the full hour, with linear interpolation."""
     n, shift = len(hours), math.floor(offset)
     x = offset - shift
     at = lambda h: hours[(h - shift) % n][1][0]
@@ -235,7 +235,7 @@ def means_of_moments(hours, offset):
 
 
 def pvgis(source, first, head):
-    """Moments in UTC to means on standard time: hours, location, seconds of the states after the full hour."""
+    """Converts instantaneous values in UTC to means on standard time: hours, location, seconds of the states after the full hour."""
     (line, latitude), (_, longitude) = behind(source, first, "Latitude"), behind(source, first, "Longitude")
     site = source.site(latitude, longitude, "0", line)
     offset = source.number(behind(source, first, "Irradiance Time Offset", "0")[1], 0, "irradiance time offset")
@@ -255,7 +255,7 @@ def pvgis(source, first, head):
 
 
 def sam_units(source, first):
-    """{quantity: unit} and location in the two lines above a SAM or NSRDB head; pressure in mbar unless they say otherwise."""
+    """{quantity: unit} and location from the two lines above a SAM or NSRDB head. Pressure is in mbar by default."""
     names, values = (source.cells(first - 2), source.cells(first - 1)) if first >= 2 else ([], [])
     about = {name.lower(): value for name, value in zip(names, values) if value}
     units = {"p_Pa": "mbar"}
@@ -268,7 +268,7 @@ def sam_units(source, first):
 
 
 def read(source):
-    """(format, hours, location or None, seconds after the full hour at which the states hold)."""
+    """(format, hours, location or None, seconds of the states after the full hour)."""
     if source.lines[0].startswith("LOCATION,") or ".epw" in source.file.suffixes:
         source.expect(len(source.lines) > 8 and source.lines[0].startswith("LOCATION,"), 0, "this is not an EPW file: it must start with a line LOCATION,... and have 8 header lines.")
         place = source.cells(0)
@@ -291,7 +291,7 @@ def read(source):
     sam = {"month", "day", "hour"} <= times
     units, site = sam_units(source, first) if sam else ({}, None)
     hours, minutes, several = hourly(source, table(source, first, Head(source, first, {**usual, **units})))
-    stamped = times - {"month", "day", "hour"}  # a table without minutes holds at mid-hour
+    stamped = times - {"month", "day", "hour"}  # a table without minutes refers to mid-hour
     return "SAM or NSRDB" if sam else "table", hours, site, 60.0 * minutes[-1] if stamped and not several else 1800.0
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The schemas of docs/schema: what the programs print, with units as patterns, and one for a whole case file with its sections
-`simulation`, `study` and `plot`."""
+"""Schemas of docs/schema: those printed by the programs, with units as patterns, and one for a complete case file with its sections `simulation`,
+`study` and `plot`."""
 import json
 import re
 
@@ -14,7 +14,7 @@ PARTICIPANT = r"^(?!(coupler|checkpoints|run)$)(?!-)[^/\\ .\n\t]{1,50}$"  # prob
 
 
 def with_units(node, used):
-    """The schema with each text of a unit as a reference to units.json; collects the units in `used`."""
+    """Replaces the text of each unit by a reference to units.json. Collects the units in `used`."""
     if isinstance(node, list):
         return [with_units(n, used) for n in node]
     if not isinstance(node, dict):
@@ -27,7 +27,7 @@ def with_units(node, used):
 
 
 def with_reference(node, reference, bare_zero):
-    """In place of the pattern of a number with any unit; where a bare number is ambiguous, a zero is not."""
+    """Replaces the pattern of a number with any unit. Where a bare number is ambiguous, zero is still allowed."""
     if isinstance(node, list):
         return [with_reference(n, reference, bare_zero) for n in node]
     if not isinstance(node, dict):
@@ -35,11 +35,11 @@ def with_reference(node, reference, bare_zero):
     if node.get("type") == "string" and "pattern" in node:
         rest = {k: v for k, v in node.items() if k not in ("type", "pattern")}
         return {**rest, **({"anyOf": [{"const": 0}, reference]} if bare_zero and reference["$ref"].rpartition("/")[2] != "K" else reference)}
-    if node.get("type") == EXPRESSION:  # what is a number with a unit must have the right one
+    if node.get("type") == EXPRESSION:  # a number with a unit must have the right one
         rest = {k: v for k, v in node.items() if k != "type"}
         return {**rest, "anyOf": [{"type": ["number", "object"]}, {"type": "string", "not": {"pattern": A_QUANTITY}}, reference]}
     if any(branch.get("minimum", branch.get("exclusiveMinimum", -1)) >= 0 for branch in node.get("anyOf", ())) and "K" not in reference["$ref"]:
-        reference = {**reference, "pattern": "^ *[+]?[0-9.]"}  # nor below 0 with a unit
+        reference = {**reference, "pattern": "^ *[+]?[0-9.]"}  # and must not be negative
     return {k: with_reference(v, reference, bare_zero) if k in ("anyOf", "items") else v for k, v in node.items()}
 
 
@@ -97,7 +97,7 @@ def of_row(kind, unit, allowed):
 
 
 def of_markdown(text):
-    """The schema of a section from the tables that a program prints: a heading a mapping, a row a key."""
+    """Schema of a section from the tables that a program prints: one heading per mapping, one row per key."""
     root = {"type": "object", "properties": {}, "additionalProperties": False}
     node = root
     for line in text.splitlines():
@@ -116,7 +116,7 @@ def of_markdown(text):
 
 
 def case_schema(programs, simulation):
-    """One schema for a whole case file: the program named in an entry decides about its keys."""
+    """Schema of a complete case file. The program of an entry determines its keys."""
     choices = [{"if": {"properties": {"program": {"const": program}}, "required": ["program"]}, "then": {"$ref": f"{program}.json"}} for program in programs]
     participants = {"type": "object", "minProperties": 1, "propertyNames": {"pattern": PARTICIPANT}, "additionalProperties": {"type": "object", "required": ["program"], "allOf": choices}}
     return {
@@ -131,7 +131,7 @@ def case_schema(programs, simulation):
 
 
 def files(ask, programs, source):
-    """{name: text} of docs/schema; `ask`(program, question) -> what it prints; `source`: text of common/base/units.cpp."""
+    """{name: text} of docs/schema. `ask`(program, question) returns its output; `source` is the text of common/base/units.cpp."""
     used, found = set(), {}
     for program in programs:
         found[program] = with_units(json.loads(ask(program, "--schema")), used)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The site: all documents and the READMEs of cases and folders, searchable, with a gallery of all cases, by MkDocs and its Material theme. Nothing
-on it is loaded from elsewhere."""
+"""Site with all documents and the READMEs of cases and folders, searchable, with a gallery of all cases, by MkDocs and its Material theme. It loads
+nothing from other servers."""
 import math
 import os
 import pathlib
@@ -44,7 +44,7 @@ STYLE = """.md-grid { max-width: 76rem; }
 
 
 def pages():
-    """All Markdown files of the project, relative to it."""
+    """All Markdown files of the project, by relative path."""
     found = []
     for folder, below, names in os.walk(ROOT):
         place = pathlib.Path(folder).relative_to(ROOT)
@@ -59,7 +59,7 @@ def title_of(page):
 
 
 def target_of(page, link, there):
-    """(link as it stands in the site, file to be copied) of a relative link; (None, None) where there is nothing to be led to."""
+    """(link within the site, file to be copied) of a relative link. (None, None) if it has no target."""
     path, _, anchor = link.partition("#")
     target = pathlib.Path(os.path.normpath(page.parent / path)) if path else page
     if (ROOT / target).is_dir():
@@ -73,7 +73,7 @@ def target_of(page, link, there):
 
 
 def with_links(page, text, there, needed):
-    """The text with links that lead somewhere in the site; others lose their link. Files that they name are collected in `needed`."""
+    """Text with links that work in the site; others are removed. Collects linked files in `needed`."""
     def link(match):
         mark, words, place = match.groups()
         if "://" in place or place.startswith("mailto:"):
@@ -83,7 +83,7 @@ def with_links(page, text, there, needed):
             return words
         if file:
             needed.add(file)
-            # A text is shown as it is, whatever a browser thinks of its name.
+            # Text files are displayed as text, regardless of their extension.
             found = found if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else found + ".txt"
         return f"{mark}[{words}]({found})"
     parts = re.split(r"(^```.*?^```|`[^`\n]+`(?!\]))", text, flags=re.M | re.S)
@@ -128,7 +128,7 @@ def nav_of(there):
 
 
 def stage(folder):
-    """Everything that the site is made of, in a folder; gives the nav."""
+    """Copies all sources of the site to a folder. Returns the nav."""
     there, needed = pages(), set()
     known = set(there)
     for page in there:

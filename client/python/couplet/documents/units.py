@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Units as patterns: which texts are a number with a unit that converts to a given one. Exact for units of one or two symbols (12 kg is no
-density); products of more symbols, brackets and negative powers are let through if all symbols are known."""
+"""Patterns of units: texts that are a number with a unit convertible to a given one. Exact for units of one or two symbols (12 kg is not a density).
+Longer products, brackets and negative powers are accepted if all symbols are known."""
 import itertools
 import re
 
 NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
 PREFIX = "[GMkhdcmunµ]"
 POWERS = range(1, 5)
-BARE_NOT = ("K", "rad", "rad/s")  # as needs_unit of common/base/bare_numbers.hpp
+BARE_NOT = ("K", "rad", "rad/s")  # as needs_unit() of common/base/units.hpp
 
 
 def symbols(source):
@@ -17,7 +17,7 @@ def symbols(source):
 
 
 def dimension_of(unit, table):
-    """Of a unit of the keys, such as W/(m^2 K)."""
+    """Dimension of a unit of the keys, such as W/(m^2 K)."""
     text, total, sign = unit.replace("K difference", "K"), [0, 0, 0, 0], 1
     for slash, name, power in re.findall(r"(/)?\s*\(?\s*([A-Za-z%]+|1)\)?(?:\^(\d+))?", text):
         sign = -1 if slash else sign
@@ -40,7 +40,7 @@ def raised(pattern, power):
 
 
 def pattern_of(unit, table):
-    """A regular expression for what follows the number."""
+    """Regular expression for the text behind the number."""
     wanted, classes = dimension_of(unit, table), {}
     for name, (_, dimension) in table.items():
         if not (unit == "K difference" and name == "degC") and not (unit == "rad/s" and name == "Hz"):
@@ -66,7 +66,7 @@ def pattern_of(unit, table):
 
 
 def name_of(unit):
-    """Of its definition in units.json."""
+    """Name of a unit's definition in units.json."""
     return re.sub(r"[^A-Za-z0-9-]", "", unit.replace("/", "-per-").replace(" ", "-"))
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A static solid as input of CalculiX, and its results. Tractions and pressures become the forces at the points that do the same
-work (integrated over the faces with their shape functions). Of a field CalculiX reads no more than 20 characters: numbers have 13 digits."""
+"""Static solids as CalculiX input, and its results. Tractions and pressures become work-equivalent nodal forces (integrated over the faces with their
+shape functions). CalculiX reads at most 20 characters per field, so numbers have 13 digits."""
 import pathlib
 import re
 
@@ -10,17 +10,17 @@ from couplet.peers.elements import CORNERS, EDGES
 from couplet.peers.results import at_middles, of_points, write_solid
 from couplet.peers.values import refuse
 
-# Elements by the shape of cells: (kind, order of the mesh). {p}: S in plane stress, E in plane strain.
+# Elements by the shape of cells: (kind, order of the mesh). {p} is S in plane stress, E in plane strain.
 ELEMENTS = {"quadrilateral": (("CP{p}4", 1), ("C3D8I", 1), ("CP{p}8R", 2)), "triangle": (("CP{p}3", 1), ("CP{p}6", 2)),
             "hexahedron": (("C3D8I", 1), ("C3D20R", 2)), "tetrahedron": (("C3D4", 1), ("C3D10", 2)), "prism": (("C3D6", 1), ("C3D15", 2))}
 MIDDLES = {"tetrahedron": ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
            "hexahedron": ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)),
            "prism": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5))}
-THIN = 0.1  # thickness of a plane body over the edge of its smallest cell: CalculiX's plane elements are bricks, too, whose faces tilt where they thin unevenly
+THIN = 0.1  # relative thickness of a plane body: CalculiX expands plane elements to bricks, whose faces tilt if they thin unevenly
 
 
 def kinds(solid):
-    """[(element, order)] that fit the cells of a case; meshes of several shapes are refused."""
+    """[(element, order)] for the cells of a case. Meshes with several shapes are rejected."""
     shapes = list(solid.mesh(1).cells)
     if len(shapes) > 1:
         refuse(f"{solid.where}.mesh", f"cells of several shapes ({', '.join(shapes)}) are not exported to CalculiX")
@@ -28,7 +28,7 @@ def kinds(solid):
 
 
 class Input:
-    """The input of one solid with one kind of element."""
+    """Input of one solid with one kind of element."""
 
     def __init__(self, solid, element):
         self.solid, self.element = solid, element
@@ -50,7 +50,7 @@ class Input:
         return cells + 1
 
     def held(self):
-        """{(node, axis): displacement}: what the case prescribes, and across the bricks of a plane body."""
+        """{(node, axis): displacement} prescribed by the case and through the thickness of a plane body."""
         found, n = self.solid.prescribed(self.body), len(self.flat.points)
         if self.layer:
             found |= {(node, 2): 0.0 for node in range(n if self.solid.plane == "stress" else 2 * n)}
@@ -81,14 +81,14 @@ class Input:
         return "\n".join([*lines, f"*NODE FILE{plane}", "U", f"*EL FILE{plane}", "S", "*END STEP"]) + "\n"
 
     def write(self, folder):
-        """<folder>/case.inp: run it there with `ccx case`."""
+        """Writes <folder>/case.inp. Run it there with `ccx case`."""
         folder = pathlib.Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "case.inp").write_text(self.text())
         return ["ccx", "case"]
 
     def read(self, folder, out):
-        """Writes the results in `folder` to the participant's folder `out` as our programs do."""
+        """Writes the results in `folder` to the participant's folder `out` in the format of our programs."""
         n = len(self.flat.points)
         u, s = read_frd(pathlib.Path(folder) / "case.frd", len(self.body.points))
         if self.layer:

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finite elements by their number of points: shape functions, edges, faces, and where in them a place lies.
+"""Finite elements by their number of points: shape functions, edges, faces, and positions within them.
 
-Corners first, then middles of edges in gmsh's order. Shape functions are those of the span of MONOMIALS that are 1 at one point
-and 0 at the others."""
+Points are corners, then middles of edges in gmsh's order. Shape functions span MONOMIALS; each is 1 at one point and 0 at the others."""
 import functools
 
 import numpy as np
@@ -26,7 +25,7 @@ CENTRES = {"line": (0,), "triangle": (1 / 3, 1 / 3), "quadrilateral": (0, 0), "t
 
 
 def exponents(shape, order):
-    """Monomials of a shape: complete ones of simplices, serendipity (at most one square) of the others."""
+    """Monomials of a shape: complete polynomials for simplices, serendipity (at most one square) for others."""
     d, high = len(CENTRES[shape]), order + 1
     every = np.stack(np.meshgrid(*[np.arange(high)] * d, indexing="ij"), axis=-1).reshape(-1, d)
     if shape in ("triangle", "tetrahedron", "line"):
@@ -39,7 +38,7 @@ def exponents(shape, order):
 
 @functools.cache
 def basis(shape, order):
-    """(exponents, coefficients): column i of the coefficients makes shape function i."""
+    """(exponents, coefficients), where column i of the coefficients is shape function i."""
     nodes = np.array(NODES[shape], float)
     if order == 2:
         nodes = np.vstack([nodes, [(nodes[a] + nodes[b]) / 2 for a, b in EDGES[shape]]])
@@ -48,13 +47,13 @@ def basis(shape, order):
 
 
 def shape_functions(shape, order, at):
-    """(n, points) at reference coordinates `at` (n, d)."""
+    """Values (n, points) at reference coordinates `at` (n, d)."""
     powers, coefficients = basis(shape, order)
     return np.prod(np.asarray(at, float)[:, None, :] ** powers, axis=2) @ coefficients
 
 
 def derivatives(shape, order, at):
-    """(n, d, points)."""
+    """Derivatives (n, d, points) at reference coordinates."""
     powers, coefficients = basis(shape, order)
     at, found = np.asarray(at, float), []
     for axis in range(powers.shape[1]):
@@ -66,20 +65,20 @@ def derivatives(shape, order, at):
 
 @functools.cache
 def quadrature(shape):
-    """(places, weights) exact for the loads of second-order faces."""
+    """(points, weights), exact for the loads of second-order faces."""
     g, w = np.polynomial.legendre.leggauss(3)
     if shape == "line":
         return g[:, None], w
     if shape == "quadrilateral":
         return np.array([(a, b) for a in g for b in g]), np.array([p * q for p in w for q in w])
-    s = np.sqrt(15)  # seven points of fifth degree (Radon 1948)
+    s = np.sqrt(15)  # seven points of degree five (Radon 1948)
     a, b = (6 - s) / 21, (6 + s) / 21
     places = [(1 / 3, 1 / 3), *(p for c in (a, b) for p in ((c, c), (1 - 2 * c, c), (c, 1 - 2 * c)))]
     return np.array(places), np.array([9 / 80, *[(155 - s) / 2400] * 3, *[(155 + s) / 2400] * 3])
 
 
 def excess(shape, at):
-    """By how much places lie outside the reference element."""
+    """Distance of positions outside the reference element."""
     at = np.asarray(at)
     if shape in ("quadrilateral", "hexahedron"):
         return np.maximum(np.abs(at).max(axis=1) - 1, 0)
@@ -89,7 +88,7 @@ def excess(shape, at):
 
 
 def inverse(shape, order, points, place):
-    """Reference coordinates of a place in the element with these points (n, d), by Newton's method."""
+    """Reference coordinates of a position in the element with these points (n, d), by Newton's method."""
     at = np.array([CENTRES[shape]], float)
     for _ in range(25):
         step = np.linalg.solve((derivatives(shape, order, at)[0] @ points).T, place - shape_functions(shape, order, at)[0] @ points)
@@ -100,7 +99,7 @@ def inverse(shape, order, points, place):
 
 
 def weights_at(mesh, place):
-    """(points, weights) that interpolate at a place, in the element that holds it or is nearest to it."""
+    """(points, weights) that interpolate at a position, in the element that contains it or is closest to it."""
     best, place = None, np.asarray(place, float)[:mesh.dimension]
     for shape, cells in mesh.cells.items():
         corners = mesh.points[cells[:, :CORNERS[shape]], :mesh.dimension]

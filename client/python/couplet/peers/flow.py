@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A laminar, incompressible flow of a case as an OpenFOAM case for icoFoam or pimpleFoam, and its results."""
+"""Laminar incompressible flow of a case as an OpenFOAM case for icoFoam or pimpleFoam, and its results."""
 import pathlib
 
 import numpy as np
@@ -12,19 +12,19 @@ from couplet.peers.values import depends_on_time, field, number, only, refuse, s
 PROGRAMS = ("icoFoam", "pimpleFoam")
 HERE = {"program", "mesh", "mesh-scale", "mesh-parameters", "dimension", "density", "viscosity", "boundaries", "initial-velocity", "initial-pressure",
         "compressibility", "probes", "output", "statistics",
-        "time-step", "safety-factor", "viscous", "implicit-stretch", "pressure-tolerance", "scheme", "projection"}  # these change how, not what is solved
+        "time-step", "safety-factor", "viscous", "implicit-stretch", "pressure-tolerance", "scheme", "projection"}  # these affect how it is solved, not what
 MOVING = {"velocity", "ramp"}
 PATCHES = {"inlet": MOVING | {"mean-speed", "profile"}, "outlet": {"pressure", "backflow-stabilisation"}, "no-slip": set(), "moving-wall": MOVING,
            "slip": set(), "symmetry": set()}
 WALLS = ("no-slip", "moving-wall")
 COURANT = 0.7
-FASTER = 1.5   # largest speed inside over the largest one at a boundary, by which icoFoam's step is chosen
-SAMPLES = 400  # times at which a velocity that changes in time is given, linear in between
-ROWS = 4000    # of forces and probes at most
+FASTER = 1.5   # assumed ratio of the largest inner and boundary speeds, for icoFoam's time step
+SAMPLES = 400  # number of times for a transient velocity, linear in between
+ROWS = 4000    # maximum number of forces and probes
 
 
 class Flow:
-    """The participant `name` of the sections `data`, checked; keys that OpenFOAM cannot be given are refused by name."""
+    """Checked participant `name` of the sections `data`. Keys without a counterpart in OpenFOAM are rejected by name."""
 
     def __init__(self, data, name, folder, work, trusted=False):
         self.name, self.where, self.section = name, f"participants.{name}", data["participants"][name]
@@ -44,7 +44,7 @@ class Flow:
                 refuse(f"{where}.profile", f"'{given['profile']}' is not exported; give the velocity as an expression")
 
     def mesh(self):
-        """(the mesh of the case, its cells in three dimensions, its faces)."""
+        """(mesh of the case, its cells in 3-D, its faces)."""
         if self._mesh is None:
             flat = mesh.of_participant(self.section, self.folder, self.where, self.work, 1, self.trusted)
             self.depth = flat.size() if self.dimension == 2 else 1.0
@@ -55,7 +55,7 @@ class Flow:
         return self._mesh
 
     def velocity(self, patch, time):
-        """(faces, 3) [m/s] at the middles of a patch's faces."""
+        """Velocities (faces, 3) [m/s] at the face centers of a patch."""
         given, faces = self.boundaries[patch], self.mesh()[2]
         where, middles = f"{self.where}.boundaries.{patch}", faces.middles_of(patch)
         found = np.zeros((len(middles), 3))
@@ -69,7 +69,7 @@ class Flow:
         return found
 
     def flat(self, places):
-        """Places as the case knows them: a plane one lies at z = 0."""
+        """Positions in the coordinates of the case: z = 0 for a plane one."""
         return places * (1, 1, 0) if self.dimension == 2 else places
 
     def changes(self, patch):
@@ -80,7 +80,7 @@ class Flow:
         return np.linspace(0, self.end, SAMPLES + 1)
 
     def fastest(self):
-        """Largest speed that the case prescribes [m/s]."""
+        """Largest prescribed speed [m/s]."""
         found = [np.zeros((1, 3)), *(self.velocity(p, t) for p, g in self.boundaries.items() if g["type"] in ("inlet", "moving-wall")
                                      for t in (self.times() if self.changes(p) else [0.0]))]
         if self.section.get("initial-velocity"):
@@ -94,7 +94,7 @@ class Flow:
 
 
 class FlowCase:
-    """The case for one of PROGRAMS."""
+    """OpenFOAM case for one of PROGRAMS."""
 
     environment = staticmethod(foam_environment)
 
@@ -102,7 +102,7 @@ class FlowCase:
         self.flow, self.program = flow, program
 
     def steps(self):
-        """How many equal steps keep the Courant number near COURANT, by the smallest cell and the largest prescribed speed."""
+        """Number of equal steps that keep the Courant number near COURANT, from the smallest cell and the largest prescribed speed."""
         fastest = self.flow.fastest()
         if fastest == 0 and self.program == "icoFoam":
             refuse(f"{self.flow.where}.boundaries", "icoFoam's step is chosen by a prescribed velocity, and there is none; pimpleFoam chooses its own")
@@ -110,7 +110,7 @@ class FlowCase:
         return max(1, int(np.ceil(self.flow.end / step)))
 
     def velocities(self, folder):
-        """Entries of 0/U by patch; a velocity that changes in time goes to constant/boundaryData."""
+        """Entries of 0/U by patch. Transient velocities are written to constant/boundaryData."""
         flow, found = self.flow, {}
         for patch, given in flow.boundaries.items():
             kind = given["type"]
@@ -134,7 +134,7 @@ class FlowCase:
             (place / f"{t:.9g}" / "U").write_text(rows(self.flow.velocity(patch, t)))
 
     def pressures(self):
-        """Entries of 0/p by patch, over the density."""
+        """Entries of 0/p by patch, divided by the density."""
         flow, found = self.flow, {}
         for patch, given in flow.boundaries.items():
             if given["type"] == "outlet":
@@ -156,14 +156,14 @@ class FlowCase:
         return "functions{" + "\n".join(text) + "}"
 
     def place(self, probe):
-        """In the middle of the depth; what lies on the rim moves inside by a millionth of the size, where OpenFOAM finds a cell."""
+        """Moves a probe to the middle of the depth, and from the rim inside by a millionth of the size, where OpenFOAM finds a cell."""
         points = self.flow.mesh()[1].points
         low, high = points.min(axis=0), points.max(axis=0)
         at = np.array([*map(float, probe["point"]), *([self.flow.depth / 2] if self.flow.dimension == 2 else [])])
         return np.clip(at, low + 1e-6 * (high - low), high - 1e-6 * (high - low))
 
     def write(self, folder):
-        """All files of the case; run it there with its program."""
+        """Writes all files of the case. Run it there with its program."""
         flow, steps = self.flow, self.steps()
         flat, _, faces = flow.mesh()
         faces.write(folder)
@@ -194,7 +194,7 @@ class FlowCase:
         return [self.program]
 
     def read(self, folder, out):
-        """Writes the results in `folder` to the participant's folder `out` as our programs do."""
+        """Writes the results in `folder` to the participant's folder `out` in the format of our programs."""
         folder, flow = pathlib.Path(folder), self.flow
         last, (flat, _, _) = last_time(folder), flow.mesh()
         out.mkdir(parents=True, exist_ok=True)

@@ -13,12 +13,12 @@ RANK = {"scalar": 1, "vector": 3, "symmTensor": 6}
 
 
 def foam_environment():
-    """As Debian's package wants it; a place of its own that is set in the shell counts."""
+    """Environment for Debian's package. An installation set up in the shell takes precedence."""
     return dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
 
 
 def put(folder, path, kind, text, note=""):
-    """A file of a case, its folder made where there is none."""
+    """Writes a file of a case and creates its folder if necessary."""
     file = pathlib.Path(folder) / path
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(f"FoamFile {{version 2.0; format ascii; class {kind}; {note} object {file.name};}}\n{text}\n")
@@ -29,7 +29,7 @@ def one(row):
 
 
 def values(rows):
-    """`uniform v` or `nonuniform List<...>` of an array (n) or (n, 3)."""
+    """Formats an array (n) or (n, 3) as `uniform v` or `nonuniform List<...>`."""
     rows = np.asarray(rows, float)
     if len(rows) == 0 or np.all(rows == rows[0]):
         return f"uniform {one(rows[0] if len(rows) else (0 if rows.ndim == 1 else (0, 0, 0)))}"
@@ -37,11 +37,10 @@ def values(rows):
 
 
 class PolyMesh:
-    """Faces of a mesh of first order in three dimensions, as constant/polyMesh wants them: those between two cells by the order of their
-    cells, then patch by patch."""
+    """Faces of a first-order 3-D mesh in the order of constant/polyMesh: those between two cells sorted by cells, then patch by patch."""
 
     def __init__(self, mesh, kinds):
-        """`kinds`: {patch: OpenFOAM's type of it}; `front` and `back` of a plane mesh become the one patch frontAndBack."""
+        """`kinds` is {patch: its OpenFOAM type}. `front` and `back` of a plane mesh become the patch frontAndBack."""
         self.mesh, self.kinds = mesh, dict(kinds)
         faces, cells, centres = self.all_faces()
         keys = np.sort(faces, axis=1)
@@ -63,7 +62,7 @@ class PolyMesh:
         self.faces, self.owner = np.vstack(self.faces), np.concatenate(self.owner)
 
     def all_faces(self):
-        """(faces padded with -1, their cells, middles of all cells); every face's normal points out of its cell."""
+        """(faces padded with -1, their cells, centers of all cells). Every face normal points out of its cell."""
         faces, cells, centres, count = [], [], [], 0
         for shape, nodes in self.mesh.cells.items():
             middles = self.mesh.points[nodes].mean(axis=1)
@@ -92,16 +91,16 @@ class PolyMesh:
         self.at += len(found)
 
     def corners_of(self, patch):
-        """(faces, 4), -1 where there is no fourth."""
+        """Corners (faces, 4), padded with -1."""
         _, count, start = self.patches[patch]
         return self.faces[start:start + count]
 
     def middles_of(self, patch):
-        """(faces, 3): means of their corners."""
+        """Face centers (faces, 3): means of their corners."""
         return np.array([self.mesh.points[f[f >= 0]].mean(axis=0) for f in self.corners_of(patch)])
 
     def normals_of(self, patch):
-        """(faces, 3), of unit length, outward."""
+        """Outward unit normals (faces, 3)."""
         p = self.mesh.points[self.corners_of(patch)[:, :3]]
         n = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
         return n / np.linalg.norm(n, axis=1)[:, None]
@@ -118,7 +117,7 @@ class PolyMesh:
 
 
 def last_time(folder):
-    """The folder of the last time that was written."""
+    """Folder of the last written time."""
     times = [f for f in pathlib.Path(folder).iterdir() if f.is_dir() and re.fullmatch(r"\d+(\.\d+)?(e[+-]?\d+)?", f.name) and float(f.name) > 0]
     if not times:
         raise ValueError("OpenFOAM wrote no result")
@@ -138,6 +137,6 @@ def read_field(file, count):
 
 
 def read_rows(file):
-    """Numbers of a table of a function object, without brackets: (rows, columns)."""
+    """Numbers of a function object's table without brackets: (rows, columns)."""
     lines = pathlib.Path(file).read_text().splitlines()
     return np.array([re.sub(r"[()]", " ", line).split() for line in lines if line.strip() and not line.startswith("#")], float)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mesh of a case for other programs: a .geo through gmsh, or a .msh (4.1 or 2.2, text), of first or second order."""
+"""Mesh of a case for other programs: a .geo through gmsh, or a .msh (4.1 or 2.2, text), of first or second order."""
 import pathlib
 import re
 import subprocess
@@ -14,7 +14,7 @@ from couplet.runs.case import Wrong, expect
 TYPES = {1: ("line", 1, 2), 2: ("triangle", 1, 3), 3: ("quadrilateral", 1, 4), 4: ("tetrahedron", 1, 4), 5: ("hexahedron", 1, 8), 6: ("prism", 1, 6),
          8: ("line", 2, 3), 9: ("triangle", 2, 6), 11: ("tetrahedron", 2, 10), 16: ("quadrilateral", 2, 8), 17: ("hexahedron", 2, 20), 18: ("prism", 2, 15)}
 DIMENSION = {"line": 1, "triangle": 2, "quadrilateral": 2, "tetrahedron": 3, "hexahedron": 3, "prism": 3}
-# Words of a .geo by which gmsh runs commands or reads and writes other files.
+# Words of a .geo by which gmsh runs commands, or reads and writes other files.
 DANGER = re.compile(r"\b(System|SystemCall|NonBlockingSystemCall|Print|Save|CreateDir|Merge|MergeWithBoundingBox|Include|Plugin|OnelabRun|SendToServer|ShapeFromFile|"
                     r"ListFromFile|GetEnv|Exit|Abort|CreateTopology|PostProcessing|General)\b")
 
@@ -26,7 +26,7 @@ class Mesh:
         self.dimension, self.order, self.points, self.cells, self.patches = dimension, order, points, cells, patches
 
     def corners(self):
-        """The same mesh without the middles of edges."""
+        """Same mesh without the middles of edges."""
         cells = {s: c[:, :CORNERS[s]] for s, c in self.cells.items()}
         patches = {p: {s: f[:, :CORNERS[s]] for s, f in faces.items()} for p, faces in self.patches.items()}
         return compressed(Mesh(self.dimension, 1, self.points, cells, patches))
@@ -38,11 +38,11 @@ class Mesh:
         return sum(map(len, self.cells.values()))
 
     def size(self):
-        """Edge of the smallest cell, by its area or volume."""
+        """Edge of the smallest cell, from its area or volume."""
         return min(float(np.abs(volumes(self.points, s, c)).min()) for s, c in self.cells.items()) ** (1 / self.dimension)
 
     def with_middles(self):
-        """Of second order, by the middles of the straight edges."""
+        """Second-order mesh with the middles of straight edges."""
         found, count = {}, len(self.points)
         def raised(shape, cells):
             more = [cells]
@@ -56,7 +56,7 @@ class Mesh:
         return Mesh(self.dimension, 2, np.vstack([self.points, self.points[pairs].mean(axis=1)]), cells, patches)
 
     def extruded(self, depth):
-        """A plane mesh of first order one cell thick, with the patches `front` (z = depth) and `back` (z = 0)."""
+        """First-order plane mesh extruded by one cell, with the patches `front` (z = depth) and `back` (z = 0)."""
         n, solid = len(self.points), {"triangle": "prism", "quadrilateral": "hexahedron"}
         points = np.vstack([self.points, self.points + (0, 0, depth)])
         cells = {solid[s]: np.hstack([c, c + n]) for s, c in self.cells.items()}
@@ -64,7 +64,7 @@ class Mesh:
         return Mesh(3, 1, points, cells, {**patches, "back": dict(self.cells), "front": {s: c + n for s, c in self.cells.items()}})
 
     def outward(self, patch):
-        """{shape: (m) +1 where the order of a face's points turns its normal out of the body, else -1}."""
+        """{shape: (m) +1 if the point order of a face gives an outward normal, else -1}."""
         if not hasattr(self, "_owners"):
             self._owners = {}
             for shape, cells in self.cells.items():
@@ -80,7 +80,7 @@ class Mesh:
 
 
 def check_patches(mesh, boundaries, where):
-    """Every patch needs an entry, and every entry a patch."""
+    """Checks that every patch has an entry and every entry a patch."""
     for patch in mesh.patches:
         expect(patch in boundaries, f"{where}.boundaries.{patch}: is missing")
     for patch in boundaries:
@@ -88,7 +88,7 @@ def check_patches(mesh, boundaries, where):
 
 
 def normals(corners):
-    """(m, 3), not of unit length: for two-dimensional edges those to the right of their direction."""
+    """Normals (m, 3) without normalization; for 2-D edges to the right of their direction."""
     if corners.shape[1] == 2:
         along = corners[:, 1] - corners[:, 0]
         return np.stack([along[:, 1], -along[:, 0], 0 * along[:, 0]], axis=1)
@@ -96,7 +96,7 @@ def normals(corners):
 
 
 def volumes(points, shape, cells):
-    """Signed areas or volumes by the corners."""
+    """Signed areas or volumes from the corners."""
     corners = points[cells[:, :CORNERS[shape]]]
     if DIMENSION[shape] == 2:
         x, y = corners[..., 0], corners[..., 1]
@@ -110,7 +110,7 @@ def volumes(points, shape, cells):
 
 
 def compressed(mesh):
-    """Without points that no cell has."""
+    """Mesh without unused points."""
     used = np.unique(np.concatenate([c.ravel() for c in mesh.cells.values()]))
     number_of = np.full(len(mesh.points), -1)
     number_of[used] = np.arange(len(used))
@@ -119,7 +119,7 @@ def compressed(mesh):
 
 
 def turned(shape, order, cells):
-    """Cells of the plane the other way round."""
+    """Reverses the orientation of plane cells."""
     n = CORNERS[shape]
     first = [0, *range(n - 1, 0, -1)]
     return cells[:, first + (list(range(2 * n - 1, n - 1, -1)) if order == 2 else [])]
@@ -130,7 +130,7 @@ def sections(text):
 
 
 def entities(body, names):
-    """{(dimension, entity): name of its physical group} of format 4.1."""
+    """{(dimension, entity): name of its physical group} in format 4.1."""
     lines = iter(body.splitlines())
     counts, found = list(map(int, next(lines).split())), {}
     for dimension, count in enumerate(counts):
@@ -180,7 +180,7 @@ def read_22(parts, names):
 
 
 def read(file, dimension, scale=1.0):
-    """The mesh in a .msh. Raises Refused for other formats and kinds of cells."""
+    """Reads the mesh of a .msh. Raises Refused for other formats and kinds of cells."""
     parts = sections(pathlib.Path(file).read_text(errors="replace"))
     version = parts.get("MeshFormat", "?").split()
     if version[:2] not in (["4.1", "0"], ["2.2", "0"]):
@@ -208,7 +208,7 @@ def read(file, dimension, scale=1.0):
 
 
 def of_participant(section, folder, where, work, order=1, trusted=False):
-    """The mesh that a participant's section names, relative to `folder`; gmsh works in the folder `work`."""
+    """Mesh named in a participant's section, relative to `folder`. gmsh works in the folder `work`."""
     dimension, scale = int(section.get("dimension", 3)), number(section.get("mesh-scale", 1), f"{where}.mesh-scale")
     file = folder / str(section.get("mesh", ""))
     expect(file.is_file(), f"{where}.mesh: {file} does not exist")

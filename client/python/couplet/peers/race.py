@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other programs on the case of a study: which can be given it, their runs, their rows beside ours."""
+"""Other programs on the case of a study: which ones can run it, their runs, and their rows beside ours."""
 import dataclasses
 import hashlib
 import json
@@ -29,11 +29,11 @@ SHORT = 0.6    # [s]; shorter runs are measured three times
 class Contender:
     name: str     # of the series: "CalculiX C3D20R"
     program: str  # ccx
-    make: object  # () -> something with write(folder) -> command, and read(folder, out)
+    make: object  # () -> object with write(folder) -> command, and read(folder, out)
 
 
 def contenders(data, participant, folder, work, trusted=False):
-    """([Contender], [(name, why not)]) of the sections of a case; nothing is run."""
+    """([Contender], [(name, reason)]) for the sections of a case. Nothing is run."""
     program, found, refused = str(data["participants"][participant].get("program")), [], []
     if program == "fluid_solver":
         try:
@@ -58,14 +58,14 @@ def contenders(data, participant, folder, work, trusted=False):
 
 
 class Race:
-    """Peers of a study by axes. `why`: {name: reason} of those that could not run."""
+    """Peers of a study by axes. `why` is {name: reason} for those that could not run."""
 
     def __init__(self, study, say=print, trusted=False):
         self.study, self.say, self.trusted, self.why = study, say, trusted, {}
         self.folder = study.out / "peers"
 
     def settings(self, points):
-        """[(point, data)] of those points that differ in what a peer is given, by size: how our programs solve is not theirs."""
+        """[(point, data)] of points with different input for a peer, by size. Our solver settings do not affect it."""
         seen, found = set(), []
         for point in sorted(points, key=lambda p: p.size):
             data = with_changes(self.study.case.data, point.changes)
@@ -79,7 +79,7 @@ class Race:
         return found
 
     def labels(self, settings):
-        """{point: what of it belongs into the name of a series}: values of axes by which settings of one size differ."""
+        """{point: part of a series name}: values of axes that distinguish settings of the same size."""
         size_axis = self.study.axes.refining.name if self.study.axes.refining else None
         found = {}
         for point, _ in settings:
@@ -88,7 +88,7 @@ class Race:
         return found
 
     def rows(self, ours):
-        """Rows of all peers, by series; `ours`: our rows, whose longest run bounds the peers'."""
+        """Rows of all peers by series. Our longest run in `ours` limits the peers' runs."""
         if self.study.case.coupled and not self.study.alone:
             self.why["CalculiX, OpenFOAM"] = "coupling: coupled cases cannot be exported"
             return []
@@ -110,7 +110,7 @@ class Race:
                     continue
                 try:
                     row = self.row(contender, name, point)
-                except Wrong as error:  # refused, or gmsh cannot make its mesh
+                except Wrong as error:  # rejected, or gmsh cannot make its mesh
                     self.why[contender.name] = str(error)
                     continue
                 earlier.append((point.size, row.record.cpu if row.good else float("inf")))
@@ -119,7 +119,7 @@ class Race:
         return found
 
     def too_long(self, earlier, size, longest):
-        """By the growth that the last two runs show, at least linear in the size; two runs of a series are made unless the first took too long."""
+        """Extrapolates the growth of the last two runs, at least linearly in the size. A series has two runs unless the first took too long."""
         if not earlier:
             return False
         (n, cost), limit = earlier[-1], LONGEST * max(longest, 1.0)
@@ -131,7 +131,7 @@ class Race:
         return cost * (size / n)**grown > limit
 
     def row(self, contender, name, point):
-        """A run, made once for the same input, as a row like ours."""
+        """Makes a run, once per input, as a row like ours."""
         place = self.folder / "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name}-{point.name}")
         folder = place / "case"
         shutil.rmtree(folder, ignore_errors=True)
@@ -141,7 +141,7 @@ class Race:
         if record is None or record.state == "done" and not (place / "results").exists():
             record = self.run(name, made, command, place, folder)
         shutil.rmtree(folder, ignore_errors=True)
-        record.version = name  # the column of peers.csv that says who
+        record.version = name  # the column of peers.csv with its name
         row = Row(Point(dict(point.labels), {}, {}, point.size), record, name)
         return value_row(row, self.study.quantities, Results(place / "results"))
 
@@ -173,7 +173,7 @@ class Race:
 
 
 def digest(folder):
-    """Of all files that a peer is given."""
+    """Digest of all files for a peer."""
     mark = hashlib.sha256()
     for file in sorted(f for f in pathlib.Path(folder).rglob("*") if f.is_file()):
         mark.update(str(file.relative_to(folder)).encode() + file.read_bytes())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results of another program in the files that our programs write, so that every quantity of a study is read from them alike."""
+"""Results of another program in the format of our programs, so that all quantities of a study are read in the same way."""
 import csv
 
 import h5py
@@ -15,7 +15,7 @@ UNITS = {"velocity": "m/s", "pressure": "Pa", "displacement": "m", "cell-displac
 
 
 def write_fields(file, mesh, time, cells, points=None):
-    """A series of one output (docs/formats.md): fields of `cells` and `points` by name."""
+    """Writes a series of one output (docs/formats.md) with fields of `cells` and `points` by name."""
     flat = mesh if mesh.order == 1 else mesh.corners()
     kinds = list(flat.cells)
     with h5py.File(file, "w") as out:
@@ -39,7 +39,7 @@ def write_table(file, columns):
 
 
 def at_middles(mesh, values):
-    """Of values at the points those in the middles of the cells."""
+    """Averages values at points to the cell centers."""
     return np.concatenate([np.einsum("n,cnk->ck", elements.shape_functions(s, mesh.order, [elements.CENTRES[s]])[0], values[c])
                            for s, c in mesh.cells.items()])
 
@@ -50,7 +50,7 @@ def von_mises(s):
 
 
 def of_points(mesh, values):
-    """A function of a place that interpolates values at the points."""
+    """Function of a position that interpolates point values."""
     def at(place):
         nodes, weights = elements.weights_at(mesh, place)
         return weights @ values[nodes]
@@ -58,7 +58,7 @@ def of_points(mesh, values):
 
 
 def of_cells(mesh, values):
-    """A function of a place: the parabola through the values of the cells around it, by least squares."""
+    """Function of a position: least-squares parabola through the surrounding cell values."""
     d = mesh.dimension
     centres = np.vstack([mesh.points[c].mean(axis=1) for c in mesh.cells.values()])[:, :d]
     tree = cKDTree(centres)
@@ -72,8 +72,8 @@ def of_cells(mesh, values):
 
 
 def write_solid(folder, mesh, solid, cells, at, points=None):
-    """`cells`: (m, 9) displacements [m] and stresses [Pa] in the middles of the cells; `at`: the same at any place; `points`: fields of
-    the points of a mesh of first order."""
+    """Writes `cells` (m, 9): displacements [m] and stresses [Pa] at the cell centers. `at` returns the same at any position; `points` are fields at
+    the points of a first-order mesh."""
     folder.mkdir(parents=True, exist_ok=True)
     fields = {"cell-displacement": cells[:, :3], "equivalent-stress": von_mises(cells[:, 3:]), **{f"stress-{c}": cells[:, 3 + k] for k, c in enumerate(STRESS)}}
     write_fields(folder / f"{solid.name}.h5", mesh, solid.time, fields, points)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a static, linear elastic solid of a case is to any finite element or finite volume program."""
+"""Static, linear elastic solid of a case in a form for any finite element or finite volume program."""
 import dataclasses
 
 import numpy as np
@@ -8,7 +8,7 @@ from couplet.peers import elements, mesh
 from couplet.peers.values import field, number, only, refuse, settled, vector
 
 HERE = {"program", "mesh", "mesh-scale", "mesh-parameters", "dimension", "plane", "analysis", "kinematics", "material", "boundaries", "gravity",
-        "solution-method", "probes", "output", "stiffness-tolerance", "time-scheme"}  # the last ones change how, not what is solved
+        "solution-method", "probes", "output", "stiffness-tolerance", "time-scheme"}  # the last ones affect how it is solved, not what
 MATERIAL = {"density", "youngs-modulus", "poissons-ratio", "yield-strength", "conductivity", "specific-heat", "expansion"}
 PATCHES = {"free": set(), "fixed-displacement": {"value", "components", "traction"}, "traction": {"value"}, "pressure": {"value"}, "force": {"value"},
            "symmetry": set(), "frictionless": set()}
@@ -16,7 +16,7 @@ PATCHES = {"free": set(), "fixed-displacement": {"value", "components", "tractio
 
 @dataclasses.dataclass
 class Solid:
-    """The participant `name` of the sections `data`, checked; keys that `program` cannot be given are refused by name."""
+    """Checked participant `name` of the sections `data`. Keys without a counterpart in `program` are rejected by name."""
     data: dict
     name: str
     folder: object
@@ -51,7 +51,7 @@ class Solid:
         return {p: g if isinstance(g, dict) else {"type": g} for p, g in (self.section.get("boundaries") or {}).items()}
 
     def mesh(self, order):
-        """Of first or second order; made once."""
+        """Mesh of first or second order, created once."""
         if order not in self.meshes:
             self.meshes[order] = mesh.of_participant(self.section, self.folder, self.where, self.work, order, self.trusted)
             mesh.check_patches(self.meshes[order], self.boundaries, self.where)
@@ -62,7 +62,7 @@ class Solid:
         return np.array(g + [0.0] * (3 - len(g)))
 
     def normal_axis(self, body, patch):
-        """0, 1 or 2 of a symmetry plane; others are refused."""
+        """Axis 0, 1 or 2 normal to a symmetry plane. Other planes are rejected."""
         points = body.points[body.nodes_of(patch)]
         spread = np.ptp(points, axis=0)[:self.dimension]
         if spread.min() > 1e-9 * np.ptp(body.points, axis=0).max():
@@ -84,7 +84,7 @@ class Solid:
         return found
 
     def traction(self, patch, points, outward, area):
-        """Force per area (n, 3) at points of a patch with unit normals that point outward; `area`: of the whole patch."""
+        """Traction (n, 3) at points of a patch with outward unit normals. `area` is that of the whole patch."""
         given, where = self.boundaries[patch], f"{self.where}.boundaries.{patch}"
         kind = given["type"]
         if kind == "pressure":
@@ -96,7 +96,7 @@ class Solid:
         return None
 
     def forces(self, body):
-        """Nodal forces (points, 3) that do the work of all tractions; of a plane body per metre of depth."""
+        """Work-equivalent nodal forces (points, 3) of all tractions; for a plane body per meter of depth."""
         found = np.zeros((len(body.points), 3))
         for patch in self.boundaries:
             area = sum(np.sum(q[2]) for q in self.integrals(body, patch))
@@ -109,7 +109,7 @@ class Solid:
         return found
 
     def integrals(self, body, patch):
-        """Yields (faces, places (f, q, 3), measure (f, q), outward unit normals (f, q, 3), shape functions (q, points)) of each shape."""
+        """Yields (faces, positions (f, q, 3), measure (f, q), outward unit normals (f, q, 3), shape functions (q, points)) of each shape."""
         sides = body.outward(patch)
         for shape, faces in body.patches[patch].items():
             at, weight = elements.quadrature(shape)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A static solid as an OpenFOAM case for solidDisplacementFoam, and its results."""
+"""Static solid as an OpenFOAM case for solidDisplacementFoam, and its results."""
 import pathlib
 
 import numpy as np
@@ -13,7 +13,7 @@ TOLERANCE = 1e-6            # of the outer iteration, relative
 
 
 class SolidFoam:
-    """The case of one solid (couplet.peers.solid)."""
+    """OpenFOAM case of one solid (couplet.peers.solid)."""
 
     environment = staticmethod(foam_environment)
 
@@ -29,7 +29,7 @@ class SolidFoam:
             refuse(f"{solid.where}.gravity", "has no counterpart in solidDisplacementFoam")
         self.flat = solid.mesh(1)
         self.body = self.flat.extruded(self.flat.size()) if solid.dimension == 2 else self.flat
-        for patch, given in solid.boundaries.items():  # planes across an axis only
+        for patch, given in solid.boundaries.items():  # only planes normal to an axis
             given["type"] in ("symmetry", "frictionless") and solid.normal_axis(self.flat, patch)
         self.faces = PolyMesh(self.body, {p: "symmetryPlane" if g["type"] in ("symmetry", "frictionless") else "patch" for p, g in solid.boundaries.items()})
 
@@ -50,7 +50,7 @@ class SolidFoam:
         return f"type tractionDisplacement; traction {values(pull)}; pressure {values(pressure)}; value uniform (0 0 0);"
 
     def write(self, folder):
-        """All files of the case; run it there with solidDisplacementFoam."""
+        """Writes all files of the case. Run it there with solidDisplacementFoam."""
         solid = self.solid
         self.faces.write(folder)
         patches = "\n".join(f"{p}{{{self.condition(p, g)}}}" for p, g in solid.boundaries.items()) + (" frontAndBack{type empty;}" if solid.dimension == 2 else "")
@@ -68,7 +68,7 @@ class SolidFoam:
         return ["solidDisplacementFoam"]
 
     def read(self, folder, out):
-        """Writes the results in `folder` to the participant's folder `out` as our programs do."""
+        """Writes the results in `folder` to the participant's folder `out` in the format of our programs."""
         last, count = last_time(folder), self.flat.count()
         u = np.array(read_field(last / "D", count))
         if (last / "sigma").exists():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of a case for another program: units, expressions, keys that have no counterpart there."""
+"""Values of a case for another program: units, expressions, and keys without a counterpart."""
 import re
 
 import numpy as np
@@ -17,7 +17,7 @@ FUNCTIONS |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": 
 
 
 class Refused(Wrong):
-    """A case that another program cannot be given; the text names the key."""
+    """Case that another program cannot run. The text names the key."""
 
 
 def refuse(where, why):
@@ -25,7 +25,7 @@ def refuse(where, why):
 
 
 def unit_factor(text):
-    """SI units in one of this unit ("kg/m^3", "1/(m K)"); None where it is not understood."""
+    """Factor of this unit to SI ("kg/m^3", "1/(m K)"), or None if it is unknown."""
     factor, sign, group = 1.0, 1, None
     for mark, word, power in re.findall(r"([()/])|([A-Za-zµ%]+|1)(?:\^?(-?\d+))?", text.replace("²", "2").replace("³", "3")):
         if mark:
@@ -38,7 +38,7 @@ def unit_factor(text):
 
 
 def number(value, where):
-    """A number, also one with a unit, in SI units."""
+    """Converts a number, optionally with a unit, to SI."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return float(value)
     match = QUANTITY.fullmatch(str(value).strip())
@@ -49,7 +49,7 @@ def number(value, where):
 
 
 def field(value, where, points, time):
-    """A number or an expression of x, y, z, t at `points` (n, 3), as an array (n)."""
+    """Evaluates a number or an expression of x, y, z, t at `points` (n, 3), as an array (n)."""
     try:
         return np.full(len(points), number(value, where))
     except Refused:
@@ -64,7 +64,7 @@ def field(value, where, points, time):
 
 
 def vector(value, where, points, time, dimension):
-    """(n, 3); components beyond those given are 0."""
+    """Evaluates a vector (n, 3). Missing components are 0."""
     if not isinstance(value, list) or len(value) != dimension:
         refuse(where, f"expected {dimension} components")
     found = np.zeros((len(points), 3))
@@ -74,18 +74,18 @@ def vector(value, where, points, time, dimension):
 
 
 def depends_on_time(value):
-    """Whether an expression, or one of a list, names t."""
+    """Returns true if an expression, or one of a list, contains t."""
     return any(map(depends_on_time, value)) if isinstance(value, list) else isinstance(value, str) and re.search(r"(?<![\w.])t(?!\w)", value) is not None
 
 
 def only(section, where, known, program):
-    """Refuses the first key of a mapping that is not known, by its name."""
+    """Rejects the first unknown key of a mapping by its name."""
     for key, value in (section or {}).items():
         if key not in known and value not in (None, [], {}, False):
             refuse(f"{where}.{key}", f"has no counterpart in {program}")
 
 
 def settled(data):
-    """Refuses a case whose effects the program decides."""
+    """Rejects a case whose effects the program chooses."""
     if data["simulation"].get("effects", "as-given") != "as-given":
         refuse("simulation.effects", f"'{data['simulation']['effects']}' leaves to the program what is solved; export it with the effects that it chose")

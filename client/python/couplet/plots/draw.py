@@ -19,7 +19,7 @@ from couplet.series import extrema
 
 LOOK = {"line": {"ls": "-", "lw": 1.2}, "points": {"ls": "", "marker": "o", "fillstyle": "none", "color": "black", "markersize": 4}, "dots": {"ls": "", "marker": "."},
         "crosses": {"ls": "", "marker": "x", "color": "black", "markersize": 5}, "pluses": {"ls": "", "marker": "+", "color": "black", "markersize": 6}, "squares": {"ls": "", "marker": "s", "color": "black", "markersize": 6}, "dashed": {"ls": "--", "lw": 1.2}, "dotted": {"ls": ":"}}
-LABELS = 12  # of one legend
+LABELS = 12  # per legend
 
 
 def look_of(curve):
@@ -53,7 +53,7 @@ def draw_curves(axes, panel, case, out, where):
 
 
 def time_of(panel, out, where):
-    """Of a map: a time, or that of a first maximum."""
+    """Time of a map: given, or that of a first maximum."""
     at = panel.get("at")
     if not isinstance(at, dict):
         return seconds(at, where)
@@ -64,8 +64,8 @@ def time_of(panel, out, where):
 
 
 def polygons_of(series, points, plane, where):
-    """(corners, cells) of two-dimensional cells, or of the cells above a plane such as y = 0 that have a face in it (below it where there are none), in its
-    other two axes."""
+    """(corners, cells) of 2-D cells, or of cells above a plane such as y = 0 with a face in it (below it if there are none), in its two other
+    axes."""
     if series.is_flat():
         return [points[cell][:, :2] for cell in series.cells], np.arange(len(series.cells)), "xy"
     axis, _, level = plane.replace(" ", "").partition("=")
@@ -85,7 +85,7 @@ def polygons_of(series, points, plane, where):
 
 
 def draw_bodies(axes, panel, out, series, i, ways):
-    """Outlines of a two-dimensional mesh that is drawn, and bodies in it."""
+    """Draws outlines of a 2-D mesh and of bodies in it."""
     ways = ["xyz".index(w) for w in ways]
     if series.is_flat():
         edges = np.array(series.coordinates(i))[series.edges_on_boundary()][:, :, :2]
@@ -93,7 +93,7 @@ def draw_bodies(axes, panel, out, series, i, ways):
     for name in panel["bodies"]:
         body = series_in(out, name)
         corners = fields.places_of(body, body.nearest(series.times[i]), panel.get("warp", 1), "")
-        faces = [face for face, _ in fields.outer_faces(body)] if max(map(len, body.cells)) > 4 else body.cells  # of plates the surface is all there is
+        faces = [face for face, _ in fields.outer_faces(body)] if max(map(len, body.cells)) > 4 else body.cells  # plates consist only of their surface
         axes.add_collection(PolyCollection([corners[face][:, ways] for face in faces], facecolors="tab:red", edgecolors="none"))
 
 
@@ -108,7 +108,7 @@ def draw_map(axes, panel, polygons, values):
 
 
 def draw_field(figure, axes, panel, case, out, where):
-    """A map of two-dimensional cells or of an outer plane, else the outer faces in three dimensions; gives its axes."""
+    """Draws a map of 2-D cells or of an outer plane, else the outer faces in 3-D. Returns its axes."""
     participant = panel.get("participant", next(iter(case.participants)))
     series, at = series_in(out, participant), time_of(panel, out, f"{where}.at")
     i = len(series.times) - 1 if at is None else series.nearest(at)
@@ -135,7 +135,7 @@ def draw_field(figure, axes, panel, case, out, where):
 
 
 def usual_labels(axes, panel):
-    """Of columns that are drawn as they are, where the panel names none: the one of x, and of a lone y."""
+    """Default labels of columns plotted without change: that of x, and that of a single y."""
     files = [c for c in panel.get("curves", ()) if "monitor" in c or "table" in c]
     if files and "label" not in panel.get("x", {}):
         axes.set_xlabel(files[0].get("x", "time [s]" if "monitor" in files[0] else ""))
@@ -171,7 +171,7 @@ def print_quantities(section, case, out):
 
 
 def across_of(section):
-    """Panels side by side."""
+    """Number of panels side by side."""
     return min(section.get("columns", min(3, len(section["panels"]))), len(section["panels"]))
 
 
@@ -181,7 +181,7 @@ def size_of(section):
 
 
 def draw(case, out, picture=None, section=None):
-    """Draws the picture of the run in the folder `out` (of another section than that of the case: a frame of a film); gives its path."""
+    """Draws the picture of the run in the folder `out`, optionally with another section (a frame of a film). Returns its path."""
     section, out = section or check(case), pathlib.Path(out)
     expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(case.file))}")
     panels, across = section["panels"], across_of(section)
@@ -205,7 +205,7 @@ def draw(case, out, picture=None, section=None):
             figure.suptitle(section["title"], fontsize=10)
         picture = pathlib.Path(picture or out / section.get("file", f"{case.file.resolve().parent.name}.png"))
         figure.savefig(picture)
-    except ValueError as problem:  # a colour or a formula of a title that matplotlib does not know
+    except ValueError as problem:  # a color or a title formula that matplotlib does not know
         raise Wrong(f"{where}: {' '.join(str(problem).split())[:300]}") from None
     finally:
         plt.close(figure)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A film of a run: the maps of a section `plot` at each output as PNG frames, and as an animated file where ffmpeg is installed."""
+"""Film of a run: the maps of a section `plot` at each output as PNG frames, and as an animated file if ffmpeg is installed."""
 import pathlib
 import shutil
 import subprocess
@@ -14,17 +14,17 @@ RATE = 10  # frames per second
 
 
 def frame_of(section, case, out):
-    """The section of one frame, its maps alone: the scale that is not given goes over the whole run, titles name the time of the frame."""
+    """Section of one frame, with only its maps. A missing scale covers the whole run; titles state the time of the frame."""
     panels, across = section["panels"], across_of(section)
     maps = [dict(panel) for panel in panels if "field" in panel]
     for panel in maps:
         panel.setdefault("participant", next(iter(case.participants)))
         panel.pop("title", None)
-        if "factor" not in panel:  # the field's own name and unit, which no time is part of
+        if "factor" not in panel:  # the field's own name and unit, without the time
             panel.pop("label", None)
         if "range" not in panel:
             series = series_in(out, panel["participant"])
-            ends = []  # of one output after the other, of which a run may have more than fit into memory
+            ends = []  # one output at a time, since a run may not fit into memory
             for i in range(len(series.times)):
                 values = panel.get("factor", 1) * fields.values_of(series, i, panel["field"], panel.get("component"))
                 ends += [float(values.min()), float(values.max())]
@@ -36,7 +36,7 @@ def frame_of(section, case, out):
 
 
 def film(case, out, low=None, high=None):
-    """Draws the frames of the run in the folder `out` between two times; gives their folder, and the animated file or None."""
+    """Draws the frames of the run in the folder `out` between two times. Returns their folder, and the animated file or None."""
     section, out = check(case), pathlib.Path(out)
     expect(any("field" in panel for panel in section["panels"]), f"{case.file}: plot: there is no map (a panel with `field`) to film.")
     expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {case.file}")
@@ -54,11 +54,11 @@ def film(case, out, low=None, high=None):
 
 
 def animate(folder, file):
-    """One animated file of the frames; None without ffmpeg."""
+    """Makes an animated file of the frames. Returns None without ffmpeg."""
     program = shutil.which("ffmpeg")
     if not program:
         return None
-    # Its usual colours need an even number of pixels each way.
+    # The usual color format needs even numbers of pixels.
     done = subprocess.run([program, "-loglevel", "error", "-y", "-framerate", str(RATE), "-i", folder / "frame-%04d.png",
                            "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", file], capture_output=True, text=True)
     expect(done.returncode == 0, f"ffmpeg made no {file.name} of the frames in {folder}: {done.stderr.strip()[-200:]}")

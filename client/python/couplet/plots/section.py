@@ -61,7 +61,7 @@ def is_of(value, kind):
 
 
 def follow(value, schema, where):
-    """Compares a value with the part of JSON schema that is used above; Wrong names the place and what is allowed."""
+    """Checks a value against the subset of JSON schema used above. Wrong states the location and what is allowed."""
     if "anyOf" in schema:
         schema = schema["anyOf"][1 if isinstance(value, dict) else 0]
     if "enum" in schema:
@@ -88,7 +88,7 @@ def follow(value, schema, where):
 
 
 def seconds(value, where):
-    """A time as a number [s] or text such as `2 s`; None for `last`."""
+    """Converts a time, a number [s] or text such as `2 s`. Returns None for `last`."""
     if value in (None, "last"):
         return None
     found = re.fullmatch(r"([-+\d.eE]+)\s*(?:s)?", str(value).strip())
@@ -99,7 +99,7 @@ def seconds(value, where):
 
 
 def check(case):
-    """The section of a case; Wrong where it is not one."""
+    """Section of a case. Raises Wrong if it is invalid."""
     section, place = case.data["plot"], f"{case.file}: plot"
     follow(section, PLOT, place)
     file = section.get("file", "x.png")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of the curves that a section `plot` names: from monitors, tables beside the case, fields of the last output, functions."""
+"""Values of the curves in a section `plot`: from monitors, tables beside the case, fields of the last output, and functions."""
 import re
 
 import numpy as np
@@ -24,7 +24,7 @@ def number(text):
 
 
 def columns_of(file):
-    """{head: numbers}, what is no number as NaN. The head is the first line without #, or, where that is a row of numbers, the last comment."""
+    """{head: numbers} with NaN for other values. The head is the first line without #, or the last comment if that is a row of numbers."""
     warn_if_older(file)
     try:
         lines = [line for line in file.read_text().splitlines() if line.strip()]
@@ -41,7 +41,7 @@ def columns_of(file):
 
 
 class Source:
-    """Named values of equal length; `order`: the names of a table's columns."""
+    """Named values of equal length. `order` lists the names of a table's columns."""
 
     def __init__(self, columns, names, place):
         self.columns, self.names, self.place = columns, {"pi": np.pi, **names}, place
@@ -51,19 +51,19 @@ class Source:
         return self.columns[name]
 
     def value(self, text, where, functions=()):
-        """A column of that name, or an expression of the names."""
+        """Value of a column, or of an expression of columns."""
         if str(text) in self.columns:
             return self.columns[str(text)]
         try:
             size = len(next(iter(self.columns.values())))
-            with np.errstate(all="ignore"):  # what is no number is not drawn
+            with np.errstate(all="ignore"):  # other values are not drawn
                 return np.broadcast_to(evaluate(text, self.names, {**FUNCTIONS, **dict(functions)}), size).astype(float)
         except ValueError as error:
             raise Wrong(f"{where}: {error}; {self.place} has: {', '.join(self.columns)}.") from None
 
 
 def component_of(series, i, name, where):
-    """A field or, by `velocity x`, a component of it; of points the mean over each cell."""
+    """Field, or its component for names such as `velocity x`; for points the mean over each cell."""
     field, axis = (name[:-2], name[-1]) if re.search(r" [xyz]$", name) else (name, None)
     try:
         return fields.values_of(series, i, field, axis)
@@ -117,14 +117,14 @@ def source_of(curve, case, out, where):
 
 
 def points_of(curve, case, out, where):
-    """[(x, y, value of `each` or None)]: one curve, or one for each value of `each`; none of a run that is not there and need not be."""
+    """[(x, y, value of `each` or None)]: one curve, or one per value of `each`. Empty for an optional run that does not exist."""
     if curve.get("optional") and not (out / curve["monitor"]).is_file():
         return []
     source = source_of(curve, case, out, where)
     x = source.value(curve.get("x", next(iter(source.columns))), f"{where}.x")
 
     def mean(values):
-        """Over the rows of equal x, but for rounding."""
+        """Averages rows of equal x (to round-off)."""
         order = np.argsort(x, kind="stable")
         group = np.empty(len(x), int)
         group[order] = np.concatenate([[0], np.cumsum(np.diff(x[order]) > 1e-6 * np.ptp(x))])

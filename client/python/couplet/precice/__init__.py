@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a configuration of preCICE asks for, as a case of Couplet (`couplet import`)."""
+"""Conversion of a preCICE configuration to a Couplet case (`couplet import`)."""

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The case that a configuration of preCICE asks for, what of it differs here (notes), and what is not supported (refusals), each
-with its line."""
+"""Case for a preCICE configuration, with its differences (notes) and unsupported features (refusals), each with its line."""
 import math
 import re
 
@@ -34,7 +33,7 @@ class Import:
             self.notes.append((element.line, text))
 
     def _look_at(self, element):
-        """One element by itself."""
+        """Checks a single element."""
         name = element.name
         if key := listed(name, REFUSED):
             self._refuse(element, f"<{name}> is not supported: {REFUSED[key]}")
@@ -80,7 +79,7 @@ class Import:
         self.case["participants"] = {p.get("name"): {"program": "precice"} for p in self.root.all("participant")}
 
     def _names(self):
-        """Names that nothing has, and data that are read but never exchanged: the program would read zeros."""
+        """Checks for unknown names, and for data that are read but never exchanged, which would be zero."""
         data = [d.get("name") for d in self.root.starting("data:")]
         meshes, people = ([e.get("name") for e in self.root.all(kind)] for kind in ("mesh", "participant"))
         exchanges = [e for s in self.schemes for e in s.all("exchange")]
@@ -113,13 +112,13 @@ class Import:
             self._convergence(first, coupling)
             self._acceleration(first, coupling)
         else:
-            # The coupler would try steps a second time to judge its own error: these programs cannot repeat one.
+            # The coupler would repeat steps to estimate its error, but these programs cannot repeat a step.
             coupling["sub-steps"] = dict.fromkeys(members, 1)
             self.case["simulation"]["max-step-halvings"] = 0
         coupling["predictor"] = {"order": 0}
 
     def _members(self):
-        """In the order of a step: whoever is first in a scheme before its second."""
+        """Participants in the order of a step: the first of a scheme before its second."""
         before, names = [], []
         for s in self.schemes:
             pair, list_ = s.one("participants"), [p.get("name") for p in s.all("participant")]
@@ -190,7 +189,7 @@ class Import:
             coupling["convergence"]["min-iterations"] = least
 
     def _limit(self, measure, key):
-        """Of a convergence measure; with preCICE's default where both kinds stand in one."""
+        """Limit of a convergence measure, with preCICE's default if both kinds are in one."""
         word = measure.get(key, {"rel-limit": "1e-5", "abs-limit": "1e-12"}.get(key, ""))
         try:
             if 0 < float(word) < math.inf:
@@ -201,7 +200,7 @@ class Import:
         return 1
 
     def _count(self, element):
-        """A whole number of iterations; None: there is no such element."""
+        """Number of iterations, or None without such an element."""
         if element is None:
             return None
         if re.fullmatch("[0-9]{1,5}", element.get("value")) and 1 <= int(element.get("value")) <= 10000:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements of an XML file with their lines, and what becomes of each element of preCICE's configuration."""
+"""Elements of an XML file with their lines, and the treatment of each element of preCICE's configuration."""
 import re
 import xml.parsers.expat
 
@@ -32,7 +32,7 @@ class Element:
 
 
 def read(file):
-    """The outermost element. Document types (and with them entities) are refused."""
+    """Reads the outermost element. Document types (and thus entities) are rejected."""
     expect(file.is_file(), f"{file}: this file does not exist.")
     data = file.read_bytes()
     expect(len(data) <= LARGEST, f"{file}: {len(data)} bytes are no configuration of preCICE (at most {LARGEST}).")
@@ -58,8 +58,8 @@ def read(file):
 
 
 def digest(element):
-    """Of what an element holds, as the library has it (client/precice/xml.cpp), which the coupler compares: of names and attributes, not of what has no part
-    in an answer."""
+    """Digest of names and attributes, as computed by the library (client/precice/xml.cpp) and compared by the coupler. It skips elements that do not
+    affect the result."""
     value = 0xCBF29CE484222325
     for byte in "".join(_words(element)).encode():
         value = (value ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
@@ -77,7 +77,7 @@ def _words(e):
     yield ">"
 
 
-# Mapped by configuration.py, or read by the library itself (meshes, data, who maps what), each with its attributes.
+# Elements converted by configuration.py or read by the library (meshes, data, mappings), each with its attributes.
 MAPS = "direction from to constraint"
 RADIAL = MAPS + " polynomial x-dead y-dead z-dead shape-parameter support-radius solver-rtol"
 MEASURE = "limit data mesh strict suffices"
@@ -93,15 +93,15 @@ MAPPED = {
     "acceleration:constant": "", "acceleration:aitken": "", "acceleration:IQN-ILS": "reduced-time-grid", "acceleration:IQN-IMVJ": "reduced-time-grid always-build-jacobian",
     "relaxation": "value", "initial-relaxation": "value enforce", "max-used-iterations": "value", "time-windows-reused": "value", "filter": "type limit",
 }
-# Has no part in the answer, and no use here.
+# Elements that do not affect the result and are not used.
 SILENT = {"log", "sink", "profiling", "m2n:", "intra-comm:", "master:", "data", "executor:", "imvj-restart-mode"}
-# Has no part in the answer: what there is in its place.
+# Elements that do not affect the result, with their replacement.
 WITHOUT_EFFECT = {
     "export:": "`coupling.interface-output: true` writes the data of all interfaces for ParaView",
     "watch-point": "no watch at a point: `coupling.watch` has integrals", "watch-integral": "`coupling.watch` has integrals over interfaces",
     "preconditioner": "data of several kinds are scaled once by their first size", "basis-function:": "`rbf` takes a local interpolant through the nearest vertices",
 }
-# What the library and the coupler do not do, by element.
+# Elements that the library and the coupler do not support.
 REFUSED = {
     "action:": "actions on data", "mapping:nearest-neighbor-gradient": "mapping with gradients of data", "mapping:linear-cell-interpolation": "interpolation inside cells of a volume",
     "mapping:axial-geometric-multiscale": "mapping between dimensions", "mapping:radial-geometric-multiscale": "mapping between dimensions",
@@ -112,7 +112,7 @@ REFUSED = {
 
 
 def listed(name, table):
-    """The key of a table that stands for an element, or None; one that ends in a colon stands for all that begin with it."""
+    """Key of a table for an element, or None. A key that ends with a colon is a prefix."""
     if name in table:
         return name
     return next((key for key in table if key.endswith(":") and name.startswith(key)), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs cases with the built programs and keeps what each run cost and gave: one runner for the command `couplet`, scripts/validate and
+"""Runs cases with the built programs and stores the costs and results of each run: the runner of the command `couplet`, scripts/validate and
 benchmarks/."""
 from couplet import lazy
 

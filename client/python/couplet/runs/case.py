@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A case file as the runner sees it: who takes part, what changes become on a command line, what a result depends on."""
+"""Case file as seen by the runner: participants, changes on a command line, and dependencies of a result."""
 import copy
 import functools
 import hashlib
@@ -21,7 +21,7 @@ LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class Wrong(Exception):
-    """Something the user can fix."""
+    """Error that the user can fix."""
 
 
 def expect(condition, text):
@@ -30,7 +30,7 @@ def expect(condition, text):
 
 
 def load(text, file=None):
-    """The content of a YAML text; a mistake in it is reported with file and line."""
+    """Content of a YAML text. Errors are reported with file and line."""
     try:
         return yaml.load(text, Loader=LOADER)
     except yaml.YAMLError as error:
@@ -39,7 +39,7 @@ def load(text, file=None):
 
 
 def words_of(file):
-    """The text of a file that is to be one."""
+    """Text of a file that must be text."""
     try:
         return file.read_text()
     except UnicodeDecodeError:
@@ -47,18 +47,18 @@ def words_of(file):
 
 
 def text_of(value):
-    """As it would stand in the YAML."""
+    """Formats a value as in the YAML."""
     return value if isinstance(value, str) else json.dumps(value)
 
 
 def mapping_of(value):
-    """A mapping, also one that stands as text; an empty one of anything else."""
+    """Returns a mapping, also from text. Returns an empty one for anything else."""
     found = load(value) if isinstance(value, str) else value
     return found if isinstance(found, dict) else {}
 
 
 def with_changes(data, changes):
-    """The sections of a case with {absolute key: value} set; a text is read as YAML."""
+    """Sections of a case with {absolute key: value} set. Texts are parsed as YAML."""
     data = copy.deepcopy(data)
     for key, value in changes.items():
         *path, last = key.split(".")
@@ -73,13 +73,12 @@ def with_changes(data, changes):
 
 @functools.lru_cache(maxsize=256)
 def content_of(file, time, size):
-    """Digest of a file as it was at that time."""
+    """Digest of a file as of that time."""
     return hashlib.sha256(file.read_bytes()).digest()
 
 
 class Case:
-    """`file`: the YAML, or one that names a case beside it and holds another study of it ({case: case.yaml, study: ...});
-    `build`: the folder with bin/."""
+    """`file` is the YAML, or one with another study of a case beside it ({case: case.yaml, study: ...}). `build` is the folder with bin/."""
 
     def __init__(self, file, build=None):
         self.file, self.build = pathlib.Path(file), pathlib.Path(build or places.build())
@@ -105,7 +104,7 @@ class Case:
 
     @property
     def has_picture(self):
-        """Of its own: a section `plot` or a plot.py beside it."""
+        """Returns true if the case has a section `plot` or a plot.py."""
         return "plot" in self.data or (self.file.parent / "plot.py").is_file()
 
     @property
@@ -113,12 +112,12 @@ class Case:
         return bool(self.data.get("coupling")) and len(self.participants) > 1
 
     def absolute(self, key, participant):
-        """Keys start at a participant unless they start with a section."""
+        """Full path of a key, which starts at a participant unless it starts with a section."""
         return key if re.match(r"(simulation|participants|coupling)\.", key) else f"participants.{participant}.{key}"
 
     def assignments(self, changes):
-        """Arguments of --set. A key below a mapping that the case does not have is given with that mapping, which an earlier change
-        may have given whole; of two changes of the same key the later counts."""
+        """Arguments of --set. A key below a missing mapping is set with that mapping, which an earlier change may have set as a whole. The last
+        change of a key counts."""
         added, plain, whole = {}, [], {}
         for key, value in changes.items():
             parts, node = key.split("."), self.data
@@ -144,8 +143,8 @@ class Case:
         return self.build / "bin" / str(entry.get("program", "?"))
 
     def guest(self, participant, played_by=None):
-        """The words that start an external program, which does not read the case: those given, else a file of the program's name
-        beside the case, or one on the PATH, with the participant's name; None for a program of ours."""
+        """Command of an external program, which does not read the case: the given one, else a file of that name beside the case or on the PATH, with
+        the participant's name. None for our programs."""
         if played_by and participant in played_by:
             return played_by[participant]
         program = self.program(participant)
@@ -159,8 +158,8 @@ class Case:
         return [found, participant] if found else None
 
     def command(self, changes, alone=None, ranks=None, raw=(), flags=(), played_by=None):
-        """The command line. `alone`: this participant by itself; `ranks`: {participant or coupler: number}; `raw`: further
-        arguments of --set as they are; `flags`: further arguments of all our programs; `played_by`: {participant: words that start it}."""
+        """Command line. `alone` runs only this participant; `ranks` is {participant or coupler: number}; `raw` are further --set arguments; `flags`
+        are arguments of all our programs; `played_by` is {participant: command}."""
         sets = [*(word for a in (*self.assignments(changes), *raw) for word in ("--set", a)), *flags]
         ranks = ranks or {}
         if alone is not None or not self.coupled:
@@ -173,7 +172,7 @@ class Case:
         return line
 
     def named(self, node):
-        """Files that the case names, such as a mesh or a weather file in another folder."""
+        """Files named in the case, such as a mesh or a weather file in another folder."""
         if isinstance(node, dict) or isinstance(node, list):
             for child in node.values() if isinstance(node, dict) else node:
                 yield from self.named(child)
@@ -181,12 +180,12 @@ class Case:
             yield self.file.parent / node
 
     def digest(self, changes=None):
-        """Of all that a result depends on besides its settings: the files that case and changes name, and the programs."""
+        """Digest of everything a result depends on besides its settings: the files of case and changes, and the programs."""
         mark = hashlib.sha256()
         inputs = {f.resolve() for f in self.named([self.data, list((changes or {}).values())])} | {
             f.resolve() for f in self.file.parent.glob("*.geo")}
         programs = {self.program(name) for name in self.participants} | ({self.build / "bin" / COUPLER} if self.coupled else set())
-        sections = {k: v for k, v in self.data.items() if k not in ("study", "plot")}  # a study may grow without its runs being made again
+        sections = {k: v for k, v in self.data.items() if k not in ("study", "plot")}  # a study may grow without repeating its runs
         mark.update(json.dumps(sections, sort_keys=True, default=str).encode())
         for file in (*sorted(inputs), *sorted(programs)):
             if file.exists():

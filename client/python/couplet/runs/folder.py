@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The output folder of a job: who is at work in it, and how it was started."""
+"""Output folder of a job: its active processes, and how it was started."""
 import datetime
 import json
 import os
@@ -21,7 +21,7 @@ def processes():
 
 
 def session(leader):
-    """Processes of a session that still live."""
+    """Running processes of a session."""
     found = []
     for pid in processes():
         try:
@@ -34,7 +34,7 @@ def session(leader):
 
 
 def driver(folder):
-    """The process that makes the steps of the job in this output folder: it holds the lock of the checkpoints; None if there is none."""
+    """Process that drives the steps of the job in this output folder, which holds the checkpoint lock. None if there is none."""
     try:
         lock = os.stat(pathlib.Path(folder) / LOCK)
     except OSError:
@@ -51,7 +51,7 @@ def driver(folder):
 
 
 def stop(folder):
-    """Asks the job in this folder to end after the step under way. False: nobody is at work there."""
+    """Asks the job in this folder to end after the current step. Returns false if there is none."""
     pid = driver(folder)
     if pid is None:
         return False
@@ -60,7 +60,7 @@ def stop(folder):
 
 
 def wait_for_end(folder, seconds):
-    """True if nobody is at work there any more."""
+    """Returns true if no job is active there any more."""
     end = time.monotonic() + seconds
     while driver(folder) is not None:
         if time.monotonic() > end:
@@ -75,8 +75,8 @@ def sets_since(folder, seconds):
 
 
 def checkpoint(folder):
-    """Name of the complete checkpoint that has gone furthest of those that the run on record wrote, or of the one that it began with; None
-    if there is none. Those of another run, left in the folder, may belong to another case."""
+    """Name of the complete checkpoint with the latest time that the recorded run wrote or started from; None if there is none. Those of another run
+    in the folder may belong to another case."""
     all_sets = pathlib.Path(folder).absolute() / "checkpoints"
     sets = sets_since(folder, 0)
     record = read_record(folder)
@@ -90,10 +90,10 @@ def checkpoint(folder):
 
 
 def warn_if_older(file):
-    """Of a file in a participant's folder that the last run there did not write: a monitor that its case no longer names."""
+    """Warns about a file in a participant's folder that the last run did not write: a monitor that its case no longer names."""
     try:
         began, written = ((file.parent / "effective.yaml").stat().st_mtime, file.stat().st_mtime)
-        steps = json.loads((file.parent / "run.json").read_text())["steps"]  # there is none while it runs
+        steps = json.loads((file.parent / "run.json").read_text())["steps"]  # does not exist during a run
     except (OSError, ValueError, KeyError, TypeError):
         return
     if written < began and steps > 0:
@@ -107,7 +107,7 @@ def write_record(folder, record):
 
 
 def read_record(folder):
-    """What `couplet run` wrote: case, ranks, sets, flags; empty if the job was started by hand."""
+    """Record written by `couplet run`: case, ranks, sets, flags. Empty if the job was started by hand."""
     try:
         return json.loads((pathlib.Path(folder) / RECORD).read_text())
     except (OSError, ValueError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cases of the gallery, and how one of them becomes your own."""
+"""Cases of the gallery, and copies of them for the user."""
 import csv
 import dataclasses
 import pathlib
@@ -22,11 +22,11 @@ CELLS = "cells.csv"
 class Entry:
     name: str
     title: str      # first words of its README
-    about: str      # what the README says first
+    about: str      # first text of the README
     programs: list
-    picture: str    # file beside README.md or below docs/, as the README names it; empty if there is none
+    picture: str    # file beside README.md or below docs/, as named in the README; may be empty
     cells: str = ""  # of the largest mesh (configs/cells.csv)
-    seconds: str = ""  # of one core for the whole run, about (same file)
+    seconds: str = ""  # approximate seconds of one core for the whole run (same file)
 
     @property
     def folder(self):
@@ -53,7 +53,7 @@ def entries():
 
 
 def seconds_of(case, build, limit):
-    """Processor seconds of a whole run, without waiting: measured, or from how far it got within `limit` seconds of the clock; "" if it did not step."""
+    """Processor seconds of a whole run: measured, or extrapolated from its progress within `limit` seconds; "" if it made no step."""
     from couplet.places import command
     from couplet.runs import folder
     from couplet.runs.results import Results
@@ -73,7 +73,7 @@ def seconds_of(case, build, limit):
 
 
 def cells_of_all(build, limit=0):
-    """Text of cells.csv: of each case the most cells that one of its programs expects, and the processor seconds of a run (kept where `limit` is 0)."""
+    """Text of cells.csv: the largest expected cell count of each case, and the processor seconds of a run (kept if `limit` is 0)."""
     text, before = "case,cells,seconds\n", {e.name: e.seconds for e in entries()}
     for file in sorted((ROOT / "configs").glob("*/case.yaml")):
         case, most = Case(file, build), 0
@@ -87,7 +87,7 @@ def cells_of_all(build, limit=0):
 
 
 def find(name):
-    """The case file of the gallery with this name, CASE or CASE/file.yaml."""
+    """Case file of the gallery with this name, CASE or CASE/file.yaml."""
     import difflib
     there = sorted(file.parent.name for file in (ROOT / "configs").glob("*/case.yaml"))
     file = ROOT / "configs" / name
@@ -111,7 +111,7 @@ def scalars(node, path=()):
 
 
 def with_values(text, values):
-    """The text with other values at these keys; comments and order stay. Keys must be there."""
+    """Replaces the values at existing keys. Comments and order are kept."""
     places = dict(scalars(yaml.compose(text)))
     for key in values:
         expect(key in places, f"--set {key}: the case has no such value to replace; give it in the new file")
@@ -122,7 +122,7 @@ def with_values(text, values):
 
 
 def included(file):
-    """Files that a .geo brings along."""
+    """Files included by a .geo."""
     for name in re.findall(r'^\s*(?:Include|Merge)\s*"([^"]+)"', file.read_text(errors="replace"), flags=re.M) if file.suffix == ".geo" else ():
         if (file.parent / name).is_file():
             yield file.parent / name
@@ -130,7 +130,7 @@ def included(file):
 
 
 def copy(source, target, values):
-    """Copies a case with all files that it names into a folder, with other values; gives the new case file."""
+    """Copies a case with all named files to a folder, with other values. Returns the new case file."""
     expect(not target.exists() or not any(target.iterdir()), f"{target}: is there already and not empty; a new case wants a new folder")
     case, text = Case(source), source.read_text()
     moved = {key: node.value for key, node in scalars(yaml.compose(text)) if isinstance(node.value, str) and len(node.value) < 200
@@ -141,7 +141,7 @@ def copy(source, target, values):
     files |= {extra.resolve() for extra in (*source.parent.glob("*.py"), source.parent / "README.md") if extra.is_file() and not extra.is_symlink()}
     text = with_values(text, {**{key: pathlib.Path(name).name for key, name in moved.items() if "/" in name}, **values})
     target.mkdir(parents=True, exist_ok=True)
-    for file in (*files, *guests):  # a guest may be a link: by its own name
+    for file in (*files, *guests):  # a guest may be a link: copied under its own name
         shutil.copy(file, target / file.name)
     (target / "case.yaml").write_text(text)
     return target / "case.yaml"

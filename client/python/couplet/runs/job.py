@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One job from its launch line to its end, as a person starts it: what its programs say is passed on as it comes, signals reach them,
-and no process is left behind."""
+"""One job from its launch line to its end, as if started by hand: output is forwarded as it comes, signals reach the programs, and no process is left
+behind."""
 import collections
 import ctypes
 import datetime
@@ -19,13 +19,13 @@ from couplet.runs.case import COUPLER, Case, expect, load, mapping_of
 from couplet.runs.process import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
 
-PATIENCE = 5.0  # for mpirun, asked to end, before everything is killed [s]: while it launches many processes it does not listen
+PATIENCE = 5.0  # [s] for mpirun to end before everything is killed; it does not listen while it launches many processes
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PR_SET_PDEATHSIG = 1
 
 
 def output_of(case, sets):
-    """The output folder, by the case and the arguments of --set."""
+    """Output folder from the case and the arguments of --set."""
     name = mapping_of(mapping_of(case.data.get("simulation")).get("output")).get("folder", "out")
     for key, _, value in (words.partition("=") for words in sets):
         given = load(value) if key in ("simulation", "simulation.output") else None
@@ -38,20 +38,20 @@ def output_of(case, sets):
 
 
 def surroundings():
-    """Environment of the programs: one thread per rank, this package for participants in Python."""
+    """Environment of the programs: one thread per rank, and this package for participants in Python."""
     env = environment()
     env["PYTHONPATH"] = os.pathsep.join([str(places.PACKAGE.parent), *filter(None, [env.get("PYTHONPATH")])])
     return env
 
 
 def ends_with_us():
-    """In the child: should this process be killed, it gets SIGTERM and takes the job along."""
+    """Runs in the child: if this process is killed, the child receives SIGTERM and ends the job."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
 class Job:
-    """`ranks`: {participant or coupler: number}; `sets`: KEY=VALUE as on the command line; `flags`: further arguments of all programs;
-    `played_by`: {participant: words of the external program}; `alone`: this participant without the others."""
+    """`ranks` is {participant or coupler: number}; `sets` are KEY=VALUE as on the command line; `flags` are further arguments of all programs;
+    `played_by` is {participant: command of the external program}; `alone` runs only this participant."""
 
     def __init__(self, case: Case, ranks=None, sets=(), flags=(), alone=None, played_by=None):
         self.case, self.ranks, self.sets, self.flags = case, dict(ranks or {}), list(sets), list(flags)
@@ -70,7 +70,7 @@ class Job:
         self.last, self.asked, self.asked_at, self.started, self.limit = collections.deque(maxlen=60), 0, None, None, float("inf")
 
     def line(self):
-        """The launch line, to be typed into a shell."""
+        """Launch line for a shell."""
         return shlex.join(self.command)
 
     def record(self):
@@ -79,11 +79,11 @@ class Job:
 
     # -- while it runs ------------------------------------------------------------------------------------------------
     def on_signal(self, number, _):
-        """First: the end after the step under way, with a checkpoint. Again: at once."""
+        """Ends the job after the current step, with a checkpoint; on the second signal at once."""
         self.asked += 1
         self.asked_at = self.asked_at or time.time()
         if not self.recorded:
-            self.note()  # quicker than a look: the launcher itself would end the job in the middle of a step
+            self.note()  # at once, because the launcher itself would end the job within a step
         if self.asked == 1 and self.recorded and folders.stop(self.output):
             self.say("ends after the step under way, with a checkpoint; once more: at once")
         elif self.asked <= 2:
@@ -96,7 +96,7 @@ class Job:
         print(f"couplet: {text}", file=sys.stderr, flush=True)
 
     def end_all(self):
-        """Nobody stays: neither programs nor what they started."""
+        """Ends all programs and their children."""
         for _ in range(50):
             left = folders.session(self.process.pid)
             for pid in left:
@@ -109,7 +109,7 @@ class Job:
             time.sleep(0.02)
 
     def note(self):
-        """The record of how it was started, once the job has the folder."""
+        """Records how the job was started, once it has the folder."""
         if not self.recorded and (pid := folders.driver(self.output)) is not None:
             try:
                 self.recorded = int(folders.fields_of(pid)[3]) == self.process.pid
@@ -119,7 +119,7 @@ class Job:
                 folders.write_record(self.output, self.record())
 
     def pass_on(self, shown):
-        """Output as it comes until all who could write have ended. `shown`: has write(data, to); None: nothing is shown."""
+        """Forwards output until all writers have ended. `shown` has write(data, to), or is None."""
         with selectors.DefaultSelector() as selector:
             for pipe, to in ((self.process.stdout, sys.stdout), (self.process.stderr, sys.stderr)):
                 selector.register(pipe, selectors.EVENT_READ, to)
@@ -148,7 +148,7 @@ class Job:
                     break
 
     def run(self, shown=None):
-        """Exit code of the job; `shown` gets its words (terminal.Plain: as they are)."""
+        """Runs the job and returns its exit code. `shown` receives its output (terminal.Plain forwards it unchanged)."""
         expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {shlex.quote(str(self.output))}), or "
                "give this one another folder: --set simulation.output.folder=...")
         self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
@@ -164,9 +164,9 @@ class Job:
             for number, handler in before.items():
                 signal.signal(number, handler)
         self.seconds = time.monotonic() - self.started
-        if not self.recorded and code == 0 and (self.output / folders.LOCK).exists():  # quicker than a look
+        if not self.recorded and code == 0 and (self.output / folders.LOCK).exists():  # may precede the next poll
             folders.write_record(self.output, self.record())
-        if self.recorded and former and code not in (0, 3, 4) and not folders.sets_since(self.output, began):  # refused, say for a --set: the next resume knows nothing of it
+        if self.recorded and former and code not in (0, 3, 4) and not folders.sets_since(self.output, began):  # rejected, for example for a --set: the next resume must not use it
             folders.write_record(self.output, former)
         return code if code >= 0 else 128 - code
 
@@ -179,8 +179,8 @@ class Job:
 
 
 def run(case, ranks=None, changes=None, show=False, alone=None, build=None, **more):
-    """Runs a case to its end; gives its Results. `ranks`: {participant: number}; `changes`: {key: value}. Raises RunFailed with the last
-    words of the programs. Only from the main thread, which gets the signals."""
+    """Runs a case to its end and returns its Results. `ranks` is {participant: number}, `changes` {key: value}. Raises RunFailed with the last output
+    of the programs. Only from the main thread, which receives the signals."""
     from couplet.runs.results import Results
     from couplet.runs.terminal import Plain
     case = case if isinstance(case, Case) else Case(pathlib.Path(case), build)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs many tasks, some at a time; what is done is skipped, what another process is making is waited for. Lists what they warned of."""
+"""Runs many tasks, several at a time. Skips completed ones, waits for those of other processes, and lists their warnings."""
 import collections
 import concurrent.futures
 import re
@@ -10,7 +10,7 @@ from couplet.runs import process
 
 
 def run_all(tasks, jobs=1, again=False, say=print):
-    """{task: Record} of all tasks, in their order. `again`: made again although there. `say` gets a line a task."""
+    """Returns {task: Record} of all tasks in their order. `again` repeats existing ones. `say` receives a line per task."""
     queue, records, mutex, start = collections.deque(tasks), {}, threading.Lock(), time.monotonic()
     made = set()
 
@@ -22,7 +22,7 @@ def run_all(tasks, jobs=1, again=False, say=print):
             say(f"[{len(records)}/{len(tasks)}] {task.name}: {record.reason or word}" + (f" (about {rest:.0f} s to go)" if rest > 10 else ""))
 
     def worker():
-        busy = 0  # tasks seen in a row that others are making
+        busy = 0  # consecutive tasks that others are running
         while True:
             with mutex:
                 if not queue:
@@ -53,7 +53,7 @@ def run_all(tasks, jobs=1, again=False, say=print):
         try:
             for future in [pool.submit(worker) for _ in range(jobs)]:
                 future.result()
-        except BaseException:  # the user stops it: what is running ends, nothing new begins
+        except BaseException:  # stopped by the user: running tasks end, no new ones start
             with mutex:
                 queue.clear()
             process.STOP.set()
@@ -69,8 +69,8 @@ NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
 
 
 def warnings_of(logs):
-    """Lines for the end of a study: warnings of the runs' logs that differ in more than their numbers, with an example each."""
-    found = {}  # without its numbers -> (example, runs)
+    """Lines for the end of a study: warnings in the logs that differ in more than numbers, with an example each."""
+    found = {}  # text without numbers -> (example, runs)
     number = 0
     for log in logs:
         number += 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One process (or one mpirun) from start to end with its costs, and what mpirun itself writes about a job's end, between lines of dashes."""
+"""One process (or mpirun) from start to end with its costs, and mpirun's own messages about the end of a job, between lines of dashes."""
 import dataclasses
 import os
 import pathlib
@@ -10,7 +10,7 @@ import subprocess
 import threading
 import time
 
-STOP = threading.Event()  # set: what was launched from whatever thread ends
+STOP = threading.Event()  # when set, everything launched from any thread ends
 PATIENCE = 5.0            # [s] between SIGTERM and SIGKILL
 
 
@@ -21,26 +21,26 @@ class RunFailed(RuntimeError):
 @dataclasses.dataclass
 class Cost:
     wall: float    # [s]
-    cpu: float     # [s] user and system, of all processes under the one started, waiting MPI ranks included
-    memory: float  # [MB] largest of one process, as the system counted it
+    cpu: float     # [s] user and system, of all descendants, including waiting MPI ranks
+    memory: float  # [MB] peak of one process, as counted by the system
 
 
 def environment():
-    """One thread per rank; ranks are not bound to cores: Open MPI would bind those of jobs side by side to the same ones."""
+    """Uses one thread per rank. Ranks are not bound, because Open MPI would bind those of concurrent jobs to the same cores."""
     ours = dict(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", MPLBACKEND="Agg")
     return {"OMPI_MCA_hwloc_base_binding_policy": "none", **os.environ, **ours}
 
 
 def last_words(text):
-    """The last output of a program, without MPI's frames around it."""
+    """Last output of a program without MPI's messages."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
-    # "error:" before other mentions: the estimate of the error is written at a failed run's end, too.
+    # "error:" has priority, because the error estimate is written at the end of a failed run, too.
     named = [line for line in lines if "error:" in line.lower()] or [line for line in lines if "error" in line.lower()]
     return (named or lines or [""])[-1] if named else " / ".join(lines[-3:])
 
 
 def launch(command, log, folder=None, timeout=3600, env=None):
-    """Runs a command with its output in the file `log`; gives its Cost. Raises RunFailed with its last words."""
+    """Runs a command with its output in the file `log` and returns its Cost. Raises RunFailed with its last output."""
     log = pathlib.Path(log)
     start = time.monotonic()
     with open(log, "w") as out:
@@ -60,7 +60,7 @@ def launch(command, log, folder=None, timeout=3600, env=None):
                     _, status, usage = os.wait4(process.pid, 0)
                     break
                 time.sleep(min(0.02, 0.002 + 0.01 * (time.monotonic() - start)))
-        except BaseException:  # the user stops the study: nothing is left running
+        except BaseException:  # stopped by the user: no process is left running
             os.killpg(process.pid, signal.SIGTERM)
             limit = time.monotonic() + PATIENCE
             while os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None and time.monotonic() < limit:
@@ -80,7 +80,7 @@ def launch(command, log, folder=None, timeout=3600, env=None):
 
 
 def machine():
-    """{name, cores, load} of where this runs."""
+    """{name, cores, load} of this machine."""
     model = next((line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
                   if line.startswith("model name")), platform.machine()) if pathlib.Path("/proc/cpuinfo").exists() else platform.machine()
     return {"processor": model, "cores": len(os.sched_getaffinity(0)), "load": round(os.getloadavg()[0], 1)}
@@ -94,17 +94,17 @@ def commit(root):
 FRAME = re.compile(rb"-{40,}\s*")
 KILLED = re.compile(r"process rank (\d+) .*exited on signal (\d+)(?: \((.*?)\))?", re.S)
 OTHERS = ("Primary job terminated normally", "mpirun detected that one or more processes exited", "MPI_ABORT was invoked")  # a program ended the job, with a message of its own
-LONGEST = 40  # lines between two lines of dashes: a longer text is no page of mpirun's
+LONGEST = 40  # maximum lines between two lines of dashes; longer texts are not mpirun's
 
 
 class Pages:
-    """Takes mpirun's pages out of a stream of bytes."""
+    """Removes mpirun's messages from a stream of bytes."""
 
     def __init__(self):
         self.rest, self.page, self.killed = b"", None, None
 
     def feed(self, data, last=False):
-        """The bytes that are not mpirun's, as far as they are whole."""
+        """Returns complete parts that are not mpirun's."""
         *lines, self.rest = (self.rest + data).splitlines(keepends=True) + ([b""] if (self.rest + data).endswith(b"\n") else []) or [b""]
         if last:
             lines, self.rest = [*lines, self.rest], b""
@@ -118,7 +118,7 @@ class Pages:
                 self.page = [line]
             else:
                 out += line
-        if self.page is None and not self.rest.startswith(b"-"):  # an unfinished line of a program is shown at once
+        if self.page is None and not self.rest.startswith(b"-"):  # an incomplete line of a program is shown at once
             out, self.rest = out + self.rest, b""
         return out + (self._end() if last and self.page else b"")
 
@@ -131,7 +131,7 @@ class Pages:
 
 
 def culprit(killed, sizes):
-    """`sizes`: [(name, ranks)] in the order of the launch line."""
+    """Name of the killed program. `sizes` is [(name, ranks)] in the order of the launch line."""
     rank, number, name = killed
     for who, ranks in sizes:
         if rank < ranks:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a run stands, from the files that it writes anyway."""
+"""Progress of a run from its regular files."""
 import csv
 import pathlib
 import re
@@ -7,11 +7,11 @@ import re
 from couplet.runs import folder as folders
 from couplet.runs.terminal import STATUS, WORTH, short
 
-ROWS, BYTES = 400, 1 << 18  # what is looked at of a table's end
+ROWS, BYTES = 400, 1 << 18  # limits on what is read from the end of a table
 
 
 class Log:
-    """What a log has got since the last look."""
+    """New content of a log since the last poll."""
 
     def __init__(self, file):
         self.file, self.at, self.rest = file, 0, ""
@@ -29,13 +29,13 @@ class Log:
 
 
 class Logs:
-    """The logs of all participants of a job."""
+    """Logs of all participants of a job."""
 
     def __init__(self, folder):
         self.folder, self.logs = pathlib.Path(folder), {}
 
     def look(self):
-        """(status or "", [warnings and errors]) since the last look; the status is that of the one that makes the steps."""
+        """(status or "", [warnings and errors]) since the last poll. The status is that of the program that drives the steps."""
         status, worth = "", []
         for name in sorted(p.name for p in self.folder.iterdir() if p.is_dir() and (p / f"{p.name}.log").exists()):
             for line in self.logs.setdefault(name, Log(self.folder / name / f"{name}.log")).lines():
@@ -48,7 +48,7 @@ class Logs:
 
 
 def tail(file, rows=ROWS):
-    """{head: last numbers} of a table that may be growing; values that are not numbers are skipped."""
+    """{head: last numbers} of a growing table. Other values are skipped."""
     try:
         with open(file, "rb") as stream:
             head = stream.readline().decode(errors="replace")
@@ -59,7 +59,7 @@ def tail(file, rows=ROWS):
             cut = size - BYTES > start
     except OSError:
         return {}
-    lines = text.split("\n")[1 if cut else 0:-1][-rows:]  # the last one may not be whole
+    lines = text.split("\n")[1 if cut else 0:-1][-rows:]  # the last one may be incomplete
     names, columns = next(csv.reader([head]), []), {}
     table = [r for r in csv.reader(lines) if len(r) == len(names)]
     for i, name in enumerate(names):
@@ -67,7 +67,7 @@ def tail(file, rows=ROWS):
             values = [float(r[i]) for r in table]
         except ValueError:
             continue
-        columns[name.strip()] = [v if abs(v) < 1e300 else None for v in values]  # nan and inf are no JSON
+        columns[name.strip()] = [v if abs(v) < 1e300 else None for v in values]  # nan and inf are not valid JSON
     return columns
 
 
@@ -89,7 +89,7 @@ def curves(folder):
 
 
 def by_tables(folder):
-    """A status of a quiet run."""
+    """Status of a quiet run."""
     for file in [folder / "coupler" / "participants.csv", *sorted(folder.glob("*/steps.csv"))]:
         if (times := next(iter(tail(file, 1).values()), [])):
             return f"t={times[-1]:.6g} s"
@@ -97,7 +97,7 @@ def by_tables(folder):
 
 
 class Progress:
-    """What a page shows of a run; each look adds what is new."""
+    """Content of the page about a run; each poll adds new data."""
 
     def __init__(self, folder):
         self.folder, self.logs, self.status, self.worth = pathlib.Path(folder), Logs(folder), "", []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a number of ranks is divided among the participants: by the work that an earlier run measured, else by what the programs expect."""
+"""Division of a number of ranks among the participants, by the work measured in an earlier run or expected by the programs."""
 import os
 import re
 import subprocess
@@ -12,7 +12,7 @@ ELSEWHERE = ("OMPI_MCA_orte_default_hostfile", "SLURM_JOB_ID", "PBS_NODEFILE", "
 
 
 def measured(case, folder):
-    """{participant: processor seconds at work} of the run in this folder; empty if one of them is not there."""
+    """{participant: processor seconds of work} of the run in this folder. Empty if one is missing."""
     from couplet.runs.results import Results
     results = Results(folder)
     found = {name: float(results.report(name).get("processor-working", 0)) for name in case.participants if (folder / name / "run.json").exists()}
@@ -20,7 +20,7 @@ def measured(case, folder):
 
 
 def expected(case):
-    """{participant: ms per step on one rank}, by --explain of the programs; an external program counts as zero."""
+    """{participant: ms per step on one rank}, from --explain of the programs. An external program counts as zero."""
     found = {}
     for name in case.participants:
         if case.guest(name):
@@ -32,14 +32,14 @@ def expected(case):
 
 
 def side_by_side(case):
-    """Whether the participants work at the same time; else one after another."""
+    """Returns true if the participants work concurrently, not one after another."""
     coupling = case.data.get("coupling") or {}
     return "parallel" in (coupling.get("order"), (coupling.get("exchange") or {}).get("order"))
 
 
 def shares(work, total, together=False):
-    """Whole numbers from 1 on that sum to `total`: of participants that work one after another the sum of work / ranks is the least that
-    can be, of those that work `together` the longest of them."""
+    """Whole numbers of at least 1 that sum to `total`. They minimize the sum of work / ranks for sequential participants, and the maximum for those
+    that work `together`."""
     ranks = dict.fromkeys(work, 1)
     for _ in range(total - len(work)):
         best = max(ranks, key=lambda name: work[name] / (ranks[name] if together else ranks[name] * (ranks[name] + 1)))
@@ -48,13 +48,13 @@ def shares(work, total, together=False):
 
 
 def fit(case, ranks, alone=None):
-    """Refuses more processes than this machine can turn over."""
+    """Rejects more processes than this machine can run."""
     names = [alone] if alone else [*case.participants, *([COUPLER] if case.coupled else [])]
     fit_total(sum(int(ranks.get(name, 1)) for name in names))
 
 
 def fit_total(total):
-    """Each process polls for its messages. Where a queue or a file names the machines, their number is not known here."""
+    """Checks the total, since each process polls for messages. Skipped if a queue or a file names the machines."""
     if any(os.environ.get(name) for name in ELSEWHERE):
         return
     cores = len(os.sched_getaffinity(0))
@@ -63,7 +63,7 @@ def fit_total(total):
 
 
 def divide(case, total):
-    """{participant: ranks}; the coupler has one of its own, which counts."""
+    """{participant: ranks}. The coupler has one rank, which counts."""
     from couplet.runs.job import output_of
     expect(total <= MOST, f"-n {total}: at most {MOST} processes")
     names = [n for n in case.participants if not case.guest(n)]

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run left in its output folder: series, probes, monitors, reports of steps, and the summary of each participant."""
+"""Results in the output folder of a run: series, probes, monitors, step reports, and the summary of each participant."""
 import csv
 import json
 import pathlib
 
 
 def read_csv(file, heads=None):
-    """Columns of a CSV by their heads (those given, or its first line); text stays text, a truncated row (of a run that still writes) is skipped."""
-    import numpy as np  # late: who only starts runs needs none
+    """Columns of a CSV by their heads (given, or from its first line). Texts are kept, and a truncated row (of a running job) is skipped."""
+    import numpy as np  # imported late, since starting a run does not need it
     with open(file, newline="") as lines:
         rows = [*([heads] if heads else []), *csv.reader(line for line in lines if line.strip() and not line.startswith("#"))]
     head, body = [h.strip() for h in rows[0]], [r for r in rows[1:] if len(r) == len(rows[0])]
@@ -21,7 +21,7 @@ def read_csv(file, heads=None):
 
 
 class Results:
-    """The output folder of a run: <folder>/<participant>/..."""
+    """Output folder of a run: <folder>/<participant>/..."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -31,7 +31,7 @@ class Results:
                       and any(f.glob("*.log")))
 
     def table(self, participant, file):
-        """Columns of <participant>/<file>; files are read on first use."""
+        """Columns of <participant>/<file>. Files are read on first use."""
         path = self.folder / participant / file
         if not path.exists():
             raise LookupError(f"there is no {participant}/{file}")
@@ -53,17 +53,17 @@ class Results:
         return np.unique(self.table("coupler", "residuals.csv")["step"], return_counts=True)[1]
 
     def fields(self, participant):
-        """The field series of a participant: times, cells, fields by name as arrays."""
+        """Field series of a participant: times, cells, and fields by name as arrays."""
         from couplet.series import find_series
         return find_series(self.folder / participant)
 
     def surfaces(self, participant):
-        """Patches of which it wrote fields (`output.surfaces`)."""
+        """Patches with written fields (`output.surfaces`)."""
         from couplet.series import surface_names
         return surface_names(self.folder / participant)
 
     def surface(self, participant, patch):
-        """Fields on a patch over time, one row per face or point; areas, integrals, the chain of edges in 2-D."""
+        """Fields on a patch over time with one row per face or point; areas, integrals, and the chain of edges in 2-D."""
         from couplet.series import find_surface
         return find_surface(self.folder / participant, patch)
 
@@ -72,26 +72,26 @@ class Results:
         return self.table(participant, "probes.csv")
 
     def findings(self):
-        """The run's findings: [{participant, id, severity, ...}] as in run.json."""
+        """Findings of the run: [{participant, id, severity, ...}] as in run.json."""
         return [{"participant": name, **found} for name in self.participants() for found in self.report(name).get("findings", ())]
 
     def budget(self):
-        """{participant: {mesh, step, linear, coupling, model: share of the solution}}: parts of the error, as far as the run could
-        estimate them; model: what neglected effects change."""
+        """Error contributions {participant: {mesh, step, linear, coupling, model: share of the solution}} as far as the run could estimate them.
+        `model` is due to neglected effects."""
         told = {name: {k: v for k, v in self.report(name).get("errors", {}).items() if isinstance(v, (int, float))} for name in self.participants()}
         return {name: parts for name, parts in told.items() if parts}
 
     def report(self, participant):
-        """run.json, which every program writes at its end."""
+        """Content of run.json, which every program writes at its end."""
         path = self.folder / participant / "run.json"
         return json.loads(path.read_text()) if path.exists() else {}
 
     def steps(self, participant):
-        """steps.csv: time, dt, iterations, error, energy, seconds of each accepted step."""
+        """Columns of steps.csv: time, dt, iterations, error, energy, seconds of each accepted step."""
         return self.table(participant, "steps.csv")
 
     def costs(self):
-        """Over all participants: steps, iterations, memory [MB], processor seconds at work (without waiting), phases {name: seconds}."""
+        """Costs over all participants: steps, iterations, memory [MB], processor seconds of work (without waiting), phases {name: seconds}."""
         found = {"steps": 0, "iterations": 0, "memory": 0.0, "work": 0.0, "phases": {}}
         for name in self.participants():
             report = self.report(name)
@@ -100,7 +100,7 @@ class Results:
             found["memory"] += float(report.get("memory-all", 0))
             found["work"] += float(report.get("processor-working", 0))
             for phase, seconds in report.get("phases", {}).items():
-                if phase.startswith("waiting") or ":" in phase:  # with a colon: a part of another
+                if phase.startswith("waiting") or ":" in phase:  # a colon marks a part of another phase
                     continue
                 label = phase if len(self.participants()) == 1 else f"{name}: {phase}"
                 found["phases"][label] = found["phases"].get(label, 0) + seconds

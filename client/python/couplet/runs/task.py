@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One run of a study, kept in a folder of its own: made once, found again, never by two at a time."""
+"""One run of a study in a folder of its own. It is made once, found again, and never made by two processes at a time."""
 import contextlib
 import dataclasses
 import fcntl
@@ -17,13 +17,13 @@ from couplet.runs.process import RunFailed, commit, launch, machine
 from couplet.runs.results import Results
 
 RECORD = "record.json"
-SHORT = 0.6  # [s]; runs that take less together are measured three times
-MESHING_COUNTS = 30  # [s]; shorter runs that made their mesh are run again, so that it does not
+SHORT = 0.6  # [s]; shorter runs are measured three times in total
+MESHING_COUNTS = 30  # [s]; shorter runs that generated their mesh are repeated without that
 
 
 @dataclasses.dataclass
 class Record:
-    """What is kept of a run. `state` is "done" or "failed"; a failed one has a reason."""
+    """Stored data of a run. `state` is "done" or "failed", with a reason."""
     identity: str
     name: str
     state: str
@@ -34,10 +34,10 @@ class Record:
     cpu: float = 0.0         # [s], the median of the repeats
     spread: float = 0.0      # (largest - smallest) / median of the cpu seconds
     repeats: list = dataclasses.field(default_factory=list)  # [[wall, cpu], ...]
-    memory: float = 0.0      # [MB], of all processes together where the programs say it
+    memory: float = 0.0      # [MB], of all processes together if the programs report it
     steps: int = 0
     iterations: int = 0
-    work: float = 0.0        # [s], processor time of all participants at work, without waiting
+    work: float = 0.0        # [s], processor time of all participants without waiting
     phases: dict = dataclasses.field(default_factory=dict)
     version: str = ""
     machine: dict = dataclasses.field(default_factory=dict)
@@ -45,8 +45,8 @@ class Record:
 
 
 class Task:
-    """`changes`: {absolute key: value}; `alone`: run this participant by itself; `meshed`: meshes were made by an earlier run,
-    whose time does not count."""
+    """`changes` is {absolute key: value}; `alone` runs only this participant; `meshed` means that an earlier run generated the meshes, whose time
+    does not count."""
 
     def __init__(self, case: Case, name, folder, changes, alone=None, ranks=None, repeats=1, timeout=3600):
         self.case, self.name, self.folder = case, name, pathlib.Path(folder).resolve()
@@ -65,7 +65,7 @@ class Task:
         return Results(self.folder)
 
     def record(self):
-        """The record of this very run if it was made before; None where there is none or it was another one."""
+        """Record of exactly this run, or None if there is none or another one."""
         try:
             record = Record(**json.loads((self.folder / RECORD).read_text()))
         except (OSError, ValueError, TypeError):
@@ -74,7 +74,7 @@ class Task:
 
     @contextlib.contextmanager
     def lock(self, wait=True):
-        """Yields whether the lock was taken; it ends with the process that holds it, however that ends."""
+        """Yields true if the lock was taken. It ends with its process."""
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         with open(self.folder.parent / f".{self.folder.name}.lock", "w") as file:
             try:
@@ -85,7 +85,7 @@ class Task:
             yield True
 
     def make(self):
-        """Runs it and writes its record, last and at once; the caller holds the lock. A run that fails is a record, too."""
+        """Runs the task and finally writes its record atomically. The caller holds the lock. A failed run has a record, too."""
         if self.folder.exists():
             shutil.rmtree(self.folder)
         self.folder.mkdir(parents=True)
@@ -96,7 +96,7 @@ class Task:
             while len(costs) < self.repeats or len(costs) < 3 and sum(c[1] for c in costs) < SHORT:
                 cost = launch(self.command(), log, timeout=self.timeout)
                 if "meshing" in log.read_text(errors="replace") and cost.cpu < MESHING_COUNTS:
-                    continue  # that run made the mesh, the next ones find it
+                    continue  # that run generated the mesh for the next ones
                 costs.append([cost.wall, cost.cpu])
             record.repeats = costs
             record.wall, record.cpu = (statistics.median(c[i] for c in costs) for i in (0, 1))

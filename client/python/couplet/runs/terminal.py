@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run shows on a terminal: who takes part, one line that renews itself, findings above it as they come, and at the end who worked how
-much, the parts of the error, and the warnings of the run. In a file, or with --verbose, the programs' own lines stand as they are."""
+"""Output of a run on a terminal: participants, one status line that renews itself, findings above it, and at the end the work of each participant,
+error contributions and warnings. In a file, or with --verbose, the programs' own lines are kept."""
 import re
 import shutil
 import sys
@@ -19,14 +19,14 @@ def width():
 
 
 def short(status):
-    """A status line of a program with the time to go before what each part took: the end may not fit."""
+    """Shortens a status line and puts the remaining time before the costs of parts, since the end may not fit."""
     parts = re.split(r"\s{2,}", status.strip())
     first = [p for p in parts if not re.match(r"ETA|\w+ [\d.]+ s$", p)]
     return "  ".join([*first, *(p for p in parts if p.startswith("ETA")), *(p for p in parts if p not in first and not p.startswith("ETA"))]).replace("ETA ", "to go ")
 
 
 class Plain:
-    """The words as they come."""
+    """Forwards output unchanged."""
 
     def write(self, data, to):
         to.buffer.write(data)
@@ -34,7 +34,7 @@ class Plain:
 
 
 class Screen:
-    """Lines that stay above one line that renews itself; where there is no terminal the latter is a line of its own each time it changes."""
+    """Lines above a status line that renews itself. Without a terminal each new status is a line of its own."""
 
     def __init__(self):
         self.live, self.shown = sys.stdout.isatty(), ""
@@ -57,14 +57,14 @@ class Screen:
 
 
 class Digest(Screen):
-    """Of the programs' lines: the status of the one that makes the steps, and what is a warning or an error, each kind once."""
+    """Digest of the programs' lines: the status of the program that drives the steps, and warnings and errors, once per kind."""
 
     def __init__(self, job):
         super().__init__()
         self.job, self.rest, self.told, self.unsaid, self.first = job, {}, set(), [], None
 
     def with_rate(self, status):
-        """The status with the steps a second since the first one."""
+        """Status with the steps per second since the first one."""
         found, now = re.search(r"step +(\d+)\S*", status), time.monotonic()
         step = int(found[1]) if found else 0
         self.first = self.first or (step, now)
@@ -98,7 +98,7 @@ class Digest(Screen):
                 self.unsaid.append(line)
 
     def end(self, code):
-        """Who worked how much, the budget of errors, and where all of the words are."""
+        """Prints the work of each participant, the error contributions, and the location of all output."""
         from couplet.runs.results import Results
         self.clear()
         if code not in (0, 3, 4):

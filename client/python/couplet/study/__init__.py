@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What couplet study is made of: the runs a `study` section asks for, what is read from them, and what they say together."""
+"""Parts of couplet study: the runs that a `study` section requests, the values read from them, and their evaluation."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The runs of a study: every combination of the values of its axes.
+"""Runs of a study: every combination of the values of its axes.
 
 axes:
   mesh:                                   # sizes: any number can be made, also one that the list does not hold
@@ -21,7 +21,7 @@ from couplet.runs import expect
 
 
 def arithmetic(text, n):
-    """The value of an expression in n made of numbers, + - * / ** and brackets."""
+    """Value of an expression in n with numbers, + - * / ** and brackets."""
     try:
         return evaluate(text, {"n": n})
     except ValueError as error:
@@ -29,7 +29,7 @@ def arithmetic(text, n):
 
 
 def filled(template, n):
-    """The text with every <expression in n> in it as a number: whole, unless the expression stands as <=...>."""
+    """Replaces every <expression in n> by a number, which is rounded to a whole one unless the expression is <=...>."""
     def number(match):
         exact, text = match.group(1), match.group(2)
         value = arithmetic(text, n)
@@ -41,19 +41,19 @@ def filled(template, n):
 class Axis:
     name: str
     values: dict          # label: {key: value}, keys as in the file
-    sizes: dict           # label: n; empty where the axis is no refinement
+    sizes: dict           # label: n; empty if the axis is not a refinement
     template: dict        # {key: text with <...>} of a refinement
     ranks: dict           # label: {participant: number}
     multiple: float = 1
 
     def round(self, n, up=False):
-        """A size that may be run."""
+        """Closest permitted size."""
         if self.multiple == 0:
             return float(f"{n:.3g}")
         return self.multiple * max(1, math.ceil(n / self.multiple - 1e-9) if up else round(n / self.multiple))
 
     def at(self, n):
-        """The settings of a size that need not be in the list."""
+        """Settings of a size that need not be in the list."""
         return {key: filled(str(text), n) for key, text in self.template.items()}
 
 
@@ -117,7 +117,7 @@ class Axes:
                f"{case.file}: study.leave-out: expected a list of {{axis: value or [values]}}.")
 
     def refuse_covered(self):
-        """A mapping that a later axis gives whole would take away the key that an earlier one set in it."""
+        """Rejects a mapping of a later axis that would remove a key set by an earlier one."""
         for first, later in itertools.combinations(self.all, 2):
             for key in {k for found in first.values.values() for k in found}:
                 for above in {k for found in later.values.values() for k in found}:
@@ -130,7 +130,7 @@ class Axes:
         return any(fits(rule) for rule in self.leave_out)
 
     def point(self, labels, size=None):
-        """`size`: that of the refinement, where it is none of the list."""
+        """`size` is that of the refinement if it is not in the list."""
         changes, ranks = dict(self.common), {}
         for axis in self.all:
             found = axis.at(size) if axis is self.refining and size is not None else axis.values[labels[axis.name]]
@@ -146,7 +146,7 @@ class Axes:
         return [self.point(labels) for labels in every if not self.left_out(labels)]
 
     def series_of(self, point):
-        """All labels but that of the refinement: the runs of one curve."""
+        """All labels except that of the refinement, which identify a curve."""
         return ", ".join(v for k, v in point.labels.items() if not self.refining or k != self.refining.name) or "all"
 
 
@@ -157,8 +157,8 @@ COMPARE = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.G
 
 
 def evaluate(text, names, functions=()):
-    """The value of an expression of `names` ({name: number or array}) and `functions` ({name: callable}). Raises ValueError for
-    anything else, with what it is. Numbers are floats: no power grows without end."""
+    """Value of an expression of `names` ({name: number or array}) and `functions` ({name: callable}). Raises ValueError with the reason for anything
+    else. Numbers are floats, so powers cannot grow without bound."""
     text = str(text)
     if len(text) > LONGEST:
         raise ValueError(f"an expression of more than {LONGEST} characters")

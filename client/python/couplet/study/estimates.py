@@ -1,38 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Error of a run as it can be known without the truth, from it and what was run no finer, beside the true one.
+"""Estimated error of a run without the true solution, from the run itself and coarser ones, for comparison with the true error.
 
-The first guess is that of the change from the next coarser run of its series, over r^p - 1 with r the ratio of their sizes and p
-the order of the schemes (2, or by `orders` of the quantity for a series with a word in its name). Where two coarser runs
-are known, the guess with the order they show is made, too (from 1/2 to 3), and the geometric mean of both counts: a
-fixed order underestimates on meshes that are too coarse for it, an observed one too much where changes happen to be alike.
-Where only one is known nothing shows an order, and coarse meshes fall short of it: the mean is that with one order less.
-What a series cannot see of itself (a time step that stays) other series show: an error is not less than the distance to a run no
-finer that guesses less of itself, less what that run guesses (triangle inequality). That run must have as many coarser ones
-beside it as the one it accuses, or three: a change between two runs is small by chance."""
+The first estimate is the change from the next coarser run of the series over r^p - 1, with the ratio r of their sizes and the order p of the schemes
+(2, or `orders` of the quantity for a series with that word in its name). With two coarser runs a second estimate uses their observed order (from 1/2
+to 3), and the geometric mean of both counts. A fixed order underestimates on meshes that are too coarse, an observed one if changes happen to be
+alike. With one coarser run no order is observed, and coarse meshes fall short of p, so the mean uses one order less instead. Other series reveal
+constant errors, such as that of the time step: an error is at least the distance to a run that is no finer and has a smaller estimate, minus that
+estimate (triangle inequality). That run needs as many coarser ones, or three, because a single change may be small by chance."""
 import math
 
 from couplet.study import fits, table
 
 ORDER = 2
-ENOUGH = 3  # coarser runs beside one whose guess is as good as any
-LOWEST, HIGHEST = 0.5, 3  # observed orders that are believed: even cells may do better than their schemes. Chosen on the committed studies:
+ENOUGH = 3  # coarser runs for a reliable estimate
+LOWEST, HIGHEST = 0.5, 3  # accepted observed orders: even cells may exceed the order of their schemes. Chosen on the committed studies:
 # with a highest of 2 they have 191 of 240 runs within a factor of 2, with 3 or 4 195; with a lowest of 1 the same
-CLEAR = 4  # times its own uncertainty a true error must be where the truth is the study's own best value
+CLEAR = 4  # multiple of its own uncertainty that a true error must have if the reference is the study's own best value
 
 
 def order_of(name, orders=None):
-    """The order of the schemes of a series."""
+    """Order of the schemes of a series."""
     return next((float(p) for word, p in (orders or {}).items() if word in name.split(", ")), ORDER)
 
 
 def of_series(sizes, values, i, order):
-    """From run i and the one or two next coarser."""
+    """Estimate for run i from the one or two next coarser ones."""
     ratio, change = sizes[i] / sizes[i - 1], abs(values[i] - values[i - 1])
     plain = change / (ratio**order - 1)
     if i < 2:
         return math.sqrt(plain * change / (ratio**max(order - 1, min(order, 1)) - 1))
     before = values[i - 1] - values[i - 2]
-    if (values[i] - values[i - 1]) * before <= 0:  # it swings: the larger swing
+    if (values[i] - values[i - 1]) * before <= 0:  # oscillating: uses the larger change
         return max(plain, abs(before) / (ratio**order - 1))
     limit = fits.limit_of(sizes[i - 2:i + 1], values[i - 2:i + 1], 0.1)
     shown = limit.order if limit else (LOWEST if 2 * change >= abs(before) else order)
@@ -40,7 +38,7 @@ def of_series(sizes, values, i, order):
 
 
 def guesses(series, orders=None):
-    """{(name, i): estimated error} of {name: (sizes, values)}, sizes ascending; the coarsest of each has none."""
+    """{(name, i): estimated error} of {name: (sizes, values)} with ascending sizes. The coarsest run of each series has none."""
     own = {(name, i): of_series(*series[name], i, order_of(name, orders)) for name in series for i in range(1, len(series[name][0]))}
     found = {}
     for (name, i), guess in own.items():
@@ -52,14 +50,14 @@ def guesses(series, orders=None):
 
 
 def uncertainty(rows, quantity):
-    """Of the reference over its size, where it is the study's own best value or a number with a stated accuracy; else 0."""
+    """Relative uncertainty of the reference if it is the study's own best value or has a stated accuracy; else 0."""
     if quantity.is_error or isinstance(quantity.reference, (int, float)):
         return float(quantity.given.get("good-to", 0))
     limits = [(max(r.point.size for r in some), limit.gci / abs(limit.value or 1)) for some, limit in
               ((table.series_of(rows)[s], limit) for s, limit in table.limits_of(rows, quantity).items()) if limit]
     if quantity.reference == "finest" or not limits:
         good = [r for r in rows if r.good]
-        if not good:  # nothing to compare: the table of all runs says why
+        if not good:  # nothing to compare; the table of all runs states the reason
             return math.inf
         finest = max(r.point.size for r in good)
         others = [r.errors[quantity.name] for r in good if r.point.size == finest and r.errors.get(quantity.name, 0) > 0]
@@ -68,9 +66,8 @@ def uncertainty(rows, quantity):
 
 
 def of(rows, quantity, clear=CLEAR):
-    """[(estimated, true, name of the run)] of the runs that have coarser ones. A distance from an exact field is a quantity whose
-    true value is 0. Where the truth is the study's own best value, of the runs that are clearly farther from it than it is
-    uncertain."""
+    """[(estimated, true, name of the run)] of runs with coarser ones. The distance from an exact field has the true value 0. If the reference is the
+    study's own best value, only runs whose distance clearly exceeds its uncertainty are included."""
     if not quantity.is_error and quantity.reference is None:
         return []
     runs = table.series_of(rows)
@@ -88,5 +85,5 @@ def of(rows, quantity, clear=CLEAR):
 
 
 def inside(found):
-    """How many are within a factor of 2."""
+    """Number of estimates within a factor of 2."""
     return sum(0.5 <= e / t <= 2 for e, t, _ in found)

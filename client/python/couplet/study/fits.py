@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of a series of refined runs, with a bound of the error that grows where the fit is poor; order, extrapolation and uncertainty of three runs.
+"""Fits of a series of refined runs, with an error bound that grows for a poor fit. Order, extrapolation and uncertainty of three runs.
 
 Richardson's extrapolation with the observed order and the grid convergence index (GCI) with a factor of safety of 1.25 for
 three sizes, after Roache, J. Fluids Eng. 116 (1994) 405, and Celik et al., J. Fluids Eng. 130 (2008) 078001 (their equation
 for the order where the ratios of the sizes differ).
 
-Least squares over the runs after Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104 (doi 10.1016/j.jcp.2014.01.006), here in h = 1/n:
-value(n) = limit + c n^-p with 0.5 <= p <= the formal order + 0.1, each run weighted alike or by n; where the order ends at the lower border or
-the values turn, also limit + c1 n^-1 + c2 n^-2. The fit with the smallest standard deviation counts. Bound of the error:
-F e(n) + s with F = 1.25, or 3 where the order lies below its border or values turn, or 2 where it lies above by over 1 (the formal order
-overestimates there); where the standard deviation s is not below the mean change
-between neighbouring runs, 3 s / change (e(n) + s). The error e(n) is at least the run's own distance from the limit, which holds
+Least squares over the runs after Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104 (doi 10.1016/j.jcp.2014.01.006), here in h = 1/n: value(n) = limit
++ c n^-p with 0.5 <= p <= the formal order + 0.1, with equal weights or weights n. If the order is at its lower limit or the values turn, also limit +
+c1 n^-1 + c2 n^-2. The fit with the smallest standard deviation counts. The error bound is F e(n) + s with F = 1.25, or 3 if the order is below its
+limit or values turn, or 2 if it is too high by more than 1 (the formal order then overestimates). If the standard deviation s is not below the mean
+change between neighboring runs, it is 3 s / change (e(n) + s). The error e(n) is at least the run's own distance from the limit, which includes
 |value - fit| of the paper."""
 import dataclasses
 import math
@@ -18,34 +17,34 @@ import math
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-LOWEST, ABOVE = 0.5, 0.1  # orders: the lowest, and how far above the formal one they may lie
+LOWEST, ABOVE = 0.5, 0.1  # orders: the lowest, and the margin above the formal one
 SAFETY, STEEP, POOR = 1.25, 2.0, 3.0
-DROP = 0.4       # a coarsest run is not used where the standard deviation of the others is below so much of that of all ...
-LEAST = 4        # ... and so many remain, half of all at least
-APART = 1.25     # ratio of two sizes that show a change, at least
-CLEARLY = 0.5    # of the standard deviation of one term: two terms that leave less are taken for an order at its lower border
-KNOWN_LOWEST = 0.25  # order of errors that are known, below which they do not fall
-TIE = 1e-9       # of the values: smaller changes are rounding
+DROP = 0.4       # relative standard deviation of the other runs below which a coarsest run is omitted ...
+LEAST = 4        # ... if so many remain, and at least half of all
+APART = 1.25     # minimum ratio of two sizes to show a change
+CLEARLY = 0.5    # relative standard deviation below which two terms indicate an order at its lower limit
+KNOWN_LOWEST = 0.25  # minimum order of known errors
+TIE = 1e-9       # relative; smaller changes are round-off
 
 
 @dataclasses.dataclass
 class Fit:
     limit: float
     terms: list            # [(c, p)]: value(n) = limit + sum of c n^-p
-    deviation: float       # standard deviation of the values from the fit; 0 where they determine it exactly
+    deviation: float       # standard deviation of the values from the fit; 0 if they determine it exactly
     safety: float          # F
-    poor: float            # s / mean change where that is 1 or more, else 0
-    runs: int              # that were used, the largest ones
-    factor: float = 1.0    # of the error, of the scatter of known errors
-    scale: float = 1.0     # that limit, terms and deviation were divided by
-    seen: tuple = ()       # [(size, distance of the run from the limit)], falling with size
+    poor: float            # s / mean change if that is 1 or more, else 0
+    runs: int              # number of runs used, the largest ones
+    factor: float = 1.0    # factor of the error, from the scatter of known errors
+    scale: float = 1.0     # by which limit, terms and deviation were divided
+    seen: tuple = ()       # [(size, distance of the run from the limit)], decreasing with size
 
     def at(self, n):
         return self.limit + sum(c * n**-p for c, p in self.terms)
 
     def error(self, n):
-        """Largest distance from the limit at this size and above: a curve that crosses its limit is not exact there. Up to the largest run
-        that of the runs themselves, between them by powers: coarse ones follow no order."""
+        """Largest distance from the limit at this size and above, since a curve that crosses its limit is not exact there. Up to the largest run it
+        is that of the runs, interpolated by powers, because coarse ones follow no order."""
         if self.seen and n < self.seen[-1][0]:
             x, y = np.log(np.array(self.seen)).T
             slope = min((y[1] - y[0]) / (x[1] - x[0]), 0.0)
@@ -60,13 +59,13 @@ class Fit:
         return found
 
     def passed(self, n, values):
-        """With the distances of all runs from its limit, none less than that of a larger one."""
+        """Adds the distances of all runs from its limit, each at least that of the next larger run."""
         away = np.abs(values - self.limit)
         least = max(self.error(n[-1]), TIE * np.abs(values).max())
         return dataclasses.replace(self, seen=[(float(a), max(float(away[i:].max()), least)) for i, a in enumerate(n)])
 
     def bound(self, n):
-        """What the error does not exceed in 19 of 20 cases."""
+        """Bound that the error does not exceed in 19 of 20 cases."""
         if self.poor:
             return POOR * self.poor * (self.error(n) + self.deviation)
         return self.safety * self.factor * self.error(n) + self.deviation
@@ -76,8 +75,8 @@ class Fit:
         return self.terms[0][1]
 
     def size_for(self, target, of=None, largest=1e12):
-        """The smallest size whose bound, or what `of` gives of a size, is at most this; None where none up to `largest` has it, as of values
-        that scatter by more."""
+        """Smallest size whose bound, or the result of `of`, is at most `target`. None if there is none up to `largest`, for example if the values
+        scatter more."""
         of = of or self.bound
         if of(largest) > target:
             return None
@@ -89,8 +88,8 @@ class Fit:
 
 
 def solved(n, values, weights, orders):
-    """(limit, constants, standard deviation) of the least squares with these orders."""
-    scale = n[-1]  # the finest: columns of size 1
+    """(limit, constants, standard deviation) of the least-squares fit with these orders."""
+    scale = n[-1]  # the finest: columns of magnitude 1
     basis = np.column_stack([np.ones_like(n), *((n / scale)**-p for p in orders)])
     root = np.sqrt(weights)
     found = np.linalg.lstsq(basis * root[:, None], values * root, rcond=None)[0]
@@ -102,7 +101,7 @@ def deviation_of(squares, count, unknowns):
 
 
 def one_term(n, values, weights, formal):
-    """(deviation, limit, terms, which border the order ends at: -1, 0, 1)."""
+    """(deviation, limit, terms, limit reached by the order: -1, 0, 1)."""
     def squares(p):
         return solved(n, values, weights, (p,))[2]
     highest = formal + ABOVE
@@ -122,7 +121,7 @@ def two_terms(n, values, weights):
 
 
 def apart(n):
-    """The largest size and those far enough below each other to show a change: between sizes that nearly agree noise would decide."""
+    """Largest size and those with sufficient ratios to it, because noise would dominate between similar sizes."""
     chosen = [len(n) - 1]
     for i in range(len(n) - 2, -1, -1):
         if n[i] * APART <= n[chosen[-1]]:
@@ -136,21 +135,21 @@ def turns(n, values):
 
 
 def beyond(n, values, order):
-    """Whether all changes fall by more than this order, as of meshes that are too coarse."""
+    """Returns true if all changes decrease faster than this order, as for meshes that are too coarse."""
     n, values = n[apart(n)], values[apart(n)]
     changes, expected = np.abs(np.diff(values)), np.abs(np.diff(n**-float(order)))
     return len(n) > 2 and bool(np.all(changes[1:] * expected[:-1] < changes[:-1] * expected[1:]))
 
 
 def fit_runs(n, values, formal):
-    """Of all these runs; the weights are normed to a sum of 1."""
+    """Fit of all these runs with normalized weights."""
     alike, weighted = np.full(len(n), 1 / len(n)), n / n.sum()
     best = min((one_term(n, values, w, formal) for w in (alike, weighted)), key=lambda f: f[0])
     if len(n) >= LEAST and formal > 1 and (turns(n, values) or best[-1] < 0):
         two = min((two_terms(n, values, w) for w in (alike, weighted)), key=lambda f: f[0])
         best = two if two[0] < best[0] * (1 if turns(n, values) else CLEARLY) else best
     deviation, limit, terms, border = best
-    if border > 0 and beyond(n, values, formal + 1):  # the formal order through the two finest overestimates what changes that fall faster leave
+    if border > 0 and beyond(n, values, formal + 1):  # for faster decreasing changes the formal order through the two finest overestimates the error
         constant = (values[-2] - values[-1]) / (n[-2]**-formal - n[-1]**-formal)
         deviation, limit, terms = 0.0, values[-1] - constant * n[-1]**-formal, [(float(constant), formal)]
     change = (values.max() - values.min()) / (len(n) - 1)
@@ -161,7 +160,7 @@ def fit_runs(n, values, formal):
 
 
 def diverges(n, values):
-    """Why three or more runs show no limit; empty where they may have one."""
+    """Reason why three or more runs show no limit. Empty if they may have one."""
     n, values = n[apart(n)], values[apart(n)]
     if len(n) < 3:
         return "its sizes are too near to each other to show an order"
@@ -178,19 +177,19 @@ def diverges(n, values):
 
 
 def of_values(sizes, values, formal=2.0):
-    """(Fit, "") of a series whose limit is not known, or (None, reason)."""
+    """(Fit, "") of a series with unknown limit, or (None, reason)."""
     n, values = np.array(sizes, float), np.array(values, float)
     if len(n) < 3:
         return None, f"{len(n)} run{'s' if len(n) != 1 else ''} show no order, three are needed"
-    if np.ptp(values) <= TIE * np.abs(values).max():  # they agree: nothing is left to be seen
+    if np.ptp(values) <= TIE * np.abs(values).max():  # equal values show no change
         return Fit(float(values[-1]), [(0.0, formal)], float(np.ptp(values)), SAFETY, 0.0, len(n)), ""
     reason = diverges(n, values)
     if reason:
         return None, reason
     best = fit_runs(n, values, formal)
     unclear = best.safety > SAFETY or beyond(n, values, formal)
-    for first in range(1, len(n) // 2 + 1):  # runs that are too coarse for their order
-        least = 3 if unclear and beyond(n[first:], values[first:], formal) else LEAST  # changes that fall so fast three runs show as well
+    for first in range(1, len(n) // 2 + 1):  # omits runs that are too coarse for their order
+        least = 3 if unclear and beyond(n[first:], values[first:], formal) else LEAST  # three runs suffice for such fast changes
         if len(n) - first < least or best.deviation <= TIE * np.ptp(values) or diverges(n[first:], values[first:]):
             continue
         fewer = fit_runs(n[first:], values[first:], formal)
@@ -200,8 +199,8 @@ def of_values(sizes, values, formal=2.0):
 
 
 def settled(sizes, errors, formal):
-    """Sizes of known errors without those that a change of sign makes small by chance: none is less than a later one, or than what the
-    formal order leaves of the one before a change of sign."""
+    """Sizes of known errors without those that are small by chance near a change of sign: each error is at least a later one, or the error before the
+    change reduced by the formal order."""
     found = [abs(e) for e in errors]
     for i in range(1, len(found)):
         if errors[i] * errors[i - 1] < 0:
@@ -210,7 +209,7 @@ def settled(sizes, errors, formal):
 
 
 def of_errors(sizes, errors, formal=2.0):
-    """(Fit, "") of a series whose errors are known (signed or not), or (None, reason): a power law, the finest three or four runs."""
+    """(Fit, "") of a series with known (signed or unsigned) errors, or (None, reason): a power law of the finest three or four runs."""
     if len(sizes) < 2:
         return None, "one run shows no order, two are needed"
     if not any(errors):
@@ -226,7 +225,7 @@ def of_errors(sizes, errors, formal=2.0):
     order = min(-float(minus), formal + 1)
     if order < KNOWN_LOWEST:
         return None, f"its error does not fall with size ({e[-2]:.2g}, then {e[-1]:.2g})"
-    level = max(level, math.log(e[-1]))  # through the finest at least
+    level = max(level, math.log(e[-1]))  # at least through the finest
     return Fit(0.0, [(math.exp(level) * float(n[-1])**order, order)], 0.0, 1.0, 0.0, count, math.exp(min(scatter, 1.0))), ""
 
 
@@ -239,7 +238,7 @@ class Limit:
 
 
 def limit_of(sizes, values, lowest=0.2, highest=8):
-    """The limit of the three finest; None where they do not approach one (changes that do not shrink, or alternate)."""
+    """Limit of the three finest runs. None if changes do not decrease, or alternate."""
     if len(values) < 3:
         return None
     (n1, n2, n3), (v1, v2, v3) = sizes[-3:], values[-3:]
@@ -257,7 +256,7 @@ def limit_of(sizes, values, lowest=0.2, highest=8):
 
 
 def slope(x, y):
-    """Exponent of a power law, least squares in the logarithms; None with fewer than two points."""
+    """Exponent of a power law by least squares of logarithms. None with fewer than two points."""
     good = [(a, b) for a, b in zip(x, y) if a > 0 and b > 0]
     if len(good) < 2 or len({a for a, _ in good}) < 2:
         return None
@@ -265,7 +264,7 @@ def slope(x, y):
 
 
 def pareto(points):
-    """Of (cost, error) pairs those that no other beats in both, by cost."""
+    """(cost, error) pairs that no other pair beats in both, sorted by cost."""
     best, front = math.inf, []
     for cost, error in sorted(points):
         if error < best:

@@ -29,16 +29,16 @@ from couplet.study.quantities import quantities_of
 KEYS = {"size", "set", "key", "value", "tolerance", "order", "factor"}  # of a source
 AS_IT_IS, COARSER, COARSEST, TIGHTER, ALL_TIGHTER = "as-it-is", "coarser", "coarsest", "tighter", "all tighter"
 LEAST_ORDER = 0.5
-LARGEST = 4  # sizes up to this many times the largest of the axis are looked at for that of the case
-NOTHING = 0.1  # of the largest part: what is less buys nothing
+LARGEST = 4  # sizes up to this multiple of the largest on the axis are searched for that of the case
+NOTHING = 0.1  # of the largest part; less is not worth reducing
 
 
 @dataclasses.dataclass
 class Source:
     name: str
-    changes: object  # (factor) -> {key: value}; 1 as it is, above 1 coarser, below 1 finer
+    changes: object  # (factor) -> {key: value}; 1 unchanged, above 1 coarser, below 1 finer
     tolerance: bool
-    ratio: float     # coarser by this, or the tolerance tighter by this
+    ratio: float     # ratio of coarsening, or of tightening the tolerance
     order: float
 
 
@@ -61,7 +61,7 @@ def value_at(data, key):
 
 
 def mesh_source(case, section, participant, data):
-    """The refining axis at the size that gives the values of `data`; None where there is no such size."""
+    """Refining axis at the size that gives the values of `data`, or None."""
     axis = Axes(case, section, participant).refining if section.get("axes") else None
     if not axis:
         return None
@@ -74,7 +74,7 @@ def mesh_source(case, section, participant, data):
 
 
 def sources_of(case, participant, base=None):
-    """`base`: what the study's `set` and --set change, {absolute key: value}."""
+    """`base` contains the changes of the study's `set` and --set, {absolute key: value}."""
     section, base = case.study, base or {}
     if section.get("sources"):
         return [source_of(n, g, case.file) for n, g in section["sources"].items()]
@@ -89,7 +89,7 @@ def sources_of(case, participant, base=None):
 
 
 def seconds(text):
-    """Of "0.1 s" or a number; None: not known."""
+    """Seconds of "0.1 s" or a number. None if unknown."""
     words = str(text).split()
     try:
         return float(words[0]) if words[1:] in ([], ["s"]) else None
@@ -103,7 +103,7 @@ def unit_of(quantity):
 
 
 def order_of(own, coarser, coarsest, source):
-    """By which the values of three runs converge, within bounds."""
+    """Order of convergence of three values, within limits."""
     first, second = own - coarser, coarser - coarsest if coarsest is not None else 0.0
     if first * second <= 0:
         return source.order
@@ -123,7 +123,7 @@ def runs_of(sources):
 
 
 def parts_of(values, sources):
-    """The parts of the error, and the orders, by source; `values`: of the runs by name."""
+    """Contributions to the error, and the orders, by source. `values` are those of the runs by name."""
     own, parts, orders = values[AS_IT_IS], {}, {}
     for s in sources:
         if s.tolerance:
@@ -138,7 +138,7 @@ def parts_of(values, sources):
 
 
 def advice(parts):
-    """What to do about the error."""
+    """Advice on the error."""
     worst = max(parts, key=parts.get)
     idle = [name for name, value in parts.items() if value < NOTHING * parts[worst]]
     return f"the {worst} dominates" + (f": improving {' or '.join(idle)} would not help" if idle else "")
@@ -163,7 +163,7 @@ def run(case, out, arguments, say):
         try:
             expect(records[task].state == "done", f"{name}: {records[task].reason}")
             values[name] = {q.name: q.value(task.results) for q in quantities_of(case, section, participant)}
-        except (Wrong, LookupError) as error:  # the coarsest run may be too coarse to hold or to oscillate
+        except (Wrong, LookupError) as error:  # the coarsest run may be too coarse to converge or to oscillate
             expect(name.endswith(COARSEST), f"{name}: {error}")
     for quantity in quantities_of(case, section, participant):
         of_runs = {name: found[quantity.name] for name, found in values.items()}

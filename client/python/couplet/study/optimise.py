@@ -32,7 +32,7 @@ from couplet.study.variants import Variant
 
 # -- the search -------------------------------------------------------------------------------------------------------
 def first_points(dimensions):
-    """The middle, and on each axis two points; for two variables the corners between them, too. In the unit cube."""
+    """Center and two points per axis, plus the corners between them for two variables, in the unit cube."""
     points = [np.full(dimensions, 0.5)]
     for axis in range(dimensions):
         for value in (0.1, 0.9):
@@ -45,7 +45,7 @@ def first_points(dimensions):
 
 
 def surface(points, values):
-    """Through all points; a plane beside it carries the trend. Values that failed (inf) count as worse than all others."""
+    """Surface through all points, with a plane for the trend. Failed values (inf) count as worse than all others."""
     values = np.asarray(values, float)
     good = values[np.isfinite(values)]
     worst = good.max() + (np.ptp(good) or 1) if len(good) else 1.0
@@ -55,8 +55,8 @@ def surface(points, values):
 
 
 def next_points(points, values, count, nearest):
-    """`count` new points and the least value that the surface expects: its minimum, then others of low expected value far from
-    what is known. None of them closer than `nearest` to a known one."""
+    """`count` new points and the expected minimum of the surface: the minimum, then others with low expected values far from known ones. None is
+    closer than `nearest` to a known one."""
     dimensions, model = len(points[0]), surface(points, values)
     grid = np.array(list(itertools.product(np.linspace(0, 1, {1: 201, 2: 41, 3: 15}.get(dimensions, 8)), repeat=dimensions)))
     expected = model(grid)
@@ -71,7 +71,7 @@ def next_points(points, values, count, nearest):
     span = np.ptp(np.asarray(values)[np.isfinite(values)]) or 1
     while len(chosen) < count:
         known = cdist(grid, np.array(points + chosen)).min(axis=1)
-        score = expected - 0.5 * span * known  # low, or far from all that is known
+        score = expected - 0.5 * span * known  # low, or far from all known points
         score[known < nearest] = np.inf
         k = int(np.argmin(score))
         if not np.isfinite(score[k]):
@@ -81,8 +81,8 @@ def next_points(points, values, count, nearest):
 
 
 def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
-    """Least value of a function on the unit cube. `evaluate(points)` gives a value per point (inf: failed), `together` at a time.
-    Gives (best point, its value, all points, all values). Reports values times `sign`, and at the end why it ended."""
+    """Minimizes a function on the unit cube. `evaluate(points)` returns a value per point (inf: failed), `together` at a time. Returns (best point,
+    its value, all points, all values). Reports values times `sign`, and finally why it ended."""
     points, values = [], []
     todo = first_points(dimensions)[:runs]
     quiet = 0
@@ -98,7 +98,7 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
             say(f"optimise: ends because all {runs} runs are used (study.optimise.runs)")
             break
         todo, wanted = next_points(points, values, min(together, left), 0.02)
-        # The surface expects nothing better three times in a row: it has converged.
+        # Converged if the surface expects no improvement three times in a row.
         quiet = quiet + 1 if best - wanted <= tolerance * abs(best) else 0
         if quiet > 2:
             say(f"optimise: ends after {len(points)} of {runs} runs: three times in a row nothing better by more than "
@@ -116,7 +116,7 @@ def is_number(value):
 
 
 class Variable:
-    """One of the file's variables: its keys and what they are at a place x of its range, 0 <= x <= 1."""
+    """Variable of the file: its keys and their values at a position x of its range, 0 <= x <= 1."""
 
     def __init__(self, name, spec, place):
         place = f"{place}.{name}"
@@ -141,7 +141,7 @@ class Variable:
 
 
 class Search:
-    """The section of a case: what is sought, over which variables, in how many runs."""
+    """Section of a case: the objective, the variables, and the number of runs."""
 
     def __init__(self, case):
         section, place = case.study.get("optimise"), f"{case.asked}: study.optimise"
@@ -171,7 +171,7 @@ class Search:
         self.check_keys(place)
 
     def check_keys(self, place):
-        """A key that two of them set would have the value of one."""
+        """Rejects a key that two variables set."""
         seen = dict.fromkeys(self.fixed, "'set'")
         for variable in self.variables:
             for key in variable.changes(0, self.case, self.participant):
@@ -188,8 +188,7 @@ class Search:
 
 
 class Runs:
-    """Runs of a case, one per point; each in a folder of its own, found again if it was made before. `table`: written after each
-    round."""
+    """Runs of a case, one per point, each in a folder of its own where it is found again. `table` is written after each round."""
 
     def __init__(self, search, folder, jobs, further=None, again=False, say=print):
         self.search, self.folder, self.jobs, self.further, self.again, self.say = search, pathlib.Path(folder), jobs, further or {}, again, say
@@ -201,7 +200,7 @@ class Runs:
                        timeout=86400)
 
     def value(self, task, record):
-        """What the search makes small; infinite where there is none."""
+        """Value to minimize; infinite if there is none."""
         if record.state != "done":
             return math.inf
         found = {quantity: value for (quantity, _), value in task.summary().items()}

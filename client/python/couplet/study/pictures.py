@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of a study: error against time with the Pareto front, error against size with the observed order, growth of the
-cost with its exponent, cost by phase."""
+"""Pictures of a study: error against time with the Pareto front, error against size with the observed order, growth of the cost with its exponent,
+and cost by phase."""
 import itertools
 import textwrap
 
@@ -18,13 +18,13 @@ CLOCKS = {"cpu": "processor time of the run [s]", "wall": "wall time of the run 
 MARKS = "osD^vP*Xh<>"
 
 
-WIDEST_Y = 40  # characters of a line beside the height of a panel
-MOST = 8      # series in one panel; beyond, a picture has several
-NARROW = 62   # characters of a title in the width of one panel
+WIDEST_Y = 40  # characters per line beside the height of a panel
+MOST = 8      # series per panel; a picture with more has several panels
+NARROW = 62   # characters per title line in the width of one panel
 
 
 def differing(rows):
-    """Series, and the axes in which they differ with the labels of each."""
+    """Series, and the axes in which they differ with their labels."""
     series = series_of(rows)
     sizes = {a for some in series.values() for r in some for a, v in r.point.labels.items() if v not in r.series.split(", ")}
     axes = [a for a in next(iter(series.values()))[0].point.labels if a not in sizes] if series else []
@@ -33,8 +33,7 @@ def differing(rows):
 
 
 def panels(rows):
-    """[(heading, {series: its name in the legend})], at most MOST series in each: divided by the values of as few axes as needed,
-    whose panels are as few as possible."""
+    """[(heading, {series: its name in the legend})] with at most MOST series each, divided by as few axes and into as few panels as possible."""
     series, values = differing(rows)
     if len(series) <= MOST:
         return [("", {name: name for name in series})]
@@ -54,7 +53,7 @@ def panels(rows):
 
 
 def divided(names):
-    """Panels of names that nothing but their order groups."""
+    """Panels of names that are only grouped by their order."""
     names = list(names)
     return [("", {n: n for n in names[k:k + MOST]}) for k in range(0, len(names), MOST)]
 
@@ -66,7 +65,7 @@ def looks(found):
 
 
 def figure(title, count=1):
-    """(figure, [axes]) of so many panels with the same scales, under a title that is wrapped where it is longer than the picture is wide."""
+    """(figure, [axes]) of `count` panels with equal scales, with a title wrapped to the width of the picture."""
     columns = min(count, 2 if count in (2, 4) else 3)
     lines = -(-count // columns)
     width, height = (6.6, 4.4) if count == 1 else (4.6 * columns, 4.5 * lines + 0.3)
@@ -74,13 +73,13 @@ def figure(title, count=1):
     made.suptitle(textwrap.fill(title, int(NARROW * width / 6.6)), fontsize=10)
     for one in axes.flat[count:]:
         one.remove()
-    for column in range(columns):  # below the last panel of a column stand the numbers
+    for column in range(columns):  # numbers are shown below the last panel of a column
         axes[(count - 1 - column) // columns, column].xaxis.set_tick_params(labelbottom=True)
     return made, list(axes.flat[:count])
 
 
 def plain(axis):
-    """Numbers where a logarithmic axis spans little."""
+    """Plain numbers for a logarithmic axis with a small range."""
     low, high = axis.get_view_interval()
     if high / max(low, 1e-300) < 30:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -93,7 +92,7 @@ def finish(made, axes, file, xlabel="", ylabel=""):
         one.grid(which="both", alpha=0.25)
         plain(one.xaxis), plain(one.yaxis)
         handles, labels = one.get_legend_handles_labels()
-        if len(labels) > 1 or labels and len(axes) > 1:  # of several panels below each, where it hides nothing
+        if len(labels) > 1 or labels and len(axes) > 1:  # for several panels below each one, where it hides nothing
             one.legend(fontsize=7, framealpha=0.7, **({"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 1 + (max(map(len, labels)) < 36)} if len(axes) > 1 else {}))
     made.supxlabel(xlabel, fontsize=10), made.supylabel(textwrap.fill(ylabel, WIDEST_Y), fontsize=10)
     made.savefig(file)
@@ -102,7 +101,7 @@ def finish(made, axes, file, xlabel="", ylabel=""):
 
 
 def error_against_time(title, rows, quantity, clock, file, others=()):
-    """`others`: (name, [(cost, error)]) of other programs: beside ours where there is room, else in panels of their own. The front is that
+    """`others` are (name, [(cost, error)]) of other programs, in the same panel if there is space. The front is that of all, in every panel.
     of all of them, in every panel."""
     series = {name: [(getattr(r.record, clock), r.errors[quantity.name], r) for r in some if r.errors.get(quantity.name, 0) > 0]
               for name, some in series_of(rows).items()}
@@ -132,7 +131,7 @@ def error_against_time(title, rows, quantity, clock, file, others=()):
 
 
 def over_size(title, rows, value, words):
-    """(figure, [axes], points drawn): a line for each series of which `words`([(size, value), ...]) has something for the legend."""
+    """(figure, [axes], points drawn) with a line for each series for which `words`([(size, value), ...]) returns a legend text."""
     found, series, drawn = panels(rows), series_of(rows), []
     styles = looks(found)
     made, axes = figure(title, len(found))
@@ -169,7 +168,7 @@ def growth(title, rows, clock, refinement, file):
 
 
 def scatter(title, found, file):
-    """`found`: (estimated, true, name)."""
+    """`found` contains (estimated, true, name)."""
     made, (axes,) = figure(title)
     estimated, true = np.array([f[0] for f in found]), np.array([f[1] for f in found])
     axes.loglog(true, estimated, "o", markersize=4)
@@ -180,7 +179,7 @@ def scatter(title, found, file):
 
 
 def phases(title, rows, file, most=24):
-    """Shares of the phases of each run, with its processor seconds; beyond `most` runs the costliest of each series."""
+    """Shares of the phases of each run, with its processor seconds. Beyond `most` runs, only the most expensive one of each series."""
     good = [r for r in rows if r.good and r.record.phases]
     if len(good) > most:
         good = [some[-1] for some in series_of(good).values()][:most]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cheapest setting for a requested error, predicted from few cheap runs, then run.
+"""Finds the cheapest setting for a requested error, predicted from few cheap runs, and runs it.
 
-Of each series (combination of all axes but the refinement) up to three of the smallest sizes are run. A fit of its values over the
-sizes (fits.py) gives the size that meets the target with a bound of the error, seconds(n) = a + b n^q its cost. The series of the
-least predicted cost continues with larger sizes until a run meets the target. Series without a fit continue as well where that costs less than
-what is predicted for the best. Of each series that is not chosen the reason is reported."""
+For each series (combination of all axes except the refinement) up to three of the smallest sizes are run. A fit of its values over the sizes
+(fits.py) gives the size that meets the target with an error bound, and seconds(n) = a + b n^q its cost. The series with the lowest predicted cost
+continues with larger sizes until a run meets the target. Series without a fit continue if that costs less than the best prediction. A reason is
+reported for each rejected series."""
 import json
 import math
 import re
@@ -13,16 +13,16 @@ from couplet.runs import expect
 from couplet.study import table
 from couplet.study.series import ENOUGH, GROWTH, ROUNDS, Prediction, Refusal, Series
 
-NEAR = 1.5       # the final size over the largest that was tried, at most, before it is run
-LEAP = 3.0       # ... the same, at most, where a run between costs too much
-AT_ONCE = 1.15   # no run between for less
-SHORT = 1.0      # [s]; finals that take less may cost many runs before them
-BEFORE = 3.0     # seconds spent before the final run over its own, where that is over SHORT ...
-RESERVE = 2.0    # ... of which pilots and runs between may take so much: the rest is for a final run that leaves too much
-TRY = 0.7        # of the best predicted cost: a series that may be cheaper than that, and has a larger run for less, goes on
-TOO_GOOD = 0.4   # of the target: a run that leaves less is no answer where a smaller size would do ...
-TOO_MUCH = 1.4   # ... nor one that takes so much longer than that
-FREE = 10.0      # [s] that are spent in any case before a search without any prediction ends
+NEAR = 1.5       # maximum ratio of the final size to the largest one tried
+LEAP = 3.0       # ... the same if an intermediate run is too expensive
+AT_ONCE = 1.15   # ratio up to which no intermediate run is made
+SHORT = 1.0      # [s]; shorter final runs may be preceded by many runs
+BEFORE = 3.0     # maximum ratio of the time before the final run to its own, if that exceeds SHORT ...
+RESERVE = 2.0    # ... of which pilots and intermediate runs may take so much; the rest is for a failed final run
+TRY = 0.7        # a series continues if it may be cheaper than this fraction of the best prediction and has a cheaper larger run
+TOO_GOOD = 0.4   # of the target: a smaller error is no answer if a smaller size would do ...
+TOO_MUCH = 1.4   # ... nor a run that takes so much longer than that
+FREE = 10.0      # [s] to spend in any case before a search without prediction ends
 
 
 def target_of(text):
@@ -44,12 +44,12 @@ class Search:
         return sum(s.spent() for s in self.every)
 
     def predictions(self):
-        """[(series, Prediction)] by cost."""
+        """[(series, Prediction)] sorted by cost."""
         found = [(s, p) for s in self.every if s.rows and isinstance(p := s.predict(self.target), Prediction)]
         return sorted(found, key=lambda pair: pair[1].seconds)
 
     def affords(self, seconds, final):
-        """Whether a run before the final one may take so long."""
+        """Returns true if a run before the final one may take so long."""
         return self.spent() + seconds <= max(RESERVE * final, BEFORE * SHORT)
 
     def following(self, series):
@@ -57,7 +57,7 @@ class Search:
 
     # -- the first runs
     def pilots(self):
-        """The three smallest sizes of each series; the third, of the costlier ones, only where the best prediction so far affords it."""
+        """Runs the three smallest sizes of each series. Expensive third runs are skipped unless the best prediction allows them."""
         found = {}
         for point in self.study.axes.points():
             labels = {k: v for k, v in point.labels.items() if k != self.refining.name}
@@ -83,7 +83,7 @@ class Search:
 
     # -- larger ones
     def candidates(self, best, chosen):
-        """[(seconds, series)] that may still show to be cheaper: without a prediction, or with one from few runs that may be too high."""
+        """[(seconds, series)] that may still turn out cheaper: without prediction, or with an uncertain one from few runs."""
         found = []
         for i, series in enumerate(self.every):
             if series is chosen or series.failed or not series.rows or len(series.rows) >= ROUNDS:
@@ -96,7 +96,7 @@ class Search:
         return [(seconds, series) for seconds, _, series in sorted(found, key=lambda f: f[:2])]
 
     def step(self):
-        """One run more. True: the search has ended, with (series, row, prediction) in `found`."""
+        """Makes one more run. Returns true at the end, with (series, row, prediction) in `found`."""
         series, best = next(iter(self.predictions()), (None, None))
         others = self.candidates(best, series)
         if others:
@@ -121,7 +121,7 @@ class Search:
         return False
 
     def next_size(self, series, best):
-        """The size predicted, or one on the way there that makes the prediction surer."""
+        """Predicted size, or an intermediate one that improves the prediction."""
         largest = series.sizes()[-1]
         if best.size <= NEAR * largest:
             return best.size
@@ -132,7 +132,7 @@ class Search:
         return between
 
     def smaller(self, series, row):
-        """The prediction of a smaller size where the row is far better, or costlier, than asked and the runs before may cost one more."""
+        """Prediction of a smaller size if the row is much better or more expensive than requested and one more run is affordable."""
         if series.failed:
             return None
         found, left = series.predict(self.target), series.left(row)
@@ -142,7 +142,7 @@ class Search:
         return found if much and (found.seconds <= SHORT or self.spent() <= BEFORE * found.seconds) else None
 
     def settle(self, series, best, row):
-        """A run that is there meets the target: it is the answer, unless a smaller size would do."""
+        """Accepts an existing run that meets the target, unless a smaller size would do."""
         less = self.smaller(series, row)
         if less:
             self.say(f"{series.name}: size {row.point.size:g} is better than asked; size {less.size:g} should do in {less.seconds:.3g} s")
@@ -167,7 +167,7 @@ class Search:
 
 
 def others(search, chosen, row):
-    """Of each other series why it was not chosen."""
+    """Reasons why the other series were rejected."""
     lines, reference = [], chosen.cost(row) if row is not None else None
     for series in search.every:
         if series is chosen:
@@ -185,7 +185,7 @@ def others(search, chosen, row):
 
 
 def seen_from_others(search, chosen, row):
-    """What other series say at least of the error of a run: the distance to the limit of one that is surer, less its bound."""
+    """Lower bound of a run's error from other series: its distance from a more certain limit minus the bound of that."""
     least, who = 0.0, ""
     for series in search.every:
         if series is chosen or series.known or not series.rows:
@@ -201,7 +201,7 @@ def seen_from_others(search, chosen, row):
 
 
 def said(search, series, row, predicted):
-    """The result as numbers and as lines."""
+    """Result as numbers and as lines."""
     target, quantity = search.target, search.quantity
     rest = others(search, series, row)
     lines = [f"  {o['series']}: not chosen: {o['reason']}" for o in rest]

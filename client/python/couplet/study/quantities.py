@@ -38,7 +38,7 @@ def module(file):
 
 
 def function_of(folder, text):
-    """Of 'FILE.py: FUNCTION', the file beside a case."""
+    """Function of 'FILE.py: FUNCTION', a file beside the case."""
     file, function = (part.strip() for part in text.split(":"))
     return getattr(module(str(folder / file)), function)
 
@@ -48,14 +48,14 @@ def seconds(value):
 
 
 def maxima(t, y):
-    """Times of the tops, each of the parabola through three samples."""
+    """Times of the maxima, from the parabola through three samples."""
     i = 1 + np.nonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:]))[0]
     bend = y[i - 1] - 2 * y[i] + y[i + 1]
     return t[i] - np.where(bend < 0, 0.5 * (t[i + 1] - t[i]) * (y[i + 1] - y[i - 1]) / np.where(bend < 0, bend, -1), 0)
 
 
 def top(t, y):
-    """(time, value) of the largest value, by the parabola through its three samples where it does not lie at an end."""
+    """(time, value) of the largest value, from the parabola through three samples unless it is at an end."""
     i = int(np.argmax(y))
     if not 0 < i < len(y) - 1:
         return t[i], y[i]
@@ -64,7 +64,7 @@ def top(t, y):
 
 
 def reduced(t, y, at):
-    """One number of a series."""
+    """Reduces a series to one number."""
     if at == "last":
         return y[-1]
     if at == "first":
@@ -93,7 +93,7 @@ class Quantity:
 
     @property
     def is_error(self):
-        """Whether what is read is an error already."""
+        """Returns true if the value is already an error."""
         return self.given.get("is") == "error" or "exact" in self.given or "against" in self.given
 
     @property
@@ -130,8 +130,8 @@ class Quantity:
         return float(np.linalg.norm(gap) / np.linalg.norm(wanted))
 
     def norm(self, series):
-        """Relative L2 norm of the difference from the exact field at the last output: over the cells, or over the points by their
-        shares of them."""
+        """Relative L2 norm of the difference from the exact field at the last output, over the cells, or over the points with their shares of
+        cells."""
         i = len(series.times) - 1
         field, at_points = series.field(i, self.given["field"]), series.is_at_points(i, self.given["field"])
         centres, weight = (series.reference(), series.shares_of_points()) if at_points else (series.centres(), series.volumes())
@@ -145,7 +145,7 @@ class Quantity:
 
 
 def check_exact(formula, where):
-    """Before any run: whether the exact field can be computed."""
+    """Checks before any run that the exact field can be computed."""
     try:
         evaluate(formula, {"pi": np.pi, **{n: np.full(1, 0.5) for n in "xyzt"}}, FUNCTIONS)
     except ValueError as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report of a study: Markdown beside its pictures, and one HTML page that holds everything (no network, no other file)."""
+"""Report of a study: Markdown beside its pictures, and one self-contained HTML page."""
 import base64
 import html
 import pathlib

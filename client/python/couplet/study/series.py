@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One curve of --for-error: the runs of growing size of one combination, what they leave and what a size would leave and cost."""
+"""One curve of --for-error: runs of growing size of one combination, their errors, and predicted errors and costs."""
 import dataclasses
 import math
 
@@ -7,42 +7,42 @@ import numpy as np
 
 from couplet.study import estimates, fits
 
-AIM, AIM_BOUND = 0.9, 1.2  # of the target: error and bound that a size is chosen by
-ENOUGH, SURE = 1.1, 1.35   # of the target: error and bound of a run that is taken
-DOWN = 2         # a size below all that were run is at most so much smaller: errors of coarse runs follow no power
-FARTHEST = 64    # times the largest size that was run: beyond it there is no prediction
-GROWTH = 1.4     # of the sizes tried
-NOISE = 0.5      # of the target: the standard deviation of values from their fit, at most
-STRIDE = 1.25    # of the size after two predictions that left too much
-FEW = 4          # runs, up to which an order may be that of coarse runs
-ROUNDS = 12      # runs of one series
+AIM, AIM_BOUND = 0.9, 1.2  # of the target: error and bound that determine a size
+ENOUGH, SURE = 1.1, 1.35   # of the target: error and bound of an accepted run
+DOWN = 2         # maximum reduction below all sizes that were run, since errors of coarse runs follow no power law
+FARTHEST = 64    # maximum ratio of a predicted size to the largest that was run
+GROWTH = 1.4     # ratio of the tried sizes
+NOISE = 0.5      # of the target: maximum standard deviation of values from their fit
+STRIDE = 1.25    # factor of the size after two predictions with too large errors
+FEW = 4          # number of runs up to which the order may be that of coarse runs
+ROUNDS = 12      # maximum number of runs of one series
 
 
 @dataclasses.dataclass
 class Prediction:
-    """What meets a target."""
+    """Size that meets a target."""
     size: float
     error: float    # expected
     bound: float
     seconds: float
-    cheap: float    # seconds of the size whose expected error is the target, by the formal order where that is less, and ...
-    costly: float   # ... of the size whose threefold expected error is
+    cheap: float    # seconds of the size whose expected error is the target, by the formal order if that is less, and ...
+    costly: float   # ... of the size with a third of that error
 
 
 @dataclasses.dataclass
 class Refusal:
-    """Why a series has no prediction. `hopeful`: more runs may give one."""
+    """Reason why a series has no prediction. `hopeful` if more runs may give one."""
     reason: str
     hopeful: bool = True
 
 
 def telling(seconds):
-    """Which runs predict larger ones: not those that cost more than a larger one, with another solver or on a busy machine."""
+    """Flags runs that predict larger ones. Excludes those that cost more than a larger run (another solver or a busy machine)."""
     return [i for i, t in enumerate(seconds) if all(t <= 1.05 * later for later in seconds[i + 1:])]
 
 
 def power_cost(sizes, seconds):
-    """(a, b, q) of a + b n^q, start-up and work, neither negative, least squares of the relative misfit; the latest runs say most."""
+    """(a, b, q) of a + b n^q (startup and work), nonnegative, by least squares of the relative misfit, weighted to the latest runs."""
     keep = telling(seconds)
     n, t = np.array(sizes, float)[keep], np.array(seconds, float)[keep]
     best = None
@@ -50,11 +50,11 @@ def power_cost(sizes, seconds):
         basis = np.column_stack([np.ones_like(n), (n / n[-1])**q]) / t[:, None]
         weight = np.sqrt(n / n[-1])[:, None]
         ab = np.linalg.lstsq(basis * weight, weight[:, 0], rcond=None)[0]
-        if ab[0] < 0:  # no start-up to be seen
+        if ab[0] < 0:  # no startup is visible
             ab = np.array([0, 1 / basis[:, 1].mean()])
         if len(n) < 2 or ab[1] <= 0:
             continue
-        misfit = float((((basis @ ab - 1) * weight[:, 0]) ** 2).sum()) + 1e-3 * (q - 3) ** 2  # undecided: as a solver in space
+        misfit = float((((basis @ ab - 1) * weight[:, 0]) ** 2).sum()) + 1e-3 * (q - 3) ** 2  # favors the cost of a solver in 3-D if undecided
         if best is None or misfit < best[0]:
             best = (misfit, ab[0], ab[1] / n[-1]**q, q)
     return best[1:] if best else (float(t[-1]), 0.0, 1.0)
@@ -65,10 +65,10 @@ class Series:
         self.study, self.quantity, self.labels, self.rows = study, quantity, labels, []
         self.name = ", ".join(v for k, v in labels.items() if k != study.axes.refining.name) or "the case"
         self.formal = estimates.order_of(self.name, quantity.given.get("orders"))
-        self.failed = ""   # why it is not run any more
-        self.short = ""    # why its third size was not run
+        self.failed = ""   # reason to stop running it
+        self.short = ""    # reason why its third size was skipped
         self.fitted = {}   # by the number of runs
-        self.misses = 0    # runs of a predicted size that left too much
+        self.misses = 0    # runs of a predicted size with too large errors
 
     # -- runs
     def sizes(self):
@@ -94,17 +94,17 @@ class Series:
             return self.cost(self.rows[-1]) * max(1, size / self.rows[-1].point.size)
         a, b, q = power_cost(self.sizes(), [self.cost(r) for r in self.rows])
         nearest = min(self.rows, key=lambda r: abs(math.log(r.point.size / size)))
-        # through the nearest run: its misfit is that of this one, too
+        # through the nearest run, whose misfit also applies to this one
         return self.cost(nearest) / (a + b * nearest.point.size**q) * (a + b * size**q)
 
     # -- errors
     @property
     def known(self):
-        """Whether errors need no extrapolation."""
+        """Returns true if errors are known without extrapolation."""
         return self.quantity.is_error or isinstance(self.quantity.reference, (int, float))
 
     def values(self):
-        """Errors where they are known, else values."""
+        """Errors if they are known, else values."""
         return [self.exact(r) if self.known else r.values[self.quantity.name] for r in self.rows]
 
     def exact(self, row):
@@ -119,7 +119,7 @@ class Series:
         return self.fitted[len(self.rows)]
 
     def fit_of_all(self):
-        """(Fit, "") or (None, reason), of relative errors where the quantity has them."""
+        """(Fit, "") or (None, reason), of relative errors if the quantity has them."""
         if self.known:
             return fits.of_errors(self.sizes(), self.values(), self.formal)
         found, reason = fits.of_values(self.sizes(), self.values(), self.formal)
@@ -133,7 +133,7 @@ class Series:
                                    seen=[(n, e / scale) for n, e in found.seen]), ""
 
     def left(self, row):
-        """(error, bound) of a run; None without a fit."""
+        """(error, bound) of a run. None without a fit."""
         if self.known:
             index = self.rows.index(row)
             return (fits.settled(self.sizes(), self.values(), self.formal)[index],) * 2
@@ -143,7 +143,7 @@ class Series:
         return fit.error(row.point.size), fit.bound(row.point.size)
 
     def meets(self, row, target):
-        """Three runs may show the formal order by chance: a fourth confirms it before an error that is not known is claimed."""
+        """Returns true if a run meets the target. Three runs may show the formal order by chance, so an estimated error needs a fourth."""
         if not self.known and len(self.rows) < fits.LEAST and not self.short:
             return False
         left = self.left(row)
@@ -154,7 +154,7 @@ class Series:
 
     # -- what a target needs
     def predict(self, target):
-        """Prediction or Refusal."""
+        """Returns a Prediction or Refusal."""
         if self.failed:
             there = next((r for r in self.rows if self.meets(r, target)), None)
             return Prediction(there.point.size, *self.left(there), *[self.cost(there)] * 3) if there else Refusal(self.failed, False)
@@ -176,7 +176,7 @@ class Series:
         return Prediction(size, fit.error(size), fit.bound(size), seconds, min(cheap, seconds, self.at_best(target, fit.scale)), max(costly, seconds))
 
     def at_best(self, target, scale):
-        """Seconds, were the formal order that of the two finest of few runs: coarse runs may show less than there is."""
+        """Seconds if the two finest of few runs followed the formal order, since coarse runs may show a lower one."""
         if self.known or len(self.rows) > FEW:
             return math.inf
         (n1, n2), (v1, v2) = self.sizes()[-2:], self.values()[-2:]
@@ -184,7 +184,7 @@ class Series:
         return self.seconds(max((constant / target) ** (1 / self.formal), self.rows[0].point.size))
 
     def size_between(self, wanted, target):
-        """A size that may be run: that of a run which meets the target, or one above all that do not."""
+        """Permitted size: that of a run that meets the target, or one above all that do not."""
         rounded, above = self.study.axes.refining.round, [r for r in self.rows if r.point.size >= wanted - 1e-9]
         refused = max((r.point.size for r in self.rows if not self.meets(r, target)), default=0)
         size = rounded(wanted, up=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A study by axes: its runs, its table, its pictures, its report."""
+"""Study by axes: its runs, table, pictures and report."""
 import pathlib
 import re
 
@@ -15,7 +15,7 @@ KEYS = {"participant", "alone", "axes", "quantities", "set", "leave-out", "clock
 
 
 def short(reason):
-    """Of a failed run, for a table: without the arguments that a refusal begins with."""
+    """Reason of a failed run for a table, without the arguments at the start of a rejection."""
     refused = re.sub(r"^exit code \d+: couplet: The job cannot start: / \[\w+\] (--set .*?: (?=\w+\.))?", "refused: ", reason)
     return (refused if refused != reason else f"failed: {reason}")[:260]
 
@@ -43,15 +43,15 @@ class Study:
                     float(self.section.get("timeout", 3600)))
 
     def run(self, points, jobs=1, again=False, say=print):
-        """Rows of these points; runs that are there are not made again."""
+        """Rows of these points. Existing runs are not repeated."""
         tasks = [self.task(point) for point in points]
         records = run_all(tasks, jobs, again, say)
         rows = table.rows_of(self.axes, self.quantities, points, tasks, records)
         return rows
 
     def others(self, peers):
-        """Points of other programs beside ours, by processor time: {quantity: [(name, [(seconds, error)])]}, from the rows `peers` and from
-        functions of a file beside the case."""
+        """Points of other programs by processor time: {quantity: [(name, [(seconds, error)])]}, from the rows `peers` and from functions of a file
+        beside the case."""
         found = {q.name: [(name, [(r.record.cpu, r.errors[q.name]) for r in some if r.errors.get(q.name, 0) > 0]) for name, some in table.series_of(peers).items()]
                  for q in self.quantities}
         for quantity, word in (self.section.get("peers") or {}).items():
@@ -64,8 +64,8 @@ class Study:
         return {quantity: [(name, points) for name, points in some if points] for quantity, some in found.items()}
 
     def report(self, rows, peers=(), why=None):
-        """Writes runs.csv, the pictures, report.md and report.html; gives the page. `peers`: rows of other programs on the same case;
-        `why`: {program: why it did not run}."""
+        """Writes runs.csv, the pictures, report.md and report.html, and returns the page. `peers` are rows of other programs on the same case, `why`
+        is {program: reason why it did not run}."""
         self.out.mkdir(parents=True, exist_ok=True)
         against = table.set_errors(rows, self.quantities, peers)
         table.write(self.out / "runs.csv", rows, self.axes, self.quantities)

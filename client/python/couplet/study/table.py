@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One row per run: its axes, what it gave, how far off that is, what it cost."""
+"""One row per run: its axes, values, errors and costs."""
 import csv
 import math
 import re
@@ -10,13 +10,13 @@ from couplet.study.axes import Point
 
 COSTS = ("wall", "cpu", "work", "memory", "steps", "iterations", "spread")
 HEADS = {"wall": "wall [s]", "cpu": "processor [s]", "work": "work [s]", "memory": "memory [MB]", "spread": "spread of processor [1]"}
-ITSELF = "itself"  # a quantity that is an error already
+ITSELF = "itself"  # reference of a quantity that is already an error
 
 
 class Row:
     def __init__(self, point, record, series):
         self.point, self.record, self.series = point, record, series
-        self.values, self.errors, self.reason = {}, {}, re.sub(r" \(see \S+\)$", "", record.reason)  # a log's place says nothing elsewhere
+        self.values, self.errors, self.reason = {}, {}, re.sub(r" \(see \S+\)$", "", record.reason)  # a log's location is meaningless elsewhere
 
     @property
     def good(self):
@@ -24,7 +24,7 @@ class Row:
 
 
 def rows_of(axes, quantities, points, tasks, records):
-    """Reads every quantity of every run; what cannot be read is the reason of its row."""
+    """Reads every quantity of every run. A failure becomes the reason of its row."""
     rows = []
     for point, task in zip(points, tasks):
         rows.append(value_row(Row(point, records[task], axes.series_of(point)), quantities, task.results))
@@ -32,19 +32,19 @@ def rows_of(axes, quantities, points, tasks, records):
 
 
 def value_row(row, quantities, results):
-    """The row with every quantity read from its results, or with the reason why one cannot be."""
+    """Row with every quantity read from its results, or with the reason of a failure."""
     for quantity in quantities if row.good else ():
         try:
             row.values[quantity.name] = quantity.value(results)
             if not math.isfinite(row.values[quantity.name]):
                 row.reason = f"{quantity.name} is {row.values[quantity.name]}"
-        except (Exception, SystemExit) as error:  # a monitor that is not there, a series that does not oscillate
+        except (Exception, SystemExit) as error:  # e.g. a missing monitor, or a series that does not oscillate
             row.reason = f"{quantity.name}: {type(error).__name__}: {error}"
     return row
 
 
 def series_of(rows):
-    """{series: good rows by size}."""
+    """{series: successful rows by size}."""
     found = {}
     for row in rows:
         if row.good:
@@ -59,7 +59,7 @@ def limits_of(rows, quantity):
 
 
 def set_errors(rows, quantities, others=()):
-    """Fills in the errors; gives {quantity: what they are measured against}. `others`: rows of other programs, which have no say in it."""
+    """Computes the errors. Returns {quantity: its reference}. `others` are rows of other programs, which do not affect the reference."""
     against = {}
     for quantity in quantities:
         name = quantity.name
@@ -75,7 +75,7 @@ def set_errors(rows, quantities, others=()):
             limits = [(max(r.point.size for r in some), limit) for some, limit in
                       ((series_of(rows)[s], limit) for s, limit in limits_of(rows, quantity).items()) if limit]
             reference, word = None, "none: the values do not approach a limit"
-            if limits:  # of the series that go farthest the one with the smallest uncertainty: coarse ones look too certain
+            if limits:  # of the series with the largest sizes the one with the smallest uncertainty, because coarse ones look too certain
                 best = min(limits, key=lambda pair: (-pair[0], pair[1].gci))[1]
                 reference, word = best.value, f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by {100 * best.gci / abs(best.value or 1):.2g} %)"
         elif reference == "finest":
@@ -91,7 +91,7 @@ def set_errors(rows, quantities, others=()):
 
 
 def read(file, axes, quantities):
-    """Rows of a table that write() has written, without the records of their runs."""
+    """Rows of a table written by write(), without the records of their runs."""
     rows = []
     with open(file, newline="") as source:
         for cells in csv.DictReader(source):

@@ -32,7 +32,7 @@ def variants_of(case):
 
 
 class Variant(Task):
-    """A run of one participant alone whose summary.csv is wanted."""
+    """Run of one participant alone for its summary.csv."""
 
     def make(self):
         record = super().make()
@@ -47,7 +47,7 @@ class Variant(Task):
 
 
 def write_table(file, variants):
-    """One row a quantity, one column a variant."""
+    """Writes one row per quantity and one column per variant."""
     columns = {variant.name: variant.summary() for variant in variants}
     rows = list(dict.fromkeys(key for column in columns.values() for key in column))
     with open(file, "w", newline="") as out:
