@@ -179,7 +179,7 @@ class BarrierSystem {
   mesh::Csr graph_;              // per owned point: local points of adjacent simplices
   std::vector<Index> diagonal_;  // per owned point: its own entry of the graph
   std::vector<Index> entry_;     // per simplex and pair of points: entry of the graph; -1 if not an owned row
-  std::vector<double> blocks_;  // per entry of the graph: dim x dim by rows
+  std::vector<double> blocks_;   // per entry of the graph: dim x dim by rows
   std::unique_ptr<linalg::SparseMatrix> matrix_;
 };
 
