@@ -39,8 +39,8 @@ std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch)
                                  step_.dt);
 }
 
-/// Velocity w of all walls that move, at a face the mean of those of its vertices, and their turn (see turn_of()). Both are
-/// empty if no wall moves. After receive_points().
+/// Velocity w of all moving walls, at a face the mean of its vertices, and their turn (see turn_of()). Both
+/// are empty if no wall moves. Call after receive_points().
 template <int D>
 std::pair<Vectors<D>, Vectors<D>> FluidParticipant<D>::wall_motion(const coupling::Exchange& in) const {
   const bool coupled = interface_ && step_.scheme != coupling::Scheme::standalone;
@@ -92,8 +92,7 @@ void FluidParticipant<D>::take_wall_mass(const coupling::Exchange& in) {
   fluid_->set_wall_mass(faces, masses);
 }
 
-/// Largest mean displacement of an interface face over the height of the cell beside it.
-/// Collective.
+/// Largest mean displacement of an interface face over the height of its cell. Collective.
 template <int D>
 double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) const {
   const std::vector<double> at_points = interface_->scatter_vertices(datum(in, "displacement"), D);

@@ -53,9 +53,9 @@ double eddy_viscosity(const FluidView<D>& view) {
 
 }  // namespace
 
-// Layers are as thin as where they begin: where the mesh resolves those at the walls (y+ up to 1) it resolves what they shed,
-// and the cell Reynolds number of the flow outside them says little. On whatever mesh, what passes walls so closely that ducts
-// stay laminar there has no turbulence to model: what such a mesh misses is in its estimated error.
+// Free layers are as thin as at their origin. A mesh that resolves the wall layers (y+ up to 1) also resolves
+// those shed from them, and the cell Reynolds number outside says little. Flow that remains laminar near
+// walls needs no turbulence model; other mesh errors are in the estimated error.
 diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds) {
   const double limit = yplus > 0 && yplus <= 1 ? 250 : 50;
   diagnostics::EffectFinding e{
@@ -80,8 +80,8 @@ diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, doubl
   return e;
 }
 
-// Turbulence passes its energy to ever smaller eddies as vortices stretch, which those of two dimensions do not: there the models
-// are added friction only, and layers thicken with the root of the viscosity.
+// Energy passes to smaller eddies by vortex stretching, which is absent in 2-D. There the models only add
+// friction, and layers thicken with the square root of the viscosity.
 diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
   diagnostics::EffectFinding e{
       .effect = dimension == 3 ? "turbulence model" : "eddy viscosity in two dimensions",

@@ -12,8 +12,7 @@
 namespace couplet::fluid {
 namespace {
 
-/// Largest sum of |w . S| over the sum of |w| |S| of the moving walls of a mesh at rest; NaN without such walls, or
-/// before they move. Collective.
+/// Largest sum |w . S| / sum |w| |S| of the moving walls of a fixed mesh; NaN without motion. Collective.
 template <int D>
 double through_moving_walls(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();

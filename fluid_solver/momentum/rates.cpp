@@ -29,7 +29,7 @@ void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vec
 
 namespace {
 
-/// Rates of the interior faces. They stand owner by owner: what is the owner's is read and written once.
+/// Rates of the interior faces, which are sorted by owner so that owner data are accessed once.
 template <bool Split, int D>
 [[gnu::always_inline]] inline void face_rates(const mesh::Mesh& mesh, double nu, const State<D>& s,
                                               Rates<D>& rates) {

@@ -15,7 +15,7 @@ namespace couplet::fluid {
 
 namespace {
 
-/// `Width` entries a row, known to the compiler; 0: a.width.
+/// `Width`: entries per row, known at compile time; 0: a.width.
 template <int D, int Width>
 [[gnu::always_inline]] inline double multiply_rows(const ViscousRows& a, const Vectors<D>& x, Vectors<D>& y) {
   const Index width = Width > 0 ? Width : a.width;

@@ -29,7 +29,7 @@ GapPockets<D>::GapPockets(const mesh::Mesh& mesh, const FluidParameters& paramet
   }
 }
 
-/// The least label spreads over the faces between free cells, then over the ranks, until all stand.
+/// Propagates the lowest label over faces between free cells and across ranks until nothing changes.
 template <int D>
 void GapPockets<D>::find(const std::vector<int>& gap) {
   label_.assign(mesh_.cells.n_local(), 0.0);
@@ -69,7 +69,7 @@ void GapPockets<D>::find(const std::vector<int>& gap) {
 template <int D>
 void GapPockets<D>::check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const {
   if (shut_.empty()) return;
-  // Net outflow of each pocket and the sum of its absolute values, then the same of each patch, to name it.
+  // Net outflow of each pocket and the sum of absolute values, in total and per patch, for messages.
   const std::size_t n = shut_.size();
   std::vector<double> sums(n * (1 + given_.size()), 0.0), sizes(sums.size(), 0.0);
   for (std::size_t g = 0; g < given_.size(); ++g)
@@ -126,8 +126,8 @@ template class GapPockets<3>;
 namespace {
 
 constexpr double near_enough = 0.1;  // of the opening
-// A blocked face keeps this share of its conductance. The leak is as small, and the pressure in the gap is that
-// of a fluid at rest in a slot between the pressures at its two ends (lubrication: linear along a parallel slot).
+// Share of the conductance kept by a blocked face. The leak is equally small, and the pressure in the gap
+// follows lubrication theory of a slot between its two ends (linear in a parallel slot).
 constexpr double kept = 1e-6;
 
 Vec3 direction_of(const GapParameters& gap, int dimension) {
@@ -136,7 +136,7 @@ Vec3 direction_of(const GapParameters& gap, int dimension) {
   return Vec3(d[0], d[1], d.size() > 2 ? d[2] : 0).normalized();
 }
 
-/// Distance of x from segments (2-D) or triangles, whose corners stand one after the other.
+/// Distance of x from segments (2-D) or triangles, whose corners are stored consecutively.
 template <int D>
 double distance(const Vec3& x, const std::vector<double>& corners) {
   double least = base::infinity;
@@ -148,8 +148,8 @@ double distance(const Vec3& x, const std::vector<double>& corners) {
   return least;
 }
 
-/// The second wall of each gap with a `height` stands there: the seat that a structure lands on is that of the mesh.
-/// Throws Error if a point is off by more than a tenth of the opening. Collective.
+/// Checks that the second wall of each gap with a `height` is the seat that the structure lands on. Throws
+/// Error if a point is off by more than a tenth of the opening. Collective.
 void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points) {
   for (const auto& [name, gap] : parameters.gaps) {
     const mesh::Patch* seat = gap.height ? mesh.find_patch(gap.between[1]) : nullptr;

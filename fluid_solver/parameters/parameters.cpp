@@ -55,7 +55,7 @@ void declare_gap(config::Section& s, GapParameters& gap) {
       "between");
 }
 
-/// A gap that nothing can open or close: what it blocks at the start remains blocked; empty if there is none.
+/// Gap whose walls never move, so that its blocked cells stay blocked; empty if there is none.
 std::string gap_at_rest(const FluidParameters& p) {
   const auto rests = [&p](const std::string& patch) {
     const auto wall = p.boundaries.find(patch);

@@ -35,7 +35,7 @@ struct Liquid {
 constexpr std::array liquids{Liquid{"water", 1482, 998},   Liquid{"sea-water", 1522, 1025},
                              Liquid{"ethanol", 1160, 789}, Liquid{"glycerol", 1920, 1261},
                              Liquid{"oil", 1430, 870},     Liquid{"mercury", 1450, 13546}};
-// Tolerated factors of a liquid's density, for salt, sugar and temperature; pressure of a gas up to which it is nearly ideal [Pa].
+// Tolerances of a liquid's density (salt, sugar, temperature); largest pressure of a nearly ideal gas [Pa].
 constexpr double least_share = 0.8, largest_share = 1.25, highest_pressure = 2e7;
 
 /// Marczak (1997), 0 to 95 degC.
@@ -60,7 +60,7 @@ Sound of_substance(const CompressibilityParameters& p) {
   return {liquid->speed_of_sound, p.substance};
 }
 
-/// At 1 atm c^2 = gamma p / rho needs no name: gamma is that of the gas whose density at 20 degC is the nearest.
+/// At 1 atm, c^2 = gamma p/rho requires no name: gamma is that of the gas nearest in density at 20 degC.
 Sound of_gas(double density, double pressure, std::optional<double> gamma) {
   const auto apart = [&](const Gas& gas) {
     return std::abs(std::log(density * gas_constant * room / (pressure * gas.molar_mass)));

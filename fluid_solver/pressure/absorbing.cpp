@@ -13,11 +13,11 @@ namespace {
 // Default time of the means, in travel times of sound across the mesh.
 constexpr double mean_times = 10;
 
-/// Boundaries that let pressure waves out: with v the speed outward at a face beyond what is given there, at t^{n+1/2}
+/// Boundaries that let pressure waves out. With v the outward speed relative to the given one at t^{n+1/2},
 ///   outlet: p_b = p_given + rho c (v - mean v),  v = phi/S
 ///   inlet:  rho c v = p_b - mean p_b,            v = (w - given).n
-/// the means over the patch and over some time, so that what is given holds in the end. Implicit: v at t^{n+1/2} is
-/// middle_weights() of v at t^{n+1} and before, which scales the conductance of the face by 1/(1 + a c dt g/S).
+/// Means over the patch and a relaxation time preserve the given values. Implicit: v at t^{n+1/2} is
+/// middle_weights() of v at t^{n+1} and before, which scales the face's conductance by 1/(1 + a c dt g/S).
 template <int D>
 class AbsorbingBoundaries final : public Term<D> {
  public:

@@ -12,12 +12,12 @@ namespace couplet::fluid {
 
 namespace {
 
-/// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to faces that may
-/// move, for changes of density that are small and Mach numbers below about 0.3. At t^{n+1} with p = p^{n+1/2}
+/// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to moving
+/// faces, for Mach numbers below about 0.3. At t^{n+1} with p = p^{n+1/2} and the three levels of WaveRule
 ///   rho c^2 div u^{n+1} = -(rate p + past),
-/// by the three levels of WaveRule, or by the trapezoidal rule 2 (p - p^n)/dt = -rho c^2 (div u^{n+1} + div u^n)/2 with
-/// p^{n+1} = 2 p - p^n, which keeps the energy of what a step does not resolve, too. In the pressure equation
-/// V rate/(c^2 dt) joins the diagonal and -V past/(c^2 dt) the right side.
+/// or by the trapezoidal rule 2 (p - p^n)/dt = -rho c^2 (div u^{n+1} + div u^n)/2 with p^{n+1} = 2 p - p^n,
+/// which conserves the energy of unresolved waves. Adds V rate/(c^2 dt) to the diagonal and -V past/(c^2 dt)
+/// to the right side.
 template <int D>
 class Compression final : public Term<D> {
  public:
@@ -101,13 +101,13 @@ class Compression final : public Term<D> {
 
 // Tolerance of y. Its error is missing in the volume's balance.
 constexpr double response_tolerance = 1e-10;
-// Share of the faces' conductance. Cells that follow the volume's pressure up to this share do not determine it.
+// Limit over the faces' conductance. Cells that follow the volume's pressure this closely are ignored.
 constexpr double least_answer = 1e-9;
 
-/// A volume V_0 at rest behind the inlets, at one pressure: dp/dt = rho c^2 (q - q_out)/V_0, q what the inlets' velocity
-/// prescribes, q_out what enters the mesh. Its pressure is that of their faces. By the same rule in time as the cells, in
-/// one step with them: the answer y of the cells to its pressure, A y = G with the conductance G of its faces, gives the
-/// flux before p is solved for, since A p = b + G p_0 makes G.p = y.(b + G p_0) for the symmetric matrix A.
+/// Volume V_0 at rest behind the inlets at one pressure: dp/dt = rho c^2 (q - q_out)/V_0 with prescribed
+/// inflow q and flow q_out into the mesh. Its pressure is that of the inlet faces. It is solved together with
+/// the cells by the same time rule: with A y = G for the conductance G of its faces, A p = b + G p_0 gives
+/// G.p = y.(b + G p_0) before p is known, because A is symmetric.
 template <int D>
 class UpstreamVolume final : public Term<D> {
  public:

@@ -27,7 +27,7 @@ struct Face {
   int rank;
 };
 
-/// Places that stand for equal parts of a face.
+/// Sample points that represent equal parts of a face.
 std::vector<Vec3> samples_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   const std::span<const Index> corners = mesh.face_points[f];
   const Vec3& centre = geometry.face_centre[f];
@@ -57,8 +57,8 @@ class Walls {
     if (!all.empty()) reach_ = thin * (high - low).norm();
   }
 
-  /// The face that the normal of `from` meets across the body from a place of it; nullptr if there is none. Goes on as far as no face
-  /// can be met, so that walls with one wet side cost little.
+  /// Face met by the normal of `from` across the body from a place; nullptr if there is none. Stops where no
+  /// face can be met, so that walls with one wet side cost little.
   const Face* across(const Face& from, const Vec3& place) const {
     for (double way = 0; way <= reach_;) {
       const Vec3 at = place + way * from.normal;
@@ -159,8 +159,8 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
   balance(covered);
 }
 
-/// Samples do not say quite what each face has in common with others: symmetric scaling until the parts of each add up to
-/// what is covered of it, so that a body that moves as a whole pushes the same volume on both sides.
+/// Corrects the sampled common areas by symmetric scaling until the parts of each face sum to its covered
+/// area. A body that moves as a whole then displaces the same volume on both sides.
 void OppositeFaces::balance(const std::vector<double>& covered) {
   std::vector<double> factor(std::size_t(map_.n_local()));
   for (int i = 0; i < rounds; ++i) {

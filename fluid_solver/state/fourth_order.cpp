@@ -108,9 +108,9 @@ std::shared_ptr<const Placement<D>> Lines<D>::seen(const mesh::Mesh& mesh, const
 
 namespace {
 
-/// A flux e through `before`, `after`, and back through the cell in the middle, with the mean velocities of each two: no momentum
-/// and no energy comes of it. e = -U/6, U = (u - Du/6).S makes the fluxes of second order beside it those of fourth. Friction
-/// likewise: q = nu (g_1 x - g_2 y)/6 out of the middle, to each side by its conductance.
+/// Circulates a flux e through `before`, `after` and back through the middle cell, with the mean velocities
+/// of each two. It conserves momentum and energy. e = -U/6 with U = (u - Du/6).S raises the fluxes to fourth
+/// order. Friction likewise: q = nu (g_1 x - g_2 y)/6 out of the middle, to each side by its conductance.
 template <int D>
 COUPLET_PROCESSOR_CLONES void circulate(std::span<const Link> links, const Vec<D>* area, double nu,
                                         const Vec<D>* u, Vec<D>* rate) {
@@ -135,7 +135,7 @@ COUPLET_PROCESSOR_CLONES void circulate(std::span<const Link> links, const Vec<D
   }
 }
 
-/// to -= n (n.Du)/(6 V) of each link; V null: 1.
+/// to -= n (n.Du)/(6 V) for each link; V = 1 if nullptr.
 template <bool Weighted, int D>
 [[gnu::always_inline]] inline void subtract_differences(std::span<const Link> links, const Vec<D>* area,
                                                         const double* volume, const Vec<D>* u, Vec<D>* to) {

@@ -33,8 +33,8 @@ void set_face(Placement<D>& p, Index f, const Vec<D>& d) {
   if (oblique > p.obliqueness * p.obliqueness * square) p.obliqueness = std::sqrt(oblique / square);
 }
 
-/// B of each cell. The Gauss gradient takes its values where the weights lead to on the line between the
-/// cells: (1 - w) d from the owner, -w d from the neighbour.
+/// B of each cell. The Gauss gradient uses values at the interpolation points on the line between the cells:
+/// (1 - w) d from the owner, -w d from the neighbor.
 template <int D>
 void cure_gradients(const mesh::Mesh& mesh, Placement<D>& p) {
   p.gradient_cure.assign(mesh.cells.n_local(), Tensor<D>::Zero());
@@ -56,7 +56,7 @@ void cure_gradients(const mesh::Mesh& mesh, Placement<D>& p) {
   }
 }
 
-/// All that follows from volumes, centres and S; `centre_of(f)`: centre of a flux face.
+/// Sets data that follow from volumes, centers and S. `centre_of(f)`: center of a flux face.
 template <int D, class FaceCentre>
 void set_faces(const mesh::Mesh& mesh, const FaceCentre& centre_of, Placement<D>& p) {
   const Index n_faces = mesh.n_flux_faces();
@@ -224,7 +224,7 @@ template <bool Corrects, int D>
   const double* weight = at.weight.data();
   const Vec<D>* area = at.area.data();
   Vec<D>* of = sum.data();
-  // Faces stand owner by owner: what is the owner's is read and written once.
+  // Faces are sorted by owner, so that owner data are accessed once.
   for (Index f = 0; f < mesh.n_interior;) {
     const Index o = owner[f];
     const double own = p[o];

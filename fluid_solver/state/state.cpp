@@ -15,7 +15,7 @@ std::span<double> doubles_of(std::vector<T>& values) {
     return {values.empty() ? nullptr : values.front().data(), values.size() * T::SizeAtCompileTime};
 }
 
-/// Saves or loads what a visit names. Fields have their full size where they are said to be there, and are empty elsewhere.
+/// Saves or loads the visited data. Fields have full size if they exist, else they are empty.
 struct StateFile {
   io::CheckpointWriter* out;
   io::CheckpointReader* in;

@@ -137,8 +137,8 @@ template void check_together<3>(const mesh::Mesh&, const Boundary<3>&, FluidPara
 
 namespace {
 
-// Share of an interface's area that faces one way. Up to here it surrounds a body, which is clamped elsewhere; beyond, it is the
-// wall of a cavity.
+// Largest share of an interface's area that faces one way for it to enclose a body; above, it is a cavity
+// wall.
 constexpr double largest_open_share = 0.3;
 
 /// Share of the interface's area that faces one way, and the area [m^2].

@@ -16,14 +16,14 @@ namespace {
 
 // Share of what passes the boundaries that may be wrong: their rates are means of two levels.
 constexpr double boundary_share = 0.25;
-// Share of the pressure's level that a solver whose tolerance is relative to it may leave. It moves the fluid.
+// Relative error of the pressure level allowed to the solver, which moves the fluid.
 constexpr double level_share = 1e-4;
-// Excess, in kinetic energies, that is called a blow-up.
+// Excess over the kinetic energy that counts as divergence.
 constexpr double largest_excess = 0.5;
-// omega h^2/nu from which friction no longer holds what a turning frame makes (docs/theory.md, frame that turns).
+// omega h^2/nu above which friction no longer stabilizes a rotating frame (docs/theory.md).
 constexpr double fast_frame = 4;
-// Share of the reference energy that remains after a sub-step. A flow that turns back is at rest for some steps, where its own
-// energy is no measure.
+// Decay of the reference energy per sub-step. A reversing flow is at rest briefly, so its current energy is
+// no measure.
 constexpr double remembered = 0.85;
 
 /// sum V |u|^2, in four partial sums, so that additions do not wait for each other.
@@ -91,9 +91,9 @@ double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
   return sums[1] > 0 ? sums[0] / sums[1] : 0;
 }
 
-/// Kinetic energy [J] that the pressure's solver may leave in a fluid at rest: the sum of rho V u^2 / 2 over the cells, of
-/// the velocity u = tolerance p dt / (rho h) that the pressure p on the boundary gives in a step where it differs by its
-/// tolerance from cell to cell. Collective.
+/// Kinetic energy [J] from pressure solver errors in a fluid at rest: sum of rho V u^2/2 over the cells with
+/// u = tolerance p dt/(rho h), the velocity if the boundary pressure p varies by its tolerance between cells.
+/// Collective.
 template <int D>
 double EnergyGuard<D>::energy_at_rest(const EnergyStep<D>& s) const {
   double sums[3] = {0, double(s.p.size()), 0};

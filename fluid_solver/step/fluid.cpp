@@ -12,7 +12,7 @@
 namespace couplet::fluid {
 namespace {
 
-// An interface faster than so many times all that moved so far (at the very start: than this [m/s]) diverges.
+// An interface diverges above this factor times all previous speeds, or initially this speed [m/s].
 constexpr double most_times_faster = 1e4, most_speed = 1e8;
 
 }  // namespace
@@ -30,9 +30,9 @@ Fluid<D>::Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Fl
   start(geometry, start_time);
 }
 
-/// The first two stages of Heun's scheme, each a step from level n with its own pressure,
-///   u' = P(u^n + dt/3 R(u^n)),  u'' = P(u^n + 2/3 dt R(u')),  u^{n+1} = P(u^n + dt [R(u^n) + 3 R(u'')]/4),
-/// and what the last one needs. `done`: time into the coupling step at the begin of the sub-step.
+/// First two stages of Heun's scheme, each a step from level n with its own pressure:
+///   u' = P(u^n + dt/3 R(u^n)),  u'' = P(u^n + 2/3 dt R(u')),  u^{n+1} = P(u^n + dt [R(u^n) + 3 R(u'')]/4).
+/// `done`: time within the coupling step at the start of the sub-step.
 template <int D>
 void Fluid<D>::run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity) {
   Vectors<D> rate, shear;
@@ -208,9 +208,8 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
       expressions[c].evaluate(at.boundary_centre, time, flat<D>(s.u_boundary), D, c);
     }
   }
-  // Without an initial velocity the fluid is at rest, its boundaries too: what they do from then on is an
-  // impulse in the first step, which an elastic wall must feel. A given field is made to fit its boundaries
-  // instead.
+  // Without an initial velocity, fluid and boundaries are at rest. Later boundary motion is an impulse in the
+  // first step, which an elastic wall must feel. A given field is fitted to its boundaries instead.
   s.start = parameters_.initial_velocity.empty() ? Start::at_rest : Start::flowing;
   if (s.start == Start::flowing) {
     boundary_.velocity_at(time, at.boundary_centre, s.w);
@@ -267,8 +266,8 @@ double Fluid<D>::unseen_share(const Vectors<D>& w) const {
   return load > 0 ? std::sqrt(sums[0] / load) : 0;
 }
 
-/// A structure that fails gives velocities that no fluid can follow. What moves less than the height of the cell
-/// beside it in the step is none of these, however still the fluid was; nor are bodies that move as prescribed.
+/// Rejects velocities of a failing structure that no fluid can follow. Motion by less than the adjacent
+/// cell's height per step is accepted even in a fluid at rest, and so are bodies with prescribed motion.
 template <int D>
 void Fluid<D>::check_wall_velocity() const {
   double worst = 0;

@@ -13,11 +13,11 @@
 
 namespace couplet::fluid {
 
-/// At an interface the viscous flux is that of the current wall velocity, F - a mu g (c_t + 4 c_n) with the tangential and the normal
-/// part of c = w - w*: left at the guess w* the slip c would come as a force one step late, at a two-step oscillation a mass of
-/// -mu g dt. The factor of c_n is found by trial: a wall of a fortieth of its added mass (nu dt/h^2 = 100) diverges with a half and less,
-/// zigzags by 0.32 with one, 0.16 with two and 0.08 with four; 0.15 is smooth. c vanishes with the square of the step. The
-/// explicit branch takes the flux of level n, which knows its wall velocity.
+/// At an interface the viscous flux uses the current wall velocity, F - a mu g (c_t + 4 c_n) with tangential
+/// and normal parts of c = w - w*. With the guess w*, c would act as a force one step late, for a two-step
+/// oscillation like a mass of -mu g dt. The factor of c_n is empirical. A wall with a fortieth of its added
+/// mass (nu dt/h^2 = 100) diverges with 0.5 or less, and oscillates by 0.32 with 1, 0.16 with 2 and 0.08 with
+/// 4; 0.15 is smooth. c decreases with the square of the step. The explicit branch uses the flux of level n.
 template <int D>
 void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
                    const Projected<D>& projected, const State<D>& from) {
@@ -215,7 +215,7 @@ void FractionalStep<D>::keep_initial(State<D>& s) {
   flux_.remember(s);
 }
 
-/// phi at t^{n+1} in the place of phi^p, which the next project() makes anew, and u beside u^p.
+/// Replaces phi^p by phi at t^{n+1}, which the next project() recomputes, and adds u beside u^p.
 template <int D>
 std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   const Placement<D>& now = *step_.to;
@@ -311,8 +311,8 @@ typename FractionalStep<D>::Judgement FractionalStep<D>::judge(const State<D>& f
   return j;
 }
 
-/// Much faster than all that moved so far and all that is given now, and so that the flow crosses a cell in the step:
-/// what begins to move in a fluid that was at rest, but for round-off, is no divergence.
+/// True if the flow is much faster than all previous and given speeds, and crosses a cell in the step. Motion
+/// starting in a fluid at rest except for round-off is no divergence.
 template <int D>
 bool FractionalStep<D>::too_fast() const {
   if (!(speed_scale_ > 0) || !(judgement_.speed > explosion * std::max(speed_scale_, judgement_.given_speed)))
@@ -323,7 +323,7 @@ bool FractionalStep<D>::too_fast() const {
   return parallel::any(mesh_.comm, crosses);
 }
 
-/// Where it went wrong: the fastest cell if that is out of bounds, else the one that gained most energy.
+/// Finds the location of a failure: the fastest cell if out of bounds, else the one that gained most energy.
 template <int D>
 void FractionalStep<D>::check(const State<D>& from) {
   const bool finite = std::isfinite(judgement_.speed);

@@ -23,13 +23,13 @@ namespace {
 constexpr double tolerated_growth = 5e-4;
 // Limit of cells with few faces, in limits of the explicit term, see StepSize.
 constexpr double longest_implicit = 16;
-// Largest eigenvalues of the operators of fourth order over those of second: of (8 sin k - sin 2k)/6, and 16/3 over 4.
+// Ratio of largest eigenvalues, fourth to second order: of (8 sin k - sin 2k)/6, and 16/3 over 4.
 constexpr double fourth_convection = 1.3722, fourth_friction = 4. / 3;
 constexpr double largest_courant =
     1;  // accuracy: beyond it the explicit convection is no longer resolved in time
 
-// Roots of (1 + a d) z^2 - (1 - b d + 3/2 i k) z + (c d + i k / 2) = 0, the pair at constant step, a = 9/16,
-// b = 3/8, c = 1/16.
+// Roots of (1 + a d) z^2 - (1 - b d + 3/2 i k) z + (c d + i k/2) = 0, the pair at constant step with a =
+// 9/16, b = 3/8, c = 1/16.
 bool stable(double k, double d) {
   using namespace std::complex_literals;
   const std::complex<double> p = 1 + 9.0 / 16 * d, q = -(1 - 3.0 / 8 * d + 1.5i * k), r = d / 16 + 0.5i * k;
@@ -170,7 +170,7 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   return largest;
 }
 
-/// No friction damps what the frame makes of the fluid as a whole.
+/// Limit by the Coriolis force on uniform motion, which friction does not damp.
 template <int D>
 double StepSize<D>::frame_limit() const {
   return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : base::infinity;
@@ -300,8 +300,8 @@ void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, d
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment(level, begin);
 }
 
-// With a step of its own the fluid keeps it whatever the treatment: implicit if the explicit one would not be
-// stable. Else the cheaper one; a change starts the multi-step schemes anew, so it needs a clear gain.
+// A prescribed step is kept for either treatment: implicit if explicit would be unstable. Otherwise the
+// cheaper one is chosen. A change restarts the multi-step schemes and so requires a clear gain.
 template <int D>
 void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>& begin) {
   bool implicit = begin.implicit;
