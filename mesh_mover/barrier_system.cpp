@@ -75,8 +75,8 @@ Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
 
 namespace {
 
-// Cosine above which normals around a point are those of one curved surface (26 degrees), and the part of a normal
-// across what is held already below which it holds nothing new (6 degrees).
+// Minimum cosine between normals at a point of one curved surface (26 degrees), and minimum new part of a
+// normal relative to held directions (6 degrees).
 constexpr double same_surface = 0.9, new_direction = 0.1;
 
 /// Mean normals of the surfaces that the face vectors `areas` around a point belong to.
@@ -151,7 +151,7 @@ HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geomet
 
 namespace {
 
-/// Edges of a simplex: of the reference places plus a displacement, or of a displacement alone.
+/// Edges of a simplex: of the reference positions plus a displacement, or of a displacement only.
 template <int D>
 struct SimplexEdges {
   using Matrix = Eigen::Matrix<double, D, D>;
@@ -208,7 +208,7 @@ std::array<double, 4> determinant(const Eigen::Matrix3d& a, const Eigen::Matrix3
           b.determinant()};
 }
 
-/// The simplex that is distorted most and its energy per weight; -1: there is none here.
+/// Most distorted simplex and its energy per weight; -1 if there is none.
 template <int D>
 std::pair<Index, double> worst_here(const SimplexEdges<D>& edges, std::span<const double> u) {
   std::pair<Index, double> worst{-1, -1};
@@ -291,8 +291,8 @@ double BarrierSystem::largest_step(std::span<const double> u, std::span<const do
                             : step_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u, direction, least));
 }
 
-// Per simplex with the gradients b_k of its corner functions: g_k = w P b_k, H_kl = w b_k . d2W/dF2 . b_l, in the frame
-// of its stretches.
+// Per simplex with the gradients b_k of its corner functions: g_k = w P b_k and H_kl = w b_k . d2W/dF2 . b_l,
+// in the frame of its stretches.
 template <int D>
 void BarrierSystem::add_simplices(std::span<const double> u, std::span<const double> known,
                                   std::vector<double>& residual, Hessian hessian) {

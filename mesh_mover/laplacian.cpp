@@ -28,7 +28,7 @@ int normal_axis(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const me
 
 }  // namespace
 
-/// Laplacian::Equation: components that hold the same patches share it.
+/// Equation shared by components that hold the same patches.
 struct Laplacian::Equation {
   std::unique_ptr<linalg::SparseMatrix> matrix;
   std::unique_ptr<linalg::LinearSolver> solver;

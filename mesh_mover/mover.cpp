@@ -134,7 +134,7 @@ coupling::Interface Mover::initialise() {
   return interface;
 }
 
-/// A step that is tried again begins with the Laplacian, if the one before was: what folded the mesh may have been a guess of the coupling.
+/// Returns to the Laplacian of the step before in a repeated step: a poor guess may have folded the mesh.
 void Mover::begin_step(const coupling::Step& step) {
   step_ = step;
   if (!laplacian_) return;
@@ -296,7 +296,7 @@ void Mover::write_output(double time, int) {
 
 namespace {
 
-// Times of a run at which the prescribed motions are tried: one for five steps, so that looking ahead costs a fifth of moving.
+// Times at which prescribed motions are tested: one per five steps, which costs a fifth of the mesh motion.
 constexpr int most_looks = 40;
 constexpr double looks_per_step = 0.2;
 

@@ -63,10 +63,10 @@ std::vector<double> MovingPatches::velocities(double time, double dt) const {
 
 namespace {
 
-// Largest error of the fit, over the largest value. No point of the mesh moves by more than its boundary does, so
-// this is the largest error too.
+// Largest relative error of the fit. No point moves by more than its boundary, so it bounds the error
+// everywhere.
 constexpr double round_off = 1e-12;
-// Extent of the points in a direction, squared and relative to the largest, below which they have none.
+// Squared relative extent of the points below which a direction has none.
 constexpr double least_extent = 1e-10;
 
 }  // namespace
@@ -125,8 +125,8 @@ namespace {
 // 1 - |cosine| between a face and the patch's mean normal up to which it is flat.
 constexpr double flat = 1e-9;
 
-/// In planes of one direction; parts may face each other (the two sides of a slice), so that their face vectors add up to nothing.
-/// Collective.
+/// True if all faces are parallel. Parts may face each other (two sides of a slice), so that their face
+/// vectors cancel. Collective.
 bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
   Tensor3 sum = Tensor3::Zero();
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {

@@ -36,12 +36,12 @@ std::vector<elastic::LameConstants> lame_of(const mesh::Mesh& mesh, const Parame
   return lame;
 }
 
-/// Mesh motion by the equilibrium of an elastic body without loads, thesis (4.10), (4.12): div sigma = 0,
-/// E = V^-chi, nu given, by the symmetric operator of common/elasticity (its energy has no negative modes on
-/// distorted cells); points by its own vertex values. Patches that slide may lie along any plane.
+/// Mesh motion by equilibrium of an elastic body without loads, thesis (4.10), (4.12): div sigma = 0, E =
+/// V^-chi, given nu. Uses the symmetric operator of common/elasticity, whose energy has no negative modes on
+/// distorted cells, and its vertex values. Sliding patches may have any plane.
 class PseudoSolid final : public MotionMethod {
  public:
-  /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
+  /// `volumes`: V of (4.12) per local cell; empty for the mesh's. Throws Error if no patch holds the mesh.
   PseudoSolid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
               std::span<const double> volumes)
       : mesh_(mesh),
