@@ -83,7 +83,7 @@ void QuadraticFit::solve() {
 
 namespace {
 
-/// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
+/// Weight of the mean over vertices in the volume mean: exact for simplices and boxes.
 double share_of_vertices(mesh::CellType type) {
   switch (type) {
     case mesh::CellType::triangle:

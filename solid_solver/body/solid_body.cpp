@@ -16,7 +16,7 @@
 namespace couplet::solid {
 namespace {
 
-/// Of the gradients without an energy: beyond it they only lock.
+/// Largest Poisson's ratio of the gradients without an energy, which lock beyond it.
 constexpr double most_poissons_ratio = 0.499;
 
 /// A face has a vertex that is free in a direction which the face knows.

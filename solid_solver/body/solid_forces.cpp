@@ -45,7 +45,7 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
   return forces;
 }
 
-/// What the stress leaves there; empty: of a gradient without such functions.
+/// Reactions as residual of the stress; empty for a gradient without trial functions.
 std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   std::vector<PatchForce> forces;
   const std::vector<double> u = body_.unknowns_of(state_.cell_u, state_.face_u);

@@ -17,15 +17,15 @@
 namespace couplet::solid {
 namespace {
 
-// Compressive strain times (L/t)^2: a clamped column buckles at 0.2 (thickness by slenderness(): of a
-// square column half its own, hence a fourth, and a little less), a plate or an arch far above.
+// Compressive strain times (L/t)^2. A clamped column buckles at 0.2; slenderness() uses half its thickness
+// for a square column, hence a fourth, with a margin. Plates and arches are far above.
 constexpr double least_strain = 0.9 * 0.2 / 4 / BucklingEstimate::low;
-// Of the solution in which a negative curvature of K + low K_sigma would show.
+// Tolerance of the solution in which a negative curvature of K + low K_sigma would appear.
 constexpr double shown_at = 1e-3;
 constexpr int most_searches = 2000, most_refinements = 40, settled = 6;
-// More compression than at the last look that makes another one worth while.
+// Increase of compression since the last search that justifies another one.
 constexpr double more_compression = 1.1;
-// A factor that has changed by less than this part over the last refinements is told.
+// Largest relative change in the last refinements for a factor to be reported.
 constexpr double settled_part = 0.01;
 
 double limit_of(const BucklingEstimate& found) {
@@ -39,7 +39,7 @@ std::string neglected(const BucklingEstimate& found) {
               : std::string());
 }
 
-/// |a x| / |u| / (factor - 1), root mean squares over the cells: modes are orthogonal by K, by which a is the part of u along x.
+/// a x| / |u| / (factor - 1), RMS over cells. The part a of u along x is by the K-orthogonality of modes.
 double growth_of(const SolidBody& body, const std::vector<double>& u, const std::vector<double>& x,
                  double factor) {
   const mesh::Mesh& mesh = body.mesh();

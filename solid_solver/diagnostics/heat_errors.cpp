@@ -19,7 +19,7 @@ time::TimeSchemeParameters scheme_of(HeatParameters::Scheme scheme) {
   return p;
 }
 
-/// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
+/// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
 struct Fit {
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   Eigen::Vector4d values = Eigen::Vector4d::Zero();
@@ -87,7 +87,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   dt_ = now.dt;
 }
 
-/// The temperature of each owned cell against that of a linear fit through its neighbours [K].
+/// Difference of each owned cell's temperature from a linear fit through its neighbors [K].
 std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   const HeatState& now = heat.accepted();
   const std::vector<double> faces = heat.face_temperature(now);  // also where nothing is solved for

@@ -20,8 +20,8 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Differences are taken over displacements with gradients of this size: Saint Venant-Kirchhoff's forces are a cubic
-/// polynomial, which they give exactly; of other laws they miss parts of that size.
+/// Size of displacement gradients for differences. The forces of Saint Venant-Kirchhoff are cubic, so
+/// differences are exact; for other laws they have relative errors of this size.
 constexpr double probe_gradient = 0.01;
 
 struct Displacement {
@@ -91,7 +91,7 @@ class Stiffness {
   std::unique_ptr<SolutionMethod> method_;
 };
 
-/// The root of x - a x^3 = 1 that is reached from no load on; NaN: the load has a maximum before.
+/// Root of x - a x^3 = 1 on the branch from zero load; NaN if the load has a maximum before.
 double amplitude(double a) {
   if (a > 4. / 27) return std::numeric_limits<double>::quiet_NaN();
   double x = a > 0 ? 1 : 1 / (1 - a);  // below the root, where Newton's method closes in from one side

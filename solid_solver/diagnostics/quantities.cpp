@@ -48,7 +48,7 @@ class Quantities final : public diagnostics::Diagnostic {
   std::vector<QuantityEstimate> found_;
 };
 
-/// The same of a steady temperature.
+/// Quantities of interest of a steady temperature.
 class QuantitiesOfHeat final : public diagnostics::Diagnostic {
  public:
   explicit QuantitiesOfHeat(const HeatView& view) : view_(view) {}

@@ -121,7 +121,7 @@ constexpr GlobalIndex cells_looked_at = 20000;  // of all ranks
 
 }  // namespace
 
-/// Of one cell after the other.
+/// Data of the current cell.
 struct SmoothEnergy::Patch {
   mesh::Csr cells_of_point, faces_of_cell;
   std::vector<Index> mark;  // per local cell: for which cell it was last gathered

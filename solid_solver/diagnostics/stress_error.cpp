@@ -9,7 +9,7 @@
 namespace couplet::solid {
 namespace {
 
-// From here on a stress at a probe is told as doubtful.
+// Relative error above which a probed stress is reported as doubtful.
 constexpr double doubtful = 0.3;
 
 /// Stresses at probes and, of static runs, the largest, with their errors.

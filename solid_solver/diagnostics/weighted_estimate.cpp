@@ -21,7 +21,7 @@ namespace {
 using Values = std::vector<double>;
 using Strains = std::vector<std::array<float, 6>>;  // of the flux faces: few digits do, and half the room
 
-// Of the one solve.
+// Tolerance of the dual solve.
 constexpr double tolerance = 1e-4;
 
 std::array<float, 6> packed(const Tensor3& t) {
@@ -183,7 +183,7 @@ double by_inner_variation(const SolidBody& body, const FaceStrains& s) {
   return (sum.energy() - difference.energy()) / (4 * factor);
 }
 
-/// Half the product of the differences, since each gradient errs.
+/// Half the product of the differences, because each gradient has an error.
 double by_gradients(const SolidBody& body, const FaceStrains& s, const FaceStrains& other) {
   const mesh::Mesh& mesh = body.mesh();
   double product = 0;

@@ -70,7 +70,7 @@ void LoadPath::accept(double time, double stiffness) {
   nominal_ = std::min(nominal_ * std::clamp(wanted, shortest_ratio, longest_ratio), chosen_.longest * first_);
 }
 
-/// By the parabola through the last three equilibria.
+/// Locates limit points with the parabola through the last three equilibria.
 void LoadPath::see_limit(double length, double time) {
   if (length_before_ == 0 || length == 0) return;
   const double before = (now_.factor - factor_before_) / length_before_,
