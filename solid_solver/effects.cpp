@@ -93,7 +93,7 @@ std::span<const SolidCard> solid_effect_cards() { return cards; }
 
 namespace {
 
-/// A ramp of so many periods leaves 1 % of overshoot.
+/// Number of periods in a ramp that leaves 1 % of overshoot.
 constexpr double slow = 30;
 constexpr int samples = 400;
 
@@ -114,8 +114,8 @@ std::vector<config::ExpressionText> loads_of(const SolidParameters& p) {
   return loads;
 }
 
-/// Shortest time in which a load goes through its range [s]; infinity where nothing changes. A load that is there from the
-/// first moment on is no change: what waits for it is at rest under it.
+/// Shortest time in which a load passes through its range [s]; infinity if none changes. A load present from
+/// the start is no change, because the body starts at rest under it.
 double time_of_change(const std::vector<config::ExpressionText>& loads, const Vec3& at, double end) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& text : loads) {
@@ -143,7 +143,7 @@ double lowest_period(const SolidParameters& p, const mesh::MeshFacts& mesh) {
 }
 
 diagnostics::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFacts& mesh,
-                              const diagnostics::CaseScene& scene) {
+                                  const diagnostics::CaseScene& scene) {
   const auto choose = [](bool dynamic, std::string reason) {
     const char* word = dynamic ? "dynamic" : "static";
     return diagnostics::EffectChoice{"analysis", word, word, std::move(reason), false};
@@ -167,7 +167,7 @@ diagnostics::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFact
 }  // namespace
 
 std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& p, const mesh::MeshFacts& mesh,
-                                                  const diagnostics::CaseScene& scene) {
+                                                      const diagnostics::CaseScene& scene) {
   std::vector<diagnostics::EffectChoice> choices{
       {"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
        mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false}};

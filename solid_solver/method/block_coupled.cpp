@@ -33,7 +33,7 @@ linalg::LinearMethod linear_method(const SolidProblem& problem, const MethodPara
                                                                          : linalg::LinearMethod::bicgstab_ilu;
 }
 
-// Of an iterative linear solve within the deferred correction: more is lost on the next correction.
+// Tolerance of the inner linear solve. A tighter one is wasted, because corrections change the equation.
 constexpr double deferred_tolerance = 1e-2;
 constexpr int deferred_history = 8;
 

@@ -47,8 +47,8 @@ SolidLedger::SolidLedger(const SolidBody& body)
       elastic_(body.elastic()),
       kernel_(body.kernel()) {}
 
-/// Work of the stress of one displacement on the change of another in cells and on faces, over all faces: sum
-/// of sigma . S . jump. `on_boundary`: the share of the boundary's forces on the boundary's change.
+/// Work of the stress of one displacement on the change of another over all faces: sum of sigma . S . jump.
+/// `on_boundary`: part of the boundary forces.
 double SolidLedger::stress_work(const BodyField& stressed, const BodyField& change,
                                 double* on_boundary) const {
   const int dim = mesh_.dim;
@@ -105,7 +105,7 @@ void SolidLedger::add_work(const SolvedStage& stage) const {
     add_finite_work(stage);
 }
 
-/// By the forces of the faces.
+/// Adds the work computed from face forces.
 void SolidLedger::add_face_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const int dim = mesh_.dim;
@@ -120,7 +120,7 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
   const BodyField change{cells, faces, {}};
   double outside = 0;
   const double inside = stress_work(place_unknowns(body_, work, last.unknowns).field(), change, &outside);
-  // Body forces and effects stand in the rows without the known force of the faces.
+  // The rows contain body forces and effects without the known face forces.
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
   for (std::size_t i = 0; i < n_cells; ++i) outside += work.loads[i] * cells[i];
   const auto& free = elastic_.unknown_faces();
@@ -199,8 +199,8 @@ void SolidLedger::add_finite_work(const SolvedStage& stage) const {
   energies.kinetic = kinetic(after);
 }
 
-/// Of the schemes other than the trapezoidal rule: the loads of a stage at its place become the mean of those at
-/// its ends, whose work on the change is second order.
+/// For schemes other than the trapezoidal rule: mean of the loads at both ends of a stage, whose work on the
+/// change is second order.
 std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
                                               const std::vector<double>& at_place) const {
   std::vector<double> rows = at_place;
@@ -258,8 +258,8 @@ SolidEnergies SolidLedger::summed(SolidEnergies e) const {
 
 // Work of what holds the body and of its loads.
 
-/// What holds the known nodes does: against stress, springs and damping on their change, against inertia on the mean of
-/// their velocities, so that the kinetic energy of both ends balances to rounding.
+/// Work of the supports on known nodes. Against stress, springs and damping it uses their change, against
+/// inertia their mean velocities, so that the kinetic energies balance to round-off.
 double SolidLedger::known_work(const SolvedStage& stage) const {
   const auto& [work, last, before, trial] = stage;
   const double dt = work.stage.dt;

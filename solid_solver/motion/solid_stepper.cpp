@@ -194,9 +194,9 @@ constexpr double share_of_a_step = 0.1;
 
 }  // namespace
 
-// Error of a step: constant dt^3 d3u/dt3 (Euler: constant dt^2 d2u/dt2), with d3u/dt3 from the mean
-// accelerations of this step and the last one. A coupled step is not refused here: its iterates come before
-// the load has settled.
+// Error of a step: constant dt^3 d3u/dt3 (Euler: constant dt^2 d2u/dt2) with d3u/dt3 from the mean
+// accelerations of the last two steps. A coupled step is not rejected here, because its iterates precede
+// convergence of the load.
 void SolidStepper::judge_step() {
   const time::LocalError local = time::local_error(scheme_of(parameters_));
   const double dt = step_.dt, apart = 0.5 * (dt + state_.dt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One stage of a step: the system, its right-hand side, its solution (equations: SolidStepper).
+// One stage of a step: system, right-hand side and solution (equations: SolidStepper).
 #include <algorithm>
 #include <cmath>
 
@@ -160,7 +160,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
   ledger_.add_work({work, last_, before, trial_});
 }
 
-/// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
+/// A static guess uses the previous known displacements; a dynamic one is extrapolated with its velocity.
 linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work, const SolidState& now) {
   LoadPath* path = body_.equilibrium().load_path();
   if (path) body_.set_load_factor(1);
@@ -234,7 +234,8 @@ void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& n
   for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
 }
 
-/// A partner's load is its mean over the step: that of the middle. Where the stage is solved it is continued from the middle of the last step.
+/// A partner's load is its mean over the step, valid at mid-step. It is extrapolated to the stage from the
+/// last mid-step.
 void SolidStepper::add_face_forces(const StageWork& work) {
   if (last_.interface.empty()) {
     last_.face_force = kernel_.add_face_forces(work.face_force, last_.rhs);
@@ -251,9 +252,8 @@ void SolidStepper::add_face_forces(const StageWork& work) {
 
 // The first guess of a stage and what follows from its solution (equations: SolidStepper).
 
-// For iterative methods: where the accepted motion leads, so that equal loads give equal answers.
-// Thesis (2.73): u^n + a v^n; (2.74): and a^2 / (2 dt^n) (v^n - v^{n-1}), a the way to the place of the
-// stage.
+// Guess for iterative methods from the accepted motion, so that equal loads give equal results. Thesis
+// (2.73): u^n + a v^n; (2.74) adds a^2/(2 dt^n) (v^n - v^{n-1}), with a the time to the place of the stage.
 void SolidStepper::guess(const StageWork& work, const SolidState& now) {
   using Predictor = MethodParameters::Predictor;
   const Predictor predictor = parameters_.method.predictor;
@@ -319,10 +319,10 @@ void SolidStepper::finish_faces(const StageWork& work, const SolidState& now) {
     }
 }
 
-// Leaves in the faces what finish_cells() adds to their cells' values:
-// delta = u_B - u_P at the end of the stage from the places of this solve and the last one (the trapezoidal
-// rule with equal steps: 3/2 and -1/2), its rate likewise from the difference of the ends, which lives in the
-// middle. Stiffness damping makes w of the solve lead: w_B - w_P = delta + beta d(delta)/dt.
+// Stores in the faces the offset that finish_cells() adds to cell values: delta = u_B - u_P at the end of the
+// stage, extrapolated from this solve and the last one (trapezoidal rule with equal steps: 3/2 and -1/2). Its
+// rate, valid at mid-step, follows from the ends. With stiffness damping w leads: w_B - w_P = delta + beta
+// d(delta)/dt.
 void SolidStepper::finish_offsets(const time::Stage& stage, const SolidState& now) {
   if (body_.has_mass()) return;
   const int dim = mesh_.dim;

@@ -39,7 +39,7 @@ namespace {
 constexpr int extra = 3;
 // A ratio 1/lambda below this part of the largest one is rounding of a load that buckles nothing.
 constexpr double ratio_rounding = 1e-9;
-// Of the lowest frequency's square of the body's own size, see modal_analysis: where the shift lies.
+// Shift relative to the scale of the lowest squared frequency, see modal_analysis.
 constexpr double loaded_shift_part = 1e-4;
 
 void check_buckling_of(const SolidBody& body) {
@@ -57,7 +57,7 @@ void make_largest_one(MPI_Comm comm, std::vector<double>& shape) {
     for (double& v : shape) v /= largest;
 }
 
-/// Whether exactly `n` factors lie below `s`.
+/// True if exactly `n` factors are below `s`.
 bool counts(const SolidBody& body, const elastic::Prestress& prestress, double s, std::size_t n) {
   elastic::TiedMatrix loaded(body.mesh(), body.elastic(), {.stress = s, .prestress = &prestress});
   loaded.factorise();

@@ -15,10 +15,10 @@
 namespace couplet::solid {
 namespace {
 
-// Of mu / (rho L^2): below the first bending of a body a hundred times longer than thick, and above what the rounding
-// of the stiffness makes of a rigid motion.
+// Shift relative to mu/(rho L^2): below the first bending mode of a body 100 times longer than thick, above
+// round-off in rigid motions.
 constexpr double shift_part = 1e-4;
-// A frequency whose square is below this part of mu / (rho L^2) is a rigid motion.
+// A squared frequency below this part of mu/(rho L^2) is a rigid motion.
 constexpr double rigid_part = 1e-8;
 
 /// mu / (rho L^2) of the slowest cell, with L the diagonal of the body's box [1/s^2].
@@ -32,7 +32,7 @@ double slowest_scale(const SolidProblem& problem, std::span<const double> cell_m
   return parallel::min(mesh.comm, slowest) / (length * length);
 }
 
-/// A vertex of the surface as it travels to rank 0; its shapes go beside it.
+/// Surface vertex sent to rank 0; its shapes are sent separately.
 struct SurfacePoint {
   GlobalIndex id;
   double x[3];
@@ -54,9 +54,9 @@ std::vector<double> participation(const SolidProblem& problem, const modes::Eige
   return sums;
 }
 
-// Rows of the narrow matrix up to which its factors are taken unasked: in space they fill (33 000 tetrahedra have 2e5 rows).
+// Largest number of rows factorized by default: factors fill in 3-D (33 000 tetrahedra have 2e5 rows).
 constexpr GlobalIndex most_rows_2d = 2000000, most_rows_3d = 400000;
-// Residual over force that factors of the right matrix leave.
+// Relative residual left by factors of the exact matrix.
 constexpr double exact = 1e-6;
 
 /// The factors are those of this operator: nothing in the scene that the narrow matrix does not know.
@@ -71,7 +71,7 @@ void check_factors(const SolidProblem& problem, elastic::TiedMatrix& factors, do
     throw SolveFailure("The factors do not match the stiffness.");
 }
 
-/// Whether the search goes by factors. Collective.
+/// True if the search uses factors. Collective.
 bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method) {
   using Preconditioner = MethodParameters::Preconditioner;
   if (!elastic::TiedMatrix::suits(problem.mesh) || !problem.is_symmetric()) return false;

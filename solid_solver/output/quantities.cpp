@@ -92,7 +92,7 @@ std::string method_of(const QuantityEstimate& q) {
   return q.body > 0 && q.error() == q.body ? "as the whole body" : "dual-weighted";
 }
 
-/// Of rank 0, which probes give their values to, on all ranks.
+/// Distributes a probe value from rank 0 to all ranks.
 double shared(MPI_Comm comm, const std::vector<double>& sampled, std::size_t i) {
   return parallel::sum(comm, sampled.empty() ? 0 : sampled[i]);
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Texts = std::vector<config::ExpressionText>;
 
-/// Of a total, which has no place: a function of time alone.
+/// Checks an expression for a total, which may depend only on time.
 std::string problem_of_total(const config::ExpressionText& text) {
   if (std::string problem = fv::problem_of(text); !problem.empty()) return problem;
   return fv::Expression(text).uses_space()

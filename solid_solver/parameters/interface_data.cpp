@@ -113,7 +113,7 @@ std::vector<coupling::Interface::Datum> taken(const InterfaceData& data) {
   return list;
 }
 
-// All centres are here while the nearest are looked for, and no longer.
+// All centers are stored on each rank only during the search for the nearest ones.
 InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres,
                                            const std::vector<std::span<const Vec3>>& places)
     : comm_(comm) {

@@ -191,7 +191,7 @@ std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials) {
   return zones;
 }
 
-// What the parameters say of the elastic body: constants and matrices of its materials, what suits them.
+// The elastic body from the parameters: constants and matrices of its materials, and applicable methods.
 
 namespace {
 
@@ -224,7 +224,7 @@ class Matrices {
   bool is_constant_ = true;
 };
 
-/// A matrix a material where its axes are the same everywhere, else one a cell.
+/// Adds one matrix per material if its axes are uniform, else one per cell.
 void add_matrices(const SolidParameters& p, const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                   elastic::ElasticBody& body) {
   const Matrices matrices(p);
@@ -239,7 +239,7 @@ void add_matrices(const SolidParameters& p, const mesh::Mesh& mesh, const mesh::
   }
 }
 
-// Of the norm of a matrix: by so much its mirror image may differ.
+// Tolerance of the mirror image relative to the norm of a matrix.
 constexpr double mirror_tolerance = 1e-6;
 
 }  // namespace

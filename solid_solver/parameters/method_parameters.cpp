@@ -186,7 +186,7 @@ namespace {
 
 using Texts = std::vector<config::ExpressionText>;
 
-/// The first text that depends on t; empty: none does, or it cannot be read, which is reported elsewhere.
+/// First text that depends on t; empty if none does, or it is invalid, which is reported elsewhere.
 std::string first_in_time(const Texts& texts) {
   for (const config::ExpressionText& e : texts)
     if (fv::problem_of(e).empty() && fv::Expression(e).uses_time()) return e.text;

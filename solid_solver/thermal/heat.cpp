@@ -14,7 +14,7 @@ namespace {
 // Up to here LU wins in time and has the memory.
 constexpr GlobalIndex direct_heat_up_to = 60000;
 
-// The three-point scheme is stable up to steps that grow by 1 + sqrt 2; beyond, Euler's begins anew.
+// The three-point scheme is stable for step ratios up to 1 + sqrt 2; beyond, it restarts with Euler.
 constexpr double largest_growth = 2.4;
 
 linalg::LinearOptions options_of(const HeatParameters& p, GlobalIndex n_unknowns) {
@@ -239,7 +239,7 @@ void Heat::set_inflow(std::span<const double> source) {
   const std::vector<double> points = point_temperature(trial_);
   std::vector<double> heat(mesh_->n_flux_faces());
   conduction_.face_heat(conductivity_, trial_.cells, trial_.boundary, points, heat);
-  // What is known of a flux face counts, as in the cell's row.
+  // Known data of a flux face enter as in the cell's row.
   const auto& faces = conduction_.flux_faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (conduction_.condition(faces[i]) == fv::HeatCondition::bonded) continue;

@@ -127,7 +127,7 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
   }
 }
 
-// The corners of a segment or a parallelogram are three times as far from the centre's value as the mean of a quadratic.
+// A quadratic's corner values on a segment or parallelogram differ from the center 3 times as much as its mean.
 void HeatBoundaries::fluxes_missed(const fv::ConductionOperator& conduction, double t,
                                    std::span<double> missed) const {
   const std::vector<Index> patch_of = mesh_->patch_of_boundary();

@@ -75,7 +75,7 @@ ThermalStrain::ThermalStrain(const mesh::Mesh& mesh, const elastic::ElasticOpera
   is_large_ = has_finite_strain(parameters);
   if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
   if (varies_) lame_ = lame_trial_ = lame_at(cell_temperature(0, false));
-  // What is given at the interface comes later: see set_interface().
+  // Interface temperatures arrive later, see set_interface().
   start_ = given_ ? std::vector<double>(mesh.n_flux_faces(), reference_) : face_temperature(0, false);
   lowest_ = *std::ranges::min_element(start_);
   highest_ = *std::ranges::max_element(start_);
