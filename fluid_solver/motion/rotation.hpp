@@ -30,7 +30,7 @@ class RotatingFrame {
                  const Vectors<D>& u_old, std::array<double, 2> factors, Vectors<D>& force) const;
   /// |omega x (x - c)|^2 / 2 at time t [m^2/s^2].
   double potential(double t, const Vec3& x) const;
-  /// 2 omega|, the larger rate of the Coriolis force at the two ends of a step [1/s].
+  /// |2 omega|, the larger rate of the Coriolis force at the two ends of a step [1/s].
   double rate(double t, double dt) const;
 
  private:

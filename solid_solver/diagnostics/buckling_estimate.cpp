@@ -39,7 +39,7 @@ std::string neglected(const BucklingEstimate& found) {
               : std::string());
 }
 
-/// a x| / |u| / (factor - 1), RMS over cells. The part a of u along x is by the K-orthogonality of modes.
+/// |a x| / |u| / (factor - 1), RMS over cells. The part a of u along x is by the K-orthogonality of modes.
 double growth_of(const SolidBody& body, const std::vector<double>& u, const std::vector<double>& x,
                  double factor) {
   const mesh::Mesh& mesh = body.mesh();

@@ -99,7 +99,7 @@ double ErrorEstimate::left_by_solver() const {
   return body_.equilibrium().share_left(view_.stepper.effort().residual, norm(view_.comm(), last.rhs));
 }
 
-/// u . (b - A u)| / |u . b| of the last linear static solve: relative error of u . b.
+/// |u . (b - A u)| / |u . b| of the last linear static solve: relative error of u . b.
 double ErrorEstimate::missed_work() const {
   const LastSolve& last = view_.stepper.last_solve();
   if (!last.is_known(view_.comm())) return 0;

@@ -171,7 +171,7 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
 
 /// Bending of a slender body varies too slowly for component-wise multigrid. A beam 10:1 of 80x8x8 cells
 /// takes 53 iterations instead of 143, one of 160x16x16 89 instead of 169, one 100:1 of 400x4x4 cubes 515
-/// instead of 1945 (to 1e-10). A plate of 4600 cells saves 6 of 46 iterations, no time; of 295 000: 71 instead of 49.
+/// instead of 1945 (to 1e-10). A plate of 4600 cells saves 6 of 46 iterations; 295 000 take 71, not 49.
 void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
   const mesh::Mesh& mesh = problem_.mesh;
   // Half as long as thick, where the cells are fine enough for that.

@@ -170,8 +170,8 @@ std::vector<LocalHeat> local_heat(const Heat& heat, const HeatState& field) {
   return all;
 }
 
-/// The fluxes of the scheme have a defect tau_f = exact - scheme's on the exact field. A functional with dual
-/// solution z ([becker2001]; Venditti and Darmofal, JCP 164 (2000) 204) and source defect s has the error -S + z.s,
+/// The fluxes of the scheme have a defect tau_f = exact - scheme's on the exact field. For a functional
+/// with dual solution z and source defect s ([becker2001]; [Venditti, Darmofal 2000]) the error is -S + z.s,
 ///   S = sum_f tau_f (z_N - z_P)
 /// tau_f is the gradient error (2.53)-(2.58) for a quadratic with the second derivatives H of T. It is zero
 /// between regular cells; there third derivatives dominate, which after summation by parts give

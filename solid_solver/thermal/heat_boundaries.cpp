@@ -127,7 +127,7 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
   }
 }
 
-// A quadratic's corner values on a segment or parallelogram differ from the center 3 times as much as its mean.
+// For a quadratic, corners of a segment or parallelogram differ from the center 3 times as much as the mean.
 void HeatBoundaries::fluxes_missed(const fv::ConductionOperator& conduction, double t,
                                    std::span<double> missed) const {
   const std::vector<Index> patch_of = mesh_->patch_of_boundary();
