@@ -149,7 +149,7 @@ void Coupler::start_acceleration() {
   if (pass_.schedule().iterates) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
 }
 
-/// `problem`: why the run stopped before its end; then its error is not judged.
+/// `problem`: why the run stopped early; its error is then not judged.
 void Coupler::finalise(const std::string& problem) {
   enter_(app::Phase::finalise, {});
   Monitor& monitor = known_->record.monitor();

@@ -10,7 +10,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// Explicit coupling looks at what comes back in further passes: in the steps 1 (to explain a failure), 4, 16, 64, ...
+/// Explicit coupling examines its response in more passes in steps 1 (to explain a failure), 4, 16, 64, ...
 bool looks_at(GlobalIndex step) {
   const auto n = static_cast<std::uint64_t>(step);
   return n == 1 || (n >= 4 && std::has_single_bit(n) && std::countr_zero(n) % 2 == 0);
@@ -92,7 +92,7 @@ FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, con
                            observer);
 }
 
-/// The step of explicit coupling. What further passes return is shown to the diagnostics, and leaves no trace.
+/// Performs a step of explicit coupling. Results of additional passes only go to the diagnostics.
 FixedPointResult Coupler::pass_once(const coupling::Step& step, Iterate guess, const FixedPointMap& map) {
   FixedPointResult result;
   result.x = std::move(guess);

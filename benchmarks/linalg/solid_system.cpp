@@ -69,7 +69,7 @@ void add_rigid_motions(const SolidBody& body, Mat p) {
   petsc_check(VecDestroy(&v));
 }
 
-/// The assembled operator; it is the kernel's own unless faces share at edges: then PETSc preconditions with it.
+/// Assembled operator. It equals the kernel's unless faces share at edges; then it only preconditions PETSc.
 Result by_assembled(const System& system, const SolidBody& body, const std::string& options,
                     std::string& note) {
   const Meter assembling(system.comm);

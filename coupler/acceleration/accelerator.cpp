@@ -19,7 +19,7 @@ void sum_over(MPI_Comm comm, std::span<double> values) {
 
 double dot(std::span<const double> a, std::span<const double> b) {
   assert(a.size() == b.size());
-  // Several sums side by side: one alone waits for each addition.
+  // Uses several partial sums, because a single one would wait for each addition.
   using Vector = Eigen::Map<const Eigen::VectorXd>;
   return Vector(a.data(), Eigen::Index(a.size())).dot(Vector(b.data(), Eigen::Index(b.size())));
 }

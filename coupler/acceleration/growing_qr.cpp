@@ -69,7 +69,7 @@ void GrowingQr::subtract(const Eigen::VectorXd& t, std::span<double> r) const {
 
 void GrowingQr::push_front(std::vector<double> v) {
   const int m = columns();
-  // First sweep: t = Q^T v. Its last entry, |v|^2, tells what is rounding.
+  // First sweep: t = Q^T v. Its last entry |v|^2 is the scale of round-off.
   Eigen::VectorXd t = Eigen::VectorXd::Zero(m + 1), again = t;
   for_blocks(v.size(), [&](std::size_t first, std::size_t count) {
     const std::span<const double> here(v.data() + first, count);
@@ -85,8 +85,8 @@ void GrowingQr::push_front(std::vector<double> v) {
     again[m] += dot({here, count}, {here, count});
   });
   sum_over(comm_, {again.data(), std::size_t(m) + 1});
-  // What is left is |v - Q t - Q t'|^2 = |v - Q t|^2 - |t'|^2, t' being small. What rounding leaves of a dependent
-  // column has no direction: it becomes a zero column of Q.
+  // The remainder is |v - Q t - Q t'|^2 = |v - Q t|^2 - |t'|^2 with small t'. Round-off of a dependent column
+  // has no direction, so it becomes a zero column of Q.
   const double rest = std::sqrt(std::max(0., again[m] - again.head(m).squaredNorm()));
   const bool dependent = rest <= 1e-14 * std::sqrt(t[m]);
 

@@ -198,7 +198,7 @@ void MultiVectorNewton::add(Pair pair) {
 }
 
 void MultiVectorNewton::correct(Iterate& next) const {
-  // What the columns of one step leave of the residual goes on to the step before.
+  // The residual left by the columns of one step is passed to the previous step.
   std::vector<double> rest = residual();
   for (const SecantPairs& step : steps_) {
     const Eigen::VectorXd t = step.qr().along(rest);

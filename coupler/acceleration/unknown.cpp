@@ -32,7 +32,7 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
     // A mover takes before everyone.
     if (taker == std::ssize(group) || side_by_side || place_in_group(link.giver) >= taker) add(link);
   }
-  // The guess of a displacement, for the mover alone, needs its velocity, too.
+  // The mover's guess of a displacement also requires its velocity.
   const std::vector<Part> taken = parts_;
   for (const Part& p : taken)
     for (const auto& link : links.all())
@@ -182,7 +182,7 @@ std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) c
     if (p.rides) continue;
     const double r = sums[k], h = sums[k + 1], places = sums[k + 2];
     k += 3;
-    // Nothing moves: converged; anything else against nothing: not.
+    // Converged if nothing moves, but not if a nonzero residual meets zero.
     const double relative = h > 0 ? std::sqrt(r / h) : (r > 0 ? std::numeric_limits<double>::infinity() : r);
     list.push_back({relative, places > 0 ? std::sqrt(r / places) / p.weight : 0});
   }
@@ -302,8 +302,8 @@ Iterate Unknown::ends(Iterate x) const {
   return x;
 }
 
-/// On the cubic through the four times next to it that a participant gave instead, in a later pass of the step (Lagrange; fewer
-/// times: of a lower degree).
+/// Values at other times that a participant gave in a later pass of the step, by the cubic through the four
+/// nearest times (Lagrange; fewer times lower the degree).
 std::vector<double> Unknown::between_times(const Part& part, const coupling::Exchange& given) const {
   const Part& end = parts_[*part.within];
   std::vector<std::pair<double, std::span<const double>>> known;

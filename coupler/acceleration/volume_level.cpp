@@ -15,16 +15,16 @@ namespace {
 
 constexpr const char* inflow_name = "inflow";
 constexpr const char* load_name = "pressure-force";
-// Of all that flows through the wall: below it is round-off; up to here a structure's own solver may leave.
+// Limits relative to the flow through the wall: round-off, and residual allowed to a structure's solver.
 constexpr double exact = 1e-11, good_enough = 1e-6;
-// What the fluid's load would move in a step counts as flow with this share: where nothing flows the level holds a
-// load at rest (gravity), and the defect is measured by that, not by the round-off of a wall that stands.
+// Weight of the motion by the fluid's load in a step as a flow. Without flow, the level balances a load at
+// rest (gravity), which then is the scale of the defect instead of round-off.
 constexpr double resting = 1e-2;
 constexpr int most_tries = 12;
-// Share of a swing that a step takes away (0.15 has the least spectral radius of the recursion, 0.612), and how much
-// of all that flows may swing: that moves the level by less than a coupling tolerance of 1e-6 does.
+// Damping of an oscillation per step (0.15 has the smallest spectral radius, 0.612), and the relative size
+// that is ignored: it moves the level by less than a coupling tolerance of 1e-6 does.
 constexpr double damping = 0.15, calm = 1e-5;
-// Of the largest flow that is left as a measure after each step: flows pass through zero.
+// Decay of the largest flow per step as a scale, because flows pass through zero.
 constexpr double fading = 0.98;
 
 }  // namespace
@@ -76,7 +76,7 @@ void VolumeLevel::start_step(double dt) {
   }
 }
 
-/// On the areas between those at the begin and at the end of the step: then the level's work is that on the volume.
+/// Applies the level to the mean area of the step, so that its work is that on the volume.
 void VolumeLevel::loaded(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given) {
   const auto found = std::ranges::find(cavities_, i, &Cavity::side);
   if (found == cavities_.end()) return;
@@ -201,7 +201,7 @@ void VolumeLevel::find(std::vector<coupling::Exchange>& known, const std::functi
     const Defect next = answer_to(known, answer);
     const double left = share(next);
     if (!std::isfinite(left)) break;
-    // What a structure's own solver leaves tells nothing about the slope.
+    // The residual of a structure's own solver gives no information about the slope.
     if (left > good_enough && change.squaredNorm() > 0)
       slope_ += next.value * change.transpose() / change.squaredNorm();
     if (left <= exact || (left <= good_enough && left > best / 2)) return;

@@ -17,13 +17,13 @@ double ratio(const Residual& first, const Residual& second) {
   return second.absolute / first.absolute;
 }
 
-/// The explicit scheme leaves the answer of the load out. Two further passes in a few steps tell how much of a change of
-/// the motion comes back through the load in the next pass, |H(H(x)) - H(x)| / |H(x) - x|. With an added mass alone that is
-/// added mass over structural mass (Causin, Gerbeau and Nobile 2005).
+/// Explicit coupling neglects the response of the load. Two additional passes in some steps measure which
+/// share of a change in motion returns through the load, |H(H(x)) - H(x)| / |H(x) - x|. With pure added mass
+/// it is added mass over structural mass (Causin, Gerbeau and Nobile 2005).
 ///
-/// One pass per step holds while the guess that the load is of is not thrown over. A guess with velocity v^n returns
-/// r = added mass / mass of the last change, lambda = -r; one of 2 v^n - v^{n-1} (predictor of order 2) gives
-/// lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
+/// One pass per step is stable while the guess for the load is. A guess with velocity v^n returns r = added
+/// mass / mass of the last change, lambda = -r; one with 2 v^n - v^{n-1} (predictor of order 2) gives
+/// lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: the limit is half.
 class AddedMass final : public CouplingDiagnostic {
  public:
   explicit AddedMass(const CouplingView& view)
@@ -79,14 +79,14 @@ std::shared_ptr<CouplingDiagnostic> added_mass(const CouplingView& view) {
 
 namespace {
 
-// Participants solve to about 1e-8 of their values: an answer to less than this part of the velocity is noise.
+// Participants solve to about 1e-8 of their values; a response below this part of the velocity is noise.
 constexpr double noise = 1e-6;
 
-/// Bounds what explicit coupling leaves in the motion. The load of a step answers a predicted velocity w, the structure
-/// then moves with v. Of d = v - w the part c comes back through the load in the same step. Where no step's error cancels
-/// another's, that leaves c sum |d| in the velocity, and this over the frequency w^2 = sum dt v.v / sum dt u.u (or times
-/// the duration, if that is less) in the displacement. Added masses alone leave much less: their errors of single steps
-/// cancel.
+/// Bounds the error of explicit coupling in the motion. The load of a step uses a predicted velocity w, then
+/// the structure moves with v. A share c of d = v - w returns through the load in the same step. If errors of
+/// steps do not cancel, the velocity error is c sum |d|. The displacement error is this over the frequency,
+/// w^2 = sum dt v.v / sum dt u.u, or times the duration if smaller. Pure added mass has a much smaller error,
+/// because it cancels between steps.
 class ExplicitLag final : public CouplingDiagnostic {
  public:
   explicit ExplicitLag(const CouplingView& view) : view_(view) {}
@@ -144,7 +144,7 @@ class ExplicitLag final : public CouplingDiagnostic {
   bool is_known_ = false;
 };
 
-/// Takes the place of ExplicitLag where an unknown is no motion alone.
+/// Replaces ExplicitLag if an unknown is not purely a motion.
 class UnknownLag final : public CouplingDiagnostic {
  public:
   void conclude(diagnostics::Report& report) override {

@@ -101,7 +101,7 @@ class InterfaceWork final : public CouplingDiagnostic {
 
  private:
   bool stops() const { return view_.parameters.on_divergence == OnDivergence::stop; }
-  /// Work in the accepted state of all that take a force [J]; NaN where one does not tell.
+  /// Energy in the accepted state of all participants that take forces [J]; NaN if one does not report it.
   double energy_of_structures() const {
     double total = 0;
     for (std::size_t i = 0; i < view_.pass.sides().size(); ++i) {

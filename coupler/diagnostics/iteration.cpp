@@ -80,12 +80,12 @@ namespace {
 
 // A residual that hardly falls says nothing except that the error is large.
 constexpr double slowest = 0.99;
-// Where one pass was enough.
+// Contraction assumed if one pass was enough.
 constexpr double unseen = 0.5;
 
-/// What the iteration between participants leaves in the unknown below its tolerance: of a step whose residual fell
-/// by the factor c in its last pass, |x - x*| <= c / (1 - c) |H(x) - x|; over all steps see StepErrors. Residuals
-/// are over the size of the unknown.
+/// Error of the iteration between participants below its tolerance. If the last pass reduced the residual by
+/// a factor c,
+/// |x - x*| <= c/(1 - c) |H(x) - x|; for all steps see StepErrors. Residuals are relative to the unknown.
 class CouplingError final : public CouplingDiagnostic {
  public:
   explicit CouplingError(const CouplingView& view) : view_(view) {}

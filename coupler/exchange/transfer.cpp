@@ -11,7 +11,7 @@ namespace couplet::coupler {
 
 namespace {
 
-/// Of entries sorted by target and source, equal ones added up.
+/// Sums equal entries, which are sorted by target and source.
 void add_up(std::vector<Transfer::Entry>& entries) {
   std::size_t kept = 0;
   for (const auto& e : entries)
@@ -22,7 +22,7 @@ void add_up(std::vector<Transfer::Entry>& entries) {
   entries.resize(kept);
 }
 
-/// Entries of targets from `first` on, by target and source: by counting, since the targets of a rank are a stretch.
+/// Sorts entries of targets from `first` on by counting, because a rank's targets are contiguous.
 void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>& entries) {
   if (std::ranges::is_sorted(entries, by_row)) return;
   std::vector<std::size_t> at(std::size_t(end - first) + 1, 0);
@@ -189,7 +189,7 @@ class RowSums {
 /// The rows of a map at some places: those of this rank, and copies of others' that it needs.
 class MapRows {
  public:
-  /// `own`: by owner and in order; `needed`: places of others, ascending.
+  /// `own`: by owner, in order. `needed`: positions on other ranks, ascending.
   MapRows(MPI_Comm comm, const coupling::Starts& starts, const Entries& own,
           const std::vector<GlobalIndex>& needed)
       : first_(starts[std::size_t(parallel::comm_rank(comm))]),

@@ -17,7 +17,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// Where a side does not list the corners of its faces: local interpolants through the centres of the structure's.
+/// Map for a side without listed corners: local interpolants through the structure's face centers.
 std::vector<Transfer::Entry> without_corners(MPI_Comm comm, const Surroundings& structure,
                                              const Surroundings& surface, int dim) {
   const std::size_t k = dim == 2 ? 5 : 10;
@@ -179,7 +179,7 @@ Eigen::MatrixXd common_part(const Flat& f, const coupling::Interface& other, Ind
   return products;
 }
 
-/// Distance [m] of two faces that see each other: of one's centre from the other's plane.
+/// Distance [m] between opposite faces: of one's center from the other's plane.
 double between(const coupling::Interface& a, Index f, const coupling::Interface& b, Index s) {
   const Vec3 way = b.face_centres[s] - a.face_centres[f];
   return std::min(std::abs(way.dot(a.face_areas[f].normalized())),

@@ -24,7 +24,7 @@ struct Source {
   const Datum* datum;
 };
 
-/// What a participant remembers of its last pass through the coupler's hands, as a part of the unknown.
+/// True for data that a participant stores with the coupler between passes, as a part of the unknown.
 bool is_own(const Datum& datum) { return datum.name.starts_with("own-"); }
 
 /// The participants other than `taker` that give `wanted`; of its own data itself.
@@ -97,7 +97,7 @@ std::vector<std::size_t> takers_of(const Datum& datum, const std::vector<Side>& 
   return list;
 }
 
-/// Of the places of giver `g` those that taker `t` is nearest to: an amount goes to one taker.
+/// Places of giver `g` whose nearest taker is `t`, because an amount goes to one taker.
 PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std::size_t g, std::size_t t,
                   const std::vector<std::size_t>& takers, const std::vector<Side>& sides) {
   std::vector<PointSet> theirs;
@@ -121,7 +121,7 @@ double sum_of(MPI_Comm comm, const std::vector<double>& values, int components, 
   return parallel::sum(comm, total);
 }
 
-/// Whether two data may go by one map: both loads, both motion, both other amounts or both neither.
+/// True if two data can use one map: both loads, motions, other amounts, or none of these.
 bool of_one_kind(const Datum& a, const Datum& b) {
   const auto kind = [](const Datum& d) {
     return d.unit == "m" || d.unit == "m/s" ? 'm' : d.unit == "N" ? 'N' : coupling::is_amount(d) ? 'a' : ' ';
@@ -129,7 +129,7 @@ bool of_one_kind(const Datum& a, const Datum& b) {
   return kind(a) == kind(b) && a.components == b.components;
 }
 
-/// Whether a side moves by what it takes: a force goes in, a displacement comes out.
+/// True if a side moves in response to its input: it takes a force and gives a displacement.
 bool is_structure(const coupling::Interface& i) {
   return std::ranges::any_of(i.takes,
                              [&](const Datum& d) { return d.unit == "N" && d.size(i.dim) == i.dim; }) &&
@@ -167,7 +167,7 @@ class WallMaps {
   std::map<std::pair<std::size_t, std::size_t>, ConjugateMap> maps_;
 };
 
-/// What to report where two participants give the same datum at one place.
+/// Problem if two participants give the same datum at one place.
 std::string given_twice(const std::vector<std::string>& names, const std::string& taker, const Datum& wanted,
                         const std::vector<Source>& sources) {
   if (sources.size() < 2) return "";

@@ -57,8 +57,8 @@ double wendland(double r) {
   return r < 1 ? s * s * (4 * r + 1) : 0;
 }
 
-/// Coordinates about the sources' centre, in units of their reach, along the directions that the polynomial
-/// takes: sources first, x last.
+/// Coordinates relative to the sources' center in units of their reach, along the polynomial's directions:
+/// sources first, x last.
 Eigen::MatrixXd coordinates(const std::vector<Vec3>& points, std::span<const Index> sources, const Vec3& x) {
   const auto n = Eigen::Index(sources.size());
   Eigen::MatrixXd at(n + 1, 3);

@@ -33,8 +33,8 @@ struct Box {
   }
 };
 
-/// Extent of each face of this rank [m]: between corners where these are known (a face may be long and thin),
-/// else the edge of a square of its area; in 2-D areas are lengths. Collective.
+/// Extent of each face of this rank [m]: largest distance of known corners (a face may be long and thin),
+/// otherwise the edge of a square of its area; in 2-D areas are lengths. Collective.
 std::vector<double> extents(MPI_Comm comm, const Side& side) {
   const coupling::Interface& i = side.interface;
   const FaceCorners corners(comm, side);
@@ -88,7 +88,7 @@ std::string other_extent(const Box& a, const std::string& from, const Box& b, co
           : "");
 }
 
-/// Whether each of these points has another within a tenth of the faces there.
+/// True if each of these points has another within a tenth of the face size.
 bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<double>& size) {
   bool far = false;
   for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * size[i];
@@ -233,15 +233,15 @@ void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts
 
 std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
 
-/// Whoever takes a motion and gives no load (a heater on one side of a flap) covers as much of the surface as it likes.
+/// A participant that takes a motion but gives no load (a heater on a flap) may cover any part of the surface.
 bool gives_load(const Side& side) {
   return std::ranges::any_of(side.interface.gives, [](const coupling::Interface::Datum& d) {
     return d.unit == "N" || d.unit == "Pa";
   });
 }
 
-/// Participants that exchange load and motion, directly or through others, as positions in `sides`: those that give the
-/// motion and those that take it. The mesh mover is none of them.
+/// Participants that exchange load and motion, directly or indirectly, as positions in `sides`: givers and
+/// takers of the motion, without the mesh mover.
 struct Group {
   std::set<std::size_t> givers, takers;
 };
@@ -338,8 +338,8 @@ double faceting(const SurfaceFacts& a, const SurfaceFacts& b) {
   return 0.01 + share * share;
 }
 
-/// Largest difference of the mean distances from the centroid [m]. The centres of one row of faces all lie on a line, those of two rows
-/// do not: a direction in which a surface is but few faces wide is left to the box.
+/// Largest difference of the mean distances from the centroid [m]. Directions in which a surface is only a
+/// few faces wide are left to the box, because the centers of one row of faces are collinear.
 double spread_apart(const SurfaceFacts& a, const SurfaceFacts& b) {
   const Vec3 width = (a.high - a.low).cwiseMin(b.high - b.low);
   double apart = 0;

@@ -176,7 +176,7 @@ std::string listed(const std::vector<Worker>& workers, const std::vector<int>& r
 
 std::vector<int> divide_ranks(const std::vector<Worker>& workers, int total, bool side_by_side) {
   std::vector<int> ranks(workers.size(), 1);
-  // Each further rank where it helps most: right for sums of convex functions, and for the longest of falling ones.
+  // Adds each rank where it helps most; optimal for convex sums and for the maximum of decreasing functions.
   for (int n = int(workers.size()); n < total; ++n) {
     std::size_t best = 0;
     double most = -1;

@@ -28,7 +28,7 @@ std::string names_of(const coupling::Interface& interface) {
   return names.empty() ? "nothing" : base::join(names);
 }
 
-/// What it gives itself, else what it takes.
+/// Data of this name that it gives, otherwise takes.
 const std::vector<double>* either(const std::string& name, const coupling::Exchange& given,
                                   const coupling::Exchange& taken) {
   for (const coupling::Exchange* data : {&given, &taken})

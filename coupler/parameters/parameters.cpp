@@ -65,7 +65,7 @@ std::string problem_of_roles(const CouplingParameters& p) {
              : "fluid and structure must be two different participants";
 }
 
-/// Those with an interface that the coupler knows.
+/// Participants with an interface known to the coupler.
 std::vector<std::string> partners_of(const CouplingParameters& p) {
   std::vector<std::string> names;
   if (p.exchange) names = p.exchange->participants;
