@@ -27,8 +27,8 @@ Parameters with_unit_directions(Parameters p) {
   return p;
 }
 
-/// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
-/// in the new scene is where its balance starts from.
+/// A restart may remove or move the seat, or change gravity. The energy balance then starts from the energy
+/// in the new case.
 void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState& state) {
   Energies& kept = state.energies;
   const Energies now = oscillators.start(state.q, state.v).energies;
@@ -82,7 +82,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
 
 Structure::~Structure() = default;
 
-/// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
+/// Rejects an initial penetration of the seat, because its springs would store energy.
 void Structure::refuse_wound_springs() const {
   double size = 0;
   for (const Vec3& x : surface_.centres()) size = std::max(size, (x - surface_.centres().front()).norm());
@@ -179,7 +179,7 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   surface_.add_load(received(in, "viscous-force"), fluid);
   pressure_acts_ = false;
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
-    // A partner's load is its mean over the step: that of the middle. Schemes that solve later continue it from the middle of the last step.
+    // A partner's load is its mean over the step, valid at mid-step; schemes that solve later extrapolate it.
     const time::TimeScheme scheme = parameters_.time_scheme.type;
     const bool looks_back = time::uses_acceleration(scheme) || time::uses_old_level(scheme);
     const auto load = [&](double after, std::span<double> total) {
@@ -213,7 +213,7 @@ void Structure::add_pressure(double t, std::span<double> load) {
   pressure_acts_ = pressure_acts_ || std::ranges::any_of(load, [](double f) { return f != 0; });
 }
 
-/// q = Q / omega^2 of each mode; beside it K u = f on rank 0.
+/// q = Q/omega^2 of each mode; K u = f on rank 0.
 void Structure::solve_static(double t, std::span<const double> fluid) {
   std::vector<double> load(fluid.size(), 0);
   if (pressure_) add_pressure(t, load);

@@ -14,10 +14,10 @@
 namespace couplet::plate {
 namespace {
 
-/// A load that the run has looked at less often says nothing before the end: one jump among few steps is no error.
+/// Minimum number of load samples for a finding before the end: one jump in few steps is no error.
 constexpr long least_looks = 16;
 
-/// Sixteen points of equal weight: centres of the pieces that two halvings make.
+/// Sixteen points of equal weight: centers of the pieces after two bisections.
 std::vector<Vec3> points_within(const modes::ModalModel& model, std::span<const Index> face) {
   std::vector<Vec3> points;
   const auto at = [&](std::size_t i) -> const Vec3& { return model.vertices[face[i]]; };
@@ -30,7 +30,7 @@ std::vector<Vec3> points_within(const modes::ModalModel& model, std::span<const 
       }
     return points;
   }
-  // Rows of a triangle cut into quarters of its edges: pieces that stand and pieces that hang.
+  // Rows of a triangle with its edges cut into quarters: upright and inverted pieces.
   const auto add = [&](double x, double y) {
     points.push_back(at(0) + x * (at(1) - at(0)) + y * (at(2) - at(0)));
   };
@@ -48,7 +48,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   void observe(diagnostics::Report&) override {
     has_acted_ = has_acted_ || view_.pressure_acts;
     if (const auto t = time_to_look(view_)) look_at_faces(*t);
-    // A load that differs from place to place costs an expression for each face, so it is not looked at in each step.
+    // A nonuniform load needs an expression per face, so it is not sampled in each step.
     const GlobalIndex steps = view_.step.number + 1;
     if (view_.is_dynamic() && view_.pressure->changes_in_time() &&
         (view_.pressure->is_uniform() || steps <= 16 || steps % 16 == 0))
@@ -93,8 +93,8 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
 
  private:
   double within_faces() const { return fine_ > 0 ? std::sqrt(within_ / fine_) : unknown; }
-  /// Adds what the pressures at t do to the modes: with one force in the middle of each face, if each force lay along the
-  /// motion of its face, and with sixteen points per face.
+  /// Adds the modal loads of the pressures at t: with one force at the center of each face, with each force
+  /// along the motion of its face, and with sixteen points per face.
   void look_at_faces(double t) {
     const modes::ModalModel& model = view_.model();
     const PressureLoad& pressure = *view_.pressure;

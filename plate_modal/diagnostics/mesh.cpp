@@ -18,8 +18,8 @@ double along(const modes::ModalModel& model, const std::vector<double>& shape, s
   return Vec3(u[0], u[n], u[2 * n]).dot(direction);
 }
 
-/// For each mode: how far the mean of a cell's corners is from the cell's mean deflection, rms over that of the latter. In
-/// each direction of a wave with n cells in half of it that is (pi / n)^2 / 12.
+/// Per mode: difference of the mean over a cell's corners from the cell's mean deflection, RMS relative to
+/// the latter. With n cells per half wave it is (pi/n)^2/12 in each direction.
 std::vector<double> mesh_gaps(const modes::ModalModel& model, std::size_t cells, const Vec3& normal) {
   const std::vector<Vec3> areas = modes::face_areas(model);
   std::vector<double> gaps(model.n_modes(), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects that modes of a thin plate neglect: large motions, motion in the plane, stretch, shear and rotary inertia.
+// Effects neglected by modes of a thin plate: large and in-plane motion, stretch, shear and rotary inertia.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,9 +48,9 @@ class PlateTheory final : public diagnostics::Diagnostic {
  private:
   bool moves_freely() const { return view_.surface.omega().front() == 0; }
 
-  // A body that moves as a whole may go far, but it must not rotate far: a mode moves it along its tangent, so that
-  // 0.25 rad stretch it by 1 / cos, 3 %. A clamped strip whose tip has moved by a quarter of its length has rotated there
-  // by about 20 degrees: the foreshortening that modes do not know is 0.6 x 0.25^2 of the length, 4 %.
+  // A free body may translate far but not rotate far: a mode moves it along the tangent, so that 0.25 rad
+  // stretch it by 1/cos, 3 %. A clamped strip with a tip deflection of a quarter of its length has rotated
+  // there by about 20 degrees; the neglected foreshortening is 0.6 x 0.25^2 of the length, 4 %.
   void look_at_rotation(diagnostics::Report& report, double displacement) const {
     if (moves_freely())
       report_neglected(report, "large rotation", rotation_, 0.25,
@@ -76,7 +76,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
         stiffening / (1 + stiffening));
   }
 
-  /// The largest share in the plane of what pushes or moves the whole plate: modes of bending do not answer it.
+  /// Largest in-plane share of loads and base motion, to which bending modes do not respond.
   void look_at_plane(diagnostics::Report& report) const {
     const Parameters& p = view_.parameters;
     const Vec3 normal = p.placement.normal();
@@ -95,8 +95,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
         share);
   }
 
-  // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu))) of it,
-  // omega by 2 % where half a wave, pi / k, is ten thicknesses long.
+  // Mindlin's plate compared with Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5
+  // (1 - nu))), omega by 2 % if half a wave, pi/k, is ten thicknesses long.
   void look_at_shear(diagnostics::Report& report) const {
     const double omega =
         motion_ ? motion_->evidence(view_.step.is_last).last_mode_omega : view_.surface.omega().back();

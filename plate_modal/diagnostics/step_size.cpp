@@ -13,8 +13,8 @@
 namespace couplet::plate {
 namespace {
 
-/// Ten steps in a period make the trapezoidal rule's period 3 % too long, and a mode that swings at another frequency than
-/// its own answers a load as another structure would.
+/// With ten steps per period the trapezoidal rule lengthens the period by 3 %, and a mode at a wrong
+/// frequency responds to a load like another structure.
 class StepSize final : public diagnostics::Diagnostic {
  public:
   StepSize(const PlateView& view, std::shared_ptr<Motion> motion) : view_(view), motion_(std::move(motion)) {}

@@ -18,9 +18,9 @@
 namespace couplet::plate {
 namespace {
 
-/// Judges the truncated modes of a dynamic analysis by static correction: the compliance f (K + s M)^-1 f of the plate
-/// against that of its modes, sum (phi . f)^2 / (omega^2 + s), summed over the times at which the loads are looked at. s is
-/// 0 for a plate that is held, and the square of its first frequency above 0 otherwise.
+/// Judges the truncation of modes in a dynamic analysis by static correction: compliance f (K + s M)^-1 f of
+/// the plate relative to that of its modes, sum (phi . f)^2/(omega^2 + s), summed over sampled times. s is 0
+/// for a held plate, otherwise the square of its first nonzero frequency.
 class TruncatedModes final : public diagnostics::Diagnostic {
  public:
   TruncatedModes(const PlateView& view, std::shared_ptr<const Motion> motion)
@@ -99,8 +99,8 @@ class TruncatedModes final : public diagnostics::Diagnostic {
         "more modes ('modes.number')",
         apart);
   }
-  // A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
-  // what the static measure counts, and near it without limit.
+  // A mode responds to a load of frequency f by 1/(1 - (f/f_mode)^2): at two thirds of its frequency 1.8
+  // times the static measure, and near it without bound.
   void look_at_load_frequency(diagnostics::Report& report) const {
     const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
     report_neglected(

@@ -20,10 +20,10 @@
 namespace couplet::plate {
 namespace {
 
-/// To be counted up when the same data would give other modes.
+/// Increment when the same input would produce different modes.
 constexpr int model_version = 3;
 
-/// FNV-1a over all that the modes depend on.
+/// FNV-1a hash of all data that affect the modes.
 class Key final {
  public:
   void add(const void* data, std::size_t bytes) {
@@ -49,9 +49,9 @@ std::vector<Support> supports(const Midsurface& surface, const Parameters& p) {
   return result;
 }
 
-/// The stretch of a plate whose edges cannot move in its plane stiffens it by about an eighth at these deflections: of a
-/// clamped circle as 1 + 0.49 (w/h)^2, of a hinged one as 1 + 1.85 (w/h)^2 [Timoshenko and Woinowsky-Krieger 1959, section
-/// 97], of hinged strips as 1 + 3 (w/h)^2.
+/// Membrane stretching stiffens a plate with fixed edges by about an eighth at these deflections: a clamped
+/// circle as 1 + 0.49 (w/h)^2, a hinged one as 1 + 1.85 (w/h)^2 [Timoshenko and Woinowsky-Krieger 1959,
+/// section 97], hinged strips as 1 + 3 (w/h)^2.
 double stretch_limit(const std::vector<Support>& patches) {
   const auto n = [&](Support s) { return std::ranges::count(patches, s); };
   if (n(Support::free) > 0 && n(Support::clamped) + n(Support::simply_supported) < 2) return 0;
@@ -159,7 +159,7 @@ void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) 
       rigid, modes.eigenvalue.size(), rigid);
 }
 
-/// The key of the data with a digest of what was made of them: a file whose values were edited is not used again.
+/// Key of the input with a digest of the results, so that a file with edited values is not reused.
 std::string key_with_content(const std::string& key, const modes::ModalModel& model) {
   Key content;
   content.add(model.vertices);

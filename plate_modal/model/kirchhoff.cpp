@@ -19,8 +19,8 @@ std::array<Vec2, 3> coordinate_gradients(const Triangle& x) {
   return g;
 }
 
-/// Slopes (two rows) at the middle of the edge opposite to vertex k: along the edge those of the cubic
-/// through the deflections and slopes of its ends, across it the mean of the ends [batoz1980].
+/// Slopes (two rows) at the midpoint of the edge opposite to vertex k: along the edge those of the cubic
+/// through its ends, across it the mean of the ends [batoz1980].
 Eigen::Matrix<double, 2, 9> middle_slopes(const Triangle& x, int k) {
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   const double length = (x[j] - x[i]).norm();

@@ -30,8 +30,8 @@ double least_corner(const Midsurface& s, std::span<const Index> cell) {
   return least;
 }
 
-/// The model lies in the plane of the mesh's x and y, and 'placement' says where that is in space: a mesh that stands
-/// in another plane, or is no plane, would be seen from above only.
+/// The model is in the x-y plane of the mesh, and 'placement' gives its position in space. A mesh in another
+/// plane, or a curved one, would only be seen from above.
 void refuse_out_of_plane(const mesh::RawMesh& raw) {
   constexpr double tolerance =
       1e-6;  // of the mesh's size: coordinates of a file have no more digits than this
@@ -152,7 +152,7 @@ Midsurface midsurface_of(const mesh::RawMesh& raw, std::span<const int> curves) 
 namespace {
 
 constexpr double sharp = 55 * base::degree, least = 0.5 * base::degree, least_share = 0.6;
-// Below it a corner is told: right angles have 2.
+// Order below which a corner is reported; right angles have 2.
 constexpr double least_order = 1.9;
 
 struct Neighbours {
@@ -169,9 +169,9 @@ double turn_between(const Midsurface& s, int first, int second) {
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
 }
 
-/// Angle by which a curve turns between the middle of its last edge and its end, from the turn before that edge. Where nothing is
-/// known of that (the curve has one edge, or a sharp corner lies there) the curve goes on as a circle over a point within it, and as a
-/// line up to a point between two curves.
+/// Turn of a curve between the midpoint of its last edge and its end, from the turn before that edge. If this
+/// is unknown (the curve has one edge, or a sharp corner is there), the curve continues as a circle at an
+/// inner point, and as a line up to a point between two curves.
 double turn_to_end(const Midsurface& s, int edge, int beyond, int other, double turn_here) {
   const bool is_after = beyond >= 0 && s.edges[edge].to == s.edges[beyond].from;
   const double here = along(s, edge).norm();

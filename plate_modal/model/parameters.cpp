@@ -173,7 +173,7 @@ void declare_loads(config::Section& s, Parameters& p) {
       "a rigid seat under the structure, for dynamic analyses only");
 }
 
-/// Keys that describe a plate say nothing about the modes of a file, which have their own surface, place and mass.
+/// Rejects keys of a plate for modes from a file, which have their own surface, position and mass.
 void check_file_alone(config::Section& s, const Parameters& p) {
   const auto of_no_use = [&](const char* key, const char* why, auto&& is_given) {
     s.check(

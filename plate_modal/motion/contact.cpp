@@ -42,8 +42,8 @@ Contact::Contact(const Surface& surface, const ContactParameters& p, const Vec3&
   refuse_sliding(surface, direction, faces);
 }
 
-/// A seat pushes along its direction. Faces that the modes move across it alone (the rim of a plate that looks at a
-/// seat beside it) would sink through it without a force that anything feels.
+/// A seat acts along its direction. Faces that modes only move across it (the rim of a plate next to a seat)
+/// would penetrate it without any effective force.
 void Contact::refuse_sliding(const Surface& surface, const Vec3& direction,
                              std::span<const std::size_t> faces) const {
   double moves[2] = {0, 0};  // along the direction, in all

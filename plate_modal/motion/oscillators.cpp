@@ -142,7 +142,7 @@ void Oscillators::solve_contact(const time::Stage& stage, const ModalState& at) 
       part *= 0.5;
     }
     iterations_ = std::max(iterations_, i + 1);
-    // At rounding level Newton's method stands still.
+    // Newton's method has stalled at round-off.
     if (size >= before && size <= 1e3 * newton_tolerance * scale) break;
   }
 }
