@@ -107,15 +107,15 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
   return heat;
 }
 
-/// IMEX-SSP2(2,2,2) of Pareschi and Russo (2005): Heun's strong-stability-preserving method for advection, an
-/// L-stable SDIRK with gamma = 1 - 1/sqrt(2) for conduction and exchange, second order together:
+/// IMEX-SSP2(2,2,2) of Pareschi and Russo (2005), second order: Heun's strong-stability-preserving method for
+/// advection, and an L-stable SDIRK with gamma = 1 - 1/sqrt(2) for conduction and exchange:
 ///   U1 = u + gamma dt L U1
 ///   U2 = u + dt A(U1) + dt (1 - 2 gamma) L U1 + gamma dt L U2
 ///   u' = u + dt/2 (A(U1) + A(U2)) + dt/2 (L U1 + L U2)
-/// False if the result leaves the range of what went in, which second order cannot exclude for exchange much
-/// faster than the step; the state is then as before.
+/// Returns false, with the state unchanged, if the result leaves the range of the input, which is possible
+/// for fast exchange.
 ///
-/// Written without L: gamma dt L U1 = U1 - u, gamma dt L U2 = U2 - R2 with R2 the right-hand side of U2,
+/// L is eliminated: gamma dt L U1 = U1 - u and gamma dt L U2 = U2 - R2 with the right-hand side R2 of U2,
 /// hence u' = u + dt/2 (A(U1) + A(U2)) + (U1 - u + U2 - R2)/(2 gamma).
 bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   const std::size_t n = fluid_.size(), ns = shell_.size();
@@ -191,11 +191,11 @@ PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
   return heat;
 }
 
-// Capsules that melt: Newton's method on the heat of each shell [swaminathan1993]. With h_m, T_m of the last pass
-// and c = dh/dT there,
-//   (h_m + c (T - T_m) - h^n)/tau = what flows in at T
-// is linear. h_m + c (T - T_m) is then exactly what flowed in, whatever the number of passes, and T_{m+1} the
-// temperature that belongs to it.
+// Melting capsules use Newton's method for the heat of each shell [swaminathan1993]. With h_m, T_m of the
+// last pass and c = dh/dT,
+//   (h_m + c (T - T_m) - h^n)/tau = inflow at T
+// is linear. h_m + c (T - T_m) then equals the inflow exactly after any number of passes, and T_{m+1} is its
+// temperature.
 
 /// Apparent capacity and right-hand side of each shell at its temperature of the last pass [J/(m^3 K)],
 /// [J/m^3].

@@ -65,8 +65,8 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
       break;
   }
   // Beek 1962: (k/d) [0.203 (Re Pr)^(1/3) + 0.220 Re^0.8 Pr^0.4]. Yagi and Wakao 1959: Nu = 0.6 Pr^(1/3)
-  // Re^(1/2) up to Re = 40, 0.2 Pr^(1/3) Re^0.8 beyond. At least 2 k0/d, k0 the
-  // stagnant bed: grains that touch the wall conduct too, also below a slow flow.
+  // Re^(1/2) up to Re = 40, 0.2 Pr^(1/3) Re^0.8 beyond. At least 2 k0/d of the stagnant bed, because grains
+  // at the wall conduct also in a slow flow.
   n.wall_still = 2 * stagnant / d;
   if (parameters_.wall_film == WallFilm::beek) {
     n.wall_third = 0.203 * k / d * std::cbrt(re * pr);

@@ -9,8 +9,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// How many standard deviations from the middle of a front that spread like a diffusion a `share` of its step is left
-/// beyond.
+/// Standard deviations from the middle of a diffusive front to where a `share` of its step remains.
 double deviations(double share) {
   double low = 0, high = 10;
   for (int i = 0; i < 50; ++i) {
@@ -20,11 +19,11 @@ double deviations(double share) {
   return low;
 }
 
-/// Error of the profile. Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over
-/// the way w by s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the
-/// largest flow can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
-/// profile's distance from its mean, sums over the height. With a plant at least the part of the storage that the
-/// spreading leaves unused.
+/// Error of the profile. Upwind advection spreads a front like a diffusion v dz/2, implicit steps like v^2
+/// dt/2: over a way w by s^2 = dz w and v dt w, which changes the profile by s^2/2 of its second derivative.
+/// w is the way at the largest flow since time 0, at most the height. The limited scheme spreads by a cell.
+/// Relative to the profile's distance from its mean, as sums over the height. With a plant at least the
+/// storage capacity lost by spreading.
 class FrontError final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -57,7 +56,8 @@ class FrontError final : public TankDiagnostic {
     if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
     const double one_cell = 0.5 * bends / size;                  // s = dz
     const double way = double(n) * crossed();                    // in cells
-    diagnostics::ErrorParts parts{.mesh = scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+    diagnostics::ErrorParts parts{.mesh =
+                                      scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
     if (scheme() != Advection::tvd) parts.mesh_order = 1;
     parts.step_order = 1;
     if (scheme() == Advection::implicit)
@@ -65,9 +65,9 @@ class FrontError final : public TankDiagnostic {
     return parts;
   }
 
-  /// A plant ends a charge or a discharge when the outlet differs by the cut-off, while the front's middle is still some
-  /// deviations inside. That much of the bed stays unused at either end; gives what the scheme adds to it with `finer`
-  /// times the cells, the front being spread by film and grains anyway.
+  /// A plant ends charging or discharging when the outlet deviates by the cut-off, while the front's middle
+  /// is still some deviations inside. That part of the bed stays unused at both ends. Returns the
+  /// contribution of the scheme with `finer` times the cells, besides that of film and grains.
   double unused_by_spreading(double finer) const {
     const FlowParameters& flow = view_.parameters().flow;
     if (flow.type != FlowParameters::Type::plant || !(seen_->flow > 0)) return 0;
@@ -75,15 +75,15 @@ class FrontError final : public TankDiagnostic {
     double variance = 1;  // in cells
     if (scheme() != Advection::tvd)
       variance = way * (1 + (scheme() == Advection::implicit ? seen_->advance / crossing_mass() * n : 0));
-    // A new front in each charge adds variances; tails that stay in the bed from cycle to cycle add widths. The truth of
-    // the map tank-plant and of configs/thermocline-rock-air lies between: the mean.
+    // A new front in each charge adds variances; tails that remain in the bed between cycles add widths. The
+    // map tank-plant and configs/thermocline-rock-air are in between, so the mean is used.
     const double of_scheme = std::sqrt(variance) / n, of_grains = std::sqrt(variance_of_grains());
     const double added = 0.5 * (of_scheme + std::hypot(of_scheme, of_grains) - of_grains);
     return 2 * deviations(flow.plant.cut_off / (flow.plant.hot - flow.plant.cold)) * added;
   }
 
-  /// Variance of a front that film and grains spread on its way through the bed, over the square of the height:
-  /// 2 (G c/(h a)) (1 - beta)^2 of each metre, beta the fluid's share of the heat capacity (Schumann's model at late
+  /// Relative variance of a front by film and grains on its way through the bed: 2 (G c/(h a)) (1 - beta)^2
+  /// per meter over the squared height, beta the fluid's share of the heat capacity (Schumann's model at late
   /// times).
   double variance_of_grains() const {
     const std::span<const double> fluid = bed().fluid();

@@ -9,7 +9,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// An ideal gas of constant specific heat: its speed against that of sound, and the specific heat against the mean.
+/// Checks an ideal gas of constant specific heat: its Mach number, and the mean of the true specific heat.
 class Gas final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;

@@ -10,8 +10,8 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Stress of the wall against its yield strength, with the bending that the rings leave out, which is sampled every two
-/// hours; temperatures beyond the metal's.
+/// Wall stress relative to the yield strength, including bending (sampled every two hours), which the rings
+/// neglect; also temperatures beyond the metal's range.
 class WallStrength final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -32,7 +32,7 @@ class WallStrength final : public TankDiagnostic {
         axial_ = {axial, rings().z[i], view_.time()};
     }
   }
-  // The shares of the strength are compared, so that a wall that carries next to nothing is no reason for a word.
+  // Compares shares of the strength, so that an almost unloaded wall is not reported.
   void look(diagnostics::Report& report) override {
     const WallStress& stress = view_.model.stress();
     double share = 0;

@@ -37,9 +37,9 @@ const std::map<std::string, Insulator>& foundations() {
 }  // namespace
 
 Fluid solar_salt() {
-  // Table 5.1 prints the conductivity in kW with a slope ten times too low, and -1.24e-4 in the viscosity,
-  // which makes it negative above 407 degC; these are the correlations of Zavoico (SAND2001-2100). Density
-  // and specific heat are those at 340 degC, with which table 5.3 reproduces.
+  // Table 5.1 gives the conductivity in kW with a slope ten times too small, and -1.24e-4 in the viscosity,
+  // which is then negative above 407 degC. These are the correlations of Zavoico (SAND2001-2100). Density and
+  // specific heat are those at 340 degC, which reproduce table 5.3.
   return {"solar salt",
           1873.8,
           1501.5,
@@ -169,7 +169,7 @@ namespace {
 
 void nothing(config::Section&) {}
 
-/// Returns why a column beside `temperature` is not valid, or nothing.
+/// Returns why a column next to `temperature` is invalid, or nothing.
 std::string problem_of(const std::vector<double>& temperature, const std::vector<double>& values,
                        bool positive) {
   if (temperature.empty()) return "'temperature' is empty; give the temperatures of the values";

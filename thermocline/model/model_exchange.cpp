@@ -51,8 +51,8 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Weath
     if (bottom_.until > t + tiny) h = std::min(h, bottom_.until - t);
   }
   if (ullage_) step_ullage(h, air);
-  // Heat that the shell took in the step before: the wall sees the bed at the end of each step, so that both have
-  // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
+  // Heat taken by the shell in the previous step. The wall uses the bed's final temperatures, so that both
+  // are at the same time for the contact with the filler; the much heavier bed pays one step later.
   std::vector<double>& source = work_.source;
   for (std::size_t i = 0; i < source.size(); ++i) source[i] = -owed_[i] / h;
   source.back() -= gas_heat_.from_liquid;
@@ -187,8 +187,8 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
     const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared().mass_flow;
     if (t > block - tiny) prepared = false, block = t + renewal;
     const double until = std::min(block, s.flow.until > t + tiny ? std::min(end, s.flow.until) : end);
-    // New closures when the flow has changed by a tenth, a new step when the old one has become too long or
-    // would pass the time the control gave; a little over the limit is within the scheme's reserve.
+    // Updates the closures if the flow has changed by a tenth, and the step if it is too long or would pass
+    // the time given by the control. Slightly exceeding the limit is within the scheme's margin.
     const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
     const bool too_long = bed_.prepared().dt > 1.05 * limit || t + bed_.prepared().dt > until + tiny;
     if (!prepared || other_flow || too_long) {

@@ -24,7 +24,7 @@ double flowing(const BedStep& step, double kelvin) {
   return step.flow.mass_flow != 0 ? celsius(kelvin) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The value of a ring beside grains; 0 above them and without filler mechanics.
+/// Value of a ring next to grains; 0 above them and without filler mechanics.
 template <class Values>
 double beside_grains(const TankModel& m, std::size_t ring, Values values) {
   const FillerMechanics* filler = m.mechanics();

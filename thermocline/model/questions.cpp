@@ -9,7 +9,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Sentence about a number that stands in another unit: "<what> is <value> <unit><why>", and what to write instead.
+/// Sentence about a number in a wrong unit: "<what> is <value> <unit><why>", and how to write it.
 std::string slip(const std::string& what, double value, const std::string& unit, const std::string& why,
                  const char* other) {
   return fmt::format("{} is {:g} {}{}. A number without a unit is in {}; write '{:g} {}' if that is intended",

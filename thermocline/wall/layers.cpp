@@ -137,8 +137,8 @@ double Insulation::step(double dt, std::span<const double> inside, const Film& o
   const std::size_t n = rings_;
   const int last = cells_ - 1;
   ramps_.values(temperature_.data(), k_.data(), n * cells_);
-  // Node j: (C/dt) (T - T^n) = g_{j-1} (T_{j-1} - T) + g_j (T_{j+1} - T), per height; from the inside out.
-  // up_ holds g_j over the diagonal that is left when the nodes further in are eliminated.
+  // Node j: (C/dt)(T - T^n) = g_{j-1} (T_{j-1} - T) + g_j (T_{j+1} - T), per height, from the inside out. up_
+  // contains g_j over the diagonal after eliminating the inner nodes.
   double* in = in_.data();  // conductance inwards; outwards it is that of the next node inwards
   for (std::size_t i = 0; i < n; ++i) in[i] = inner_[i] = shape_[0] * k_[i];
   for (int j = 0; j < cells_; ++j) {

@@ -116,8 +116,8 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
     contact_[i] = wanted <= active_[i]    ? Contact::active
                   : wanted >= passive_[i] ? Contact::passive
                                           : Contact::rigid;
-    // Where the bound cuts the pressure, the filler ends where the wall will be under the bound: the grains slump after
-    // it, or it pushes them in.
+    // If the bound limits the pressure, the filler follows the wall under that bound: the grains slump, or
+    // the wall pushes them.
     strain_[i] -= (wanted - lateral_[i]) / per_strain;
     slip_[i] += std::max(0.0, wanted - passive_[i]) / per_strain;
   }

@@ -122,8 +122,8 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
   const auto fourth = [](double t) { return stefan_boltzmann * t * t * t * t; };
   double disc = 0, side = 0;  // film times area, surface to gas [W/K]
   for (int iteration = 0; iteration < 30; ++iteration) {
-    // Liquid below a cooler roof: Globe and Dropkin 1959, Nu = 0.069 Ra^(1/3) Pr^0.074 across the height; at
-    // rest otherwise. Two films in series make that coefficient, so each is twice as large.
+    // Liquid below a cooler roof: Globe and Dropkin 1959, Nu = 0.069 Ra^(1/3) Pr^0.074 over the height;
+    // otherwise at rest. Two films in series give this coefficient, so each is twice as large.
     const Air air(0.5 * (liquid + roof_), pressure), near_wall(0.5 * (wall + gas_), pressure);
     const double ra = liquid > roof_ ? air.rayleigh(liquid - roof_, height_) : 0;
     const double nu = std::max(1.0, 0.069 * std::cbrt(ra) * std::pow(air.prandtl, 0.074));
@@ -150,7 +150,7 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
   heat.into_roof = roof_conductance * (roof_ - roof_cell);
   heat.from_wall =
       side * (wall - gas_) + x[2][0] * fourth(liquid) + x[2][1] * fourth(roof_) + x[2][2] * fourth(wall);
-  // The heat of the liquid closes the balance. It equals that of its own films and radiation to the solver's tolerance.
+  // The heat of the liquid closes the balance; it equals that of films and radiation to the tolerance.
   heat.from_liquid = heat.into_roof + store * (gas_ - before) - heat.from_wall;
   return heat;
 }
