@@ -27,7 +27,7 @@ using MotionLink = std::function<std::unique_ptr<coupling::MeshMotionSource>(con
 /// the interface faces.
 ///
 ///   scheme              what solve() does
-///   semi-implicit       every call solves a pressure equation; the first one does the rest of the step before
+///   semi-implicit       every call solves a pressure equation; the first does the rest of the step before
 ///   implicit, explicit  every call moves the mesh and starts from level n
 ///   standalone          interfaces are walls at rest; bodies move as the case prescribes, in every scheme
 ///

@@ -32,7 +32,7 @@ struct Simplices {
   Index size() const { return static_cast<Index>(weight.size()); }
 };
 
-/// `volumes`: V per local cell. Throws SolveFailure if a simplex of the reference mesh is flat or inverted. Collective.
+/// `volumes`: V per local cell. Throws SolveFailure for a flat or inverted reference simplex. Collective.
 Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
                          std::span<const double> volumes);
 

@@ -249,7 +249,7 @@ void BarrierSystem::make_pattern() {
       if (p[k] < n) around[p[k]].insert(around[p[k]].end(), p, p + corners);
   }
   for (Index v = 0; v < n; ++v) {
-    around[v].push_back(v);  // a point of no simplex: the apex of a pyramid that is alone on its rank
+    around[v].push_back(v);  // a point without simplices, such as the apex of a single pyramid on its rank
     std::ranges::sort(around[v]);
     around[v].erase(std::unique(around[v].begin(), around[v].end()), around[v].end());
     diagonal_.push_back(graph_.offset[v] +

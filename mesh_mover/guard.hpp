@@ -62,7 +62,7 @@ using CellEdge = std::array<int, 2>;
 /// The corner, then the ends of its edges: right-handed in a valid cell; -1 in 2-D.
 using CellCorner = std::array<int, 4>;
 
-/// Edges and corners of a cell type in VTK order. Of a pyramid only the corners of its base, because its apex has 4 edges.
+/// Edges and corners of a cell type in VTK order. A pyramid has no corner at its apex (four edges).
 struct CellCorners {
   std::vector<CellEdge> edges;
   std::vector<CellCorner> corners;

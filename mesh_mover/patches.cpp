@@ -107,7 +107,7 @@ std::optional<AffineFit::Coefficients> AffineFit::operator()(std::span<const dou
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   const double a = sums[0] / n_;
   const Vec3 b = inverse_ * Vec3(sums[1], sums[2], sums[3]);
-  std::array<double, 3> largest{};  // of the values, of what is left, of what a alone leaves
+  std::array<double, 3> largest{};  // of the values, of the residual, of that with only a
   for (const Index v : points_) {
     largest[0] = std::max(largest[0], std::abs(value(v)));
     const double left = value(v) - a;

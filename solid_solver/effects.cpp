@@ -176,8 +176,8 @@ std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& p, 
 }
 
 diagnostics::ExpectedCost expected_cost(const SolidParameters& p, const mesh::MeshFacts& mesh) {
-  // Measured in 3-D: 83 MB with 640 cells (factors, which grow as cells^(4/3)), 61 and 143 MB with 5120 and 40960
-  // (multigrid); in 2-D 54 and 156 MB with 1024 and 16384.
+  // Measured in 3-D: 83 MB with 640 cells (factors, which grow as cells^(4/3)), 61 and 143 MB with 5120 and
+  // 40960 (multigrid); in 2-D 54 and 156 MB with 1024 and 16384.
   const double cells = double(mesh.cells);
   const double flat = 6650 * cells,
                volume = cells <= 1500 ? 35e6 * std::pow(cells / 640, 4.0 / 3) : 2290 * cells;

@@ -134,7 +134,7 @@ Result by_krylov(const System& system, const SolidBody& body, const std::string&
   };
   Result result = solve_by_petsc(same, nullptr, nullptr, inverse, options);
   result.setup += making;
-  result.megabytes = std::max(peak, whole.peak());  // that of the solve begins anew
+  result.megabytes = std::max(peak, whole.peak());  // the peak of the solve was reset
   result.x.resize(system.b.size());
   return result;
 }

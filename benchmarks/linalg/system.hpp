@@ -26,12 +26,12 @@ struct Result {
   std::vector<double> x;
 };
 
-/// Solves by PETSc's KSP with these options. `p`: matrix for the preconditioner, nullptr to use `inverse`. `a`:
-/// nullptr to apply Couplet's operator. Restarts until the true residual is small enough. Collective.
+/// Solves by PETSc's KSP with these options. `p`: matrix for the preconditioner, nullptr to use `inverse`.
+/// `a`: nullptr to apply Couplet's operator. Restarts until the true residual is small enough. Collective.
 Result solve_by_petsc(const System& system, Mat a, Mat p, const linalg::LinearMap& inverse,
                       const std::string& options);
 
-/// Prints one line of JSON with the relative true residual and the distance from Couplet's solution. Collective.
+/// Prints one line of JSON with the relative residual and the distance from Couplet's solution. Collective.
 void print(const System& system, const Result& result, const std::string& note);
 
 ::Vec vector_of(MPI_Comm comm, const std::vector<double>& values);
@@ -43,7 +43,7 @@ void write_vector(MPI_Comm comm, const std::string& path, const std::vector<doub
 /// Runs a recorded matrix (record.c): how = "petsc OPTIONS", or "program METHOD" (name of a LinearMethod).
 int run_matrix(const std::string& folder, const std::string& how);
 /// Runs the first step of a solid case: how = "record", "program", "petsc OPTIONS" on the assembled matrix,
-/// "krylov OPTIONS" of PETSc with Couplet's preconditioner, "cycle OPTIONS" with PETSc's instead of its multigrid.
+/// "krylov OPTIONS" of PETSc with Couplet's preconditioner, "cycle OPTIONS" with PETSc's multigrid.
 int run_solid(const std::string& folder, const std::string& how, int argc, char** argv);
 
 }  // namespace couplet::benchmark

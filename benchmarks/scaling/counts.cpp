@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Counts the messages of a program if loaded before MPI (LD_PRELOAD), by MPI's profiling interface (MPI 4.0,
-// chapter 15). Includes calls of PETSc and hypre, but not from Fortran (MUMPS). MPI_Finalize writes
-// COUPLET_COUNTS/<rank of the job>.json. Collectives on one rank, messages to oneself and polling are ignored.
+// SPDX-License-Identifier: Apache-2.0 Counts the messages of a program if loaded before MPI (LD_PRELOAD), by
+// MPI's profiling interface (MPI 4.0, chapter 15). Includes calls of PETSc and hypre, but not from Fortran
+// (MUMPS). MPI_Finalize writes COUPLET_COUNTS/<rank of the job>.json. Collectives on one rank, messages to
+// oneself and polling are ignored.
 #include <mpi.h>
 
 #include <cstdio>

@@ -109,7 +109,7 @@ class CouplingError final : public CouplingDiagnostic {
 
  private:
   const CouplingView& view_;
-  double residual_ = 0, before_ = 0;  // of the last two passes of the step under way; 0: none
+  double residual_ = 0, before_ = 0;  // of the last two passes of this step; 0 if none
   time::StepErrors errors_;
 };
 

@@ -52,7 +52,7 @@ struct Neighbour {
   double distance;       ///< [m]; infinity if there is none
   GlobalIndex position;  ///< in the whole list
   GlobalIndex id;
-  double size;  ///< of the neighbour, if its set has sizes
+  double size;  ///< of the neighbor, if its set has sizes
   Vec3 point;
 };
 

@@ -159,7 +159,7 @@ void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& 
   factors.setThreshold(1e-9);
   factors.compute(spread);
   const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1> change = factors.solve(off);
-  if (change.cwiseAbs().maxCoeff() > 1) return;  // no centre of this face
+  if (change.cwiseAbs().maxCoeff() > 1) return;  // not a center of this face
   for (Eigen::Index i = 0; i < n; ++i) weights[std::size_t(i)] += change[i];
 }
 

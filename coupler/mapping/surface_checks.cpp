@@ -233,7 +233,7 @@ void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts
 
 std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
 
-/// A participant that takes a motion but gives no load (a heater on a flap) may cover any part of the surface.
+/// A participant that takes a motion but gives no load (a heater on a flap) may cover part of a surface.
 bool gives_load(const Side& side) {
   return std::ranges::any_of(side.interface.gives, [](const coupling::Interface::Datum& d) {
     return d.unit == "N" || d.unit == "Pa";

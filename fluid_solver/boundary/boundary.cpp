@@ -20,7 +20,7 @@ constexpr double round_enough = 0.1;  // of the area of the disc
 
 struct Extent {
   Vec3 area = Vec3::Zero(), centre = Vec3::Zero();
-  double size = 0, radius = 0;  // sum of |S|; largest distance of a point from the centre
+  double size = 0, radius = 0;  // sum of |S|; largest distance of a point from the center
 };
 
 Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Patch& patch) {

@@ -25,7 +25,7 @@ constexpr double adams_bashforth_error = 5. / 12;
 // dt^3/8, reduced by 1 + r dt/2 with that rule. Adams-Bashforth gives 5/12 + 1/24.
 constexpr double driven_error = 1. / 12, held_error = 1. / 8, held_explicitly = 11. / 24;
 constexpr double hardly = 0.1;   // share of convection in the rate of change of a flow that answers linearly
-constexpr double window = 0.25;  // "of late" is about this part of the time that has gone by
+constexpr double window = 0.25;  // recent means cover about this part of the elapsed time
 
 /// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
 template <int D>
@@ -197,7 +197,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       std::ranges::copy(sums, squares.begin());
       return;
     }
-    const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; none of other schemes
+    const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; empty with other schemes
     for (std::size_t c = 0; c < n && seen_ > 0; ++c) {
       const Vec<D> rate = (u[c] - u_[c]) * per_step;
       const Vec<D> change = seen_ > 1 ? Vec<D>((rate - rate_[c]) * per_apart) : Vec<D>(Vec<D>::Zero());
@@ -305,13 +305,13 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   time::StepErrors steps_;
   PhaseDrift drift_;
   double time_ = 0;                           // judged so far [s]
-  double power_ = 0, gain_ = 0, energy_ = 0;  // means of late: work and gain of energy [W], energy [J]
+  double power_ = 0, gain_ = 0, energy_ = 0;  // recent means: work and gain of energy [W], energy [J]
   double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
   Driving driving_;
-  Vectors<D> left_;          // sum of local errors; empty: nothing drives
-  double left_of_late_ = 0;  // norm, the largest of late
+  Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
+  double left_of_late_ = 0;  // largest recent norm
   double carried_ = 0,
-         changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
+         changed_ = 0;  // recent maxima: convective part of the rates, and the rates [m/s^2]
 };
 
 }  // namespace

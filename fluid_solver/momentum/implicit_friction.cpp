@@ -77,8 +77,8 @@ void ImplicitFriction<D>::add_eddies(const State<D>& from, Vectors<D>& side) {
 }
 
 /// Adds theta dt nu_t g times the second time difference of u, whose part at n+1 is in the matrix. With a of
-/// modified Crank-Nicolson an extrapolated rate becomes that scheme, and nu_t does not limit the step. In thin
-/// cells, a few times the molecular viscosity would require a thousandth of the convective step.
+/// modified Crank-Nicolson an extrapolated rate becomes that scheme, and nu_t does not limit the step. In
+/// thin cells, a few times the molecular viscosity would require a thousandth of the convective step.
 template <int D>
 void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& eddies, Vectors<D>& side) const {
   const double ratio = step_.ratio();

@@ -26,7 +26,7 @@ struct ViscousRows {
   Index size() const { return static_cast<Index>(diagonal.size()); }
 };
 
-/// Contribution of an eddy viscosity to the matrix, theta dt nu_t at interior faces (nu_t: mean of two cells).
+/// Contribution of an eddy viscosity to the matrix, theta dt nu_t at interior faces (mean of the cells).
 struct EddyShare {
   const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; nullptr if there is none
   double factor = 0;                          ///< theta dt [s]

@@ -35,8 +35,8 @@ double way(const LevelCorner& above, const LevelCorner& below, const Level& leve
 
 }  // namespace
 
-/// A single positive or non-positive corner gives a simplex there. A tetrahedron with two positive corners a, b
-/// gives a prism of a, b and the points on the four other edges, split into three tetrahedra.
+/// A single positive or non-positive corner gives a simplex there. A tetrahedron with two positive corners a,
+/// b gives a prism of a, b and the points on the four other edges, split into three tetrahedra.
 OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, double round_off) {
   std::array<std::size_t, 4> order{0, 1, 2, 3};
   const std::size_t n = corners.size();

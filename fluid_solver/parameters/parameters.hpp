@@ -68,8 +68,8 @@ struct BoundaryParameters {
   bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };
 
-/// Coefficients of a condition in the equations of its faces. w is the given velocity, p_b the given pressure,
-/// L the slip length, g the conductance, S the area, t = S/(S + L g), n the normal and P the cell of a face.
+/// Coefficients of a condition in the equations of its faces, with given velocity w or pressure p_b, slip
+/// length L, conductance g, area S, t = S/(S + L g), normal n and cell P.
 ///   flux            phi = w.S; for a given pressure phi^p - (dt/rho) g (p_b - p_P)
 ///   pressure row    none, p_b follows from the wall's motion; for a given pressure g, and right side g p_b
 ///   viscous row     beta g [t I + (1 - t) n n], right side that times w; none for a given pressure

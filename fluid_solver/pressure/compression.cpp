@@ -12,8 +12,8 @@ namespace couplet::fluid {
 
 namespace {
 
-/// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to moving
-/// faces, for Mach numbers below about 0.3. At t^{n+1} with p = p^{n+1/2} and the three levels of WaveRule
+/// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to
+/// moving faces, for Mach numbers below 0.3. At t^{n+1} with p = p^{n+1/2} and the three-level WaveRule
 ///   rho c^2 div u^{n+1} = -(rate p + past),
 /// or by the trapezoidal rule 2 (p - p^n)/dt = -rho c^2 (div u^{n+1} + div u^n)/2 with p^{n+1} = 2 p - p^n,
 /// which conserves the energy of unresolved waves. Adds V rate/(c^2 dt) to the diagonal and -V past/(c^2 dt)

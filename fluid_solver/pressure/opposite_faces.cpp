@@ -15,14 +15,14 @@ namespace {
 
 constexpr double thin = 0.25;    // thickness over the extent of the walls
 constexpr double facing = 0.7;   // least -n.n' of the normals
-constexpr double beside = 1.1;   // of a face's radius: so far from its centre it is still met
+constexpr double beside = 1.1;   // of a face's radius: largest distance from its center to meet it
 constexpr std::size_t look = 8;  // faces at a place of the way across
 constexpr int along = 8;         // parts of an edge
 constexpr int rounds = 50;       // of the scaling
 
 struct Face {
   Vec3 centre, normal;  // out of the fluid
-  double radius;        // of its corners about the centre [m]
+  double radius;        // of its corners about the center [m]
   Index entry;
   int rank;
 };

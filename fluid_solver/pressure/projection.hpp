@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 
 /// Second stage of a step: sum g (p_N - p_P) = (rho/dt) sum phi^p, p = p^{n+1/2}, in passes on non-orthogonal
-/// meshes. Features extend it by a list of terms, which is empty for an incompressible fluid with given wall motion.
+/// meshes. Features extend it by a list of terms, which is empty for an incompressible fluid and given walls.
 template <int D>
 class PressureProjection {
  public:

@@ -75,7 +75,7 @@ Lines<D>::Lines(const mesh::Mesh& mesh, const Placement<D>& at) {
       for (std::size_t j = i + 1; j < sides[c].size(); ++j) {
         Side first = sides[c][i], second = sides[c][j];
         if (outward(at, first).dot(outward(at, second)) > -parallel_cosine) continue;
-        // S of `face` points from before to after: out of the cell through `second`, or into it through `first`.
+        // S of `face` points from before to after: outward at `second`, or inward at `first`.
         if (!second.outward && first.outward) std::swap(first, second);
         const double before = at.conductance[first.face], after = at.conductance[second.face];
         if (std::max(before, after) > smooth * std::min(before, after)) continue;

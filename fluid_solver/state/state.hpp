@@ -25,7 +25,7 @@ struct PressureLevel {
   double time = 0;               ///< t^{n-1/2} [s]
   std::vector<double> p;         ///< per local cell [Pa]
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
-  /// (1/V) sum p_f S per local cell [Pa/m]; only in the latest level, on non-orthogonal meshes the latest two.
+  /// (1/V) sum p_f S per local cell [Pa/m]; only in the latest level (non-orthogonal meshes: two).
   Vectors<D> gradient;
   // Compressible fluids only.
   double upstream = 0;      ///< of the volume behind the inlets [Pa]

@@ -16,8 +16,8 @@ namespace {
 
 /// Minimum angle at which two supports of a point hold its slope in two directions: for edges of one type
 /// that meet in a blunt corner, and of two types, whose tangents are less accurate on a coarse mesh. At a
-/// blunt corner of simply supported edges both slopes vanish in the limit, but the deflection is only as
-/// smooth as r^1.1. A plate with 20 sides of 7 edges is 47 % too stiff with both held, 15 % too soft with one.
+/// blunt corner of simply supported edges both slopes vanish in the limit, but the deflection is only
+/// as smooth as r^1.1. A plate of 20 sides with 7 edges is 47 % too stiff with both held, 15 % too soft otherwise.
 constexpr double blunt = 25 * base::degree, unlike = 10 * base::degree, rounding = 1e-6;
 
 /// Direction of the slope held by a support at an edge with this tangent: w = 0 along an edge holds the

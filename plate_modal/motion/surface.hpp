@@ -10,7 +10,7 @@
 namespace couplet::plate {
 
 /// Modal model as loads and motion see it. Every rank stores all of it and computes the same, so that results
-/// do not depend on the number of ranks. The cost is dominated by rank 0, which receives forces and sends displacements.
+/// do not depend on the number of ranks. The cost is dominated by rank 0, which distributes forces.
 class Surface final {
  public:
   explicit Surface(modes::ModalModel model);

@@ -14,7 +14,7 @@ namespace couplet::solid {
 namespace {
 
 // Measured on the fillet of an L-bracket, LE1, LE10 and LE11; the stress hangs little on any of them.
-constexpr double of_far = 1. / 9;           // weight of a sample at the patch's rim over one in its centre
+constexpr double of_far = 1. / 9;           // weight of a sample at the patch's rim over one in its center
 constexpr double of_traction = 1;           // weight of a traction over a sample, fit of stress ...
 constexpr double of_scaled_traction = 0.1;  // ... and of displacement, as h t / (2 mu + lambda)
 constexpr double of_face = 3;               // weight of a face's displacement over a cell's

@@ -107,7 +107,7 @@ namespace {
 // thousandth of the body suffices).
 constexpr double resisted = 1e-9;
 
-using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the centre, rotation times the size of the body
+using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the center, rotation times the size of the body
 using Resistance = Eigen::Matrix<double, 6, 6>;
 
 /// Sum over the ranks, entry by entry.

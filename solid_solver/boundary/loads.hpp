@@ -17,7 +17,7 @@ namespace couplet::solid {
 ///     f_i = A_i (F / A + w x (x_i - c)),   J w = M + (p - c) x F,   J = sum A_i (|r_i|^2 I - r_i r_i^T), r_i = x_i - c,
 ///
 /// Here A is the total area, c the centroid and p the point. Then sum f_i = F and sum (x_i - p) x f_i = M to
-/// round-off. The faces remain free to deform, as with RBE3 elements. Without a point, the traction is uniform.
+/// round-off. The faces remain free to deform, as with RBE3 elements. Without a point, it is uniform.
 class DistributedForce {
  public:
   /// `faces`: of this rank. `load.point` is used if `has_point`. Throws Error for no area. Collective.

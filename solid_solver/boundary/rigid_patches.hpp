@@ -12,7 +12,7 @@ namespace couplet::solid {
 /// Patches whose faces move as rigid bodies with small angles: u_i = U + w x (x_i - c) at face centers x_i
 /// (RBE2 elements). There is no penalty and no additional unknown: P A P u = P b is solved in the range of P,
 /// the orthogonal projection onto such motions. Sums of rigid motions are rigid, so every time scheme
-/// preserves them. Vertices are means of nearby nodes as elsewhere: their share of a face's force acts on the cells.
+/// preserves them. Vertices are means of nodes as elsewhere: their share of a face's force acts on cells.
 class RigidPatches {
  public:
   RigidPatches() = default;

@@ -30,7 +30,7 @@ class HeatSwing final : public diagnostics::Diagnostic {
 
  private:
   const Heat& heat_;
-  std::vector<double> change_;       // of owned cells in the last step [K]; empty: not yet
+  std::vector<double> change_;       // of owned cells in the last step [K]; or empty
   double lowest_ = 0, highest_ = 0;  // that was seen [K]
   int turns_ = 0;                    // in a row
   bool begun_ = false;

@@ -117,7 +117,7 @@ diagnostics::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double
   const double varies = size(now.cells, level);
   const double size = reference ? this->size(now.cells, *reference) : varies;
   if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
-    return parts;  // one temperature: nothing errs
+    return parts;  // uniform temperature has no error
   parts.mesh = root_mean_square(mesh_, geometry_, 1, gaps(heat)) / size;
   if (!steady_) parts.step = steps_.over_size() * varies / size;
   return parts;

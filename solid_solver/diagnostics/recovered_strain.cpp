@@ -19,7 +19,7 @@ namespace couplet::solid {
 namespace {
 
 constexpr GlobalIndex patches_looked_at = 100000;  // of all ranks
-constexpr double no_slope = 1e-9;                  // of a slope that no neighbour determines
+constexpr double no_slope = 1e-9;                  // of a slope that no neighbor determines
 
 }  // namespace
 
@@ -116,7 +116,7 @@ double RecoveredStrain::missed() const {
 
 namespace {
 
-constexpr double of_far = 1. / 9;  // weight of a sample at the patch's rim over one in its centre
+constexpr double of_far = 1. / 9;  // weight of a sample at the patch's rim over one in its center
 constexpr GlobalIndex cells_looked_at = 20000;  // of all ranks
 
 }  // namespace

@@ -88,7 +88,7 @@ void FiniteStrain::find_push(PathSearch& path, std::span<const double> u) {
   for (std::size_t i = 0; i < u.size(); ++i) path.push[i] -= pulled[i];
 }
 
-/// (u, lambda) + s (du, dlambda) with the largest s of 1, 1/2, ... with det F > 0 and a residual below `most`.
+/// (u, lambda) + s (du, dlambda) with the largest s of 1, 1/2, ... with det F > 0 and residual < `most`.
 void FiniteStrain::search_path(PathSearch& path, std::span<double> u, double change, double most) {
   const double from = path.factor;
   std::vector<double> known_change(path.whole.known.begin(), path.whole.known.end());

@@ -179,7 +179,7 @@ std::string folded_support(const mesh::Mesh& mesh, const elastic::ElasticOperato
 namespace {
 
 // Motion beyond both tangents relative to the largest motion. A bonded rubber block of 16 x 16 cells had at
-// most 0.08 at a limit point of rim cells, 0.13 to 0.95 past it; an arch at 1.05 and 8 limit loads 0.88, 0.34.
+// most 0.08 at a limit point of rim cells, 0.13-0.95 past it; an arch at 1.05 and 8 limit loads 0.88, 0.34.
 constexpr double limit = 0.15;
 
 }  // namespace

@@ -13,10 +13,10 @@
 
 namespace couplet::solid {
 
-/// Approximate inverse of the Schur complement S = V/K_P + B (K' + mM)^-1 B^T of the mixed form. Uses one scalar
-/// matrix per rank, made once (factors in 2-D, CG with multigrid in 3-D). V/mu, as for stable elements in Stokes
-/// flow, works only for smooth pressures: B^T p uses face means p_f, so pressures that alternate between cells
-/// (rows, columns, checkerboards) do almost no work, and with V/mu the iterations grow with the mesh.
+/// Approximate inverse of the Schur complement S = V/K_P + B (K' + mM)^-1 B^T. Uses one scalar matrix per
+/// rank, made once (factors in 2-D, CG with multigrid in 3-D). V/mu, as for stable elements in Stokes flow,
+/// works only for smooth pressures: B^T p uses face means p_f, so pressures alternating between cells (rows,
+/// checkerboards) do almost no work, and with V/mu the iterations grow with the mesh.
 ///
 /// Quadrilaterals, hexahedra, prisms: S ~ V [s mu L + m rho V]^-1 W + V/K_P, where W is the cell part of B^T
 /// (the Gauss gradient of p_f) squared over V, and L the two-point Laplacian, which equals W only for smooth

@@ -44,7 +44,7 @@ class NewtonKrylov final : public SolutionMethod {
 /// Body in the reference configuration.
 elastic::DeformedBody at_rest(const mesh::Mesh& mesh);
 
-/// Largest extent over mean thickness 2 V/S: L/h of a 2-D beam, 2 L/h of a square beam, 3 of a cube. Collective.
+/// Largest extent over mean thickness 2 V/S: L/h (2-D beam), 2 L/h (square beam), 3 (cube). Collective.
 double slenderness(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
 /// Mean over cells of inertia over the sum of (2 mu + lambda) |S|/(d . n) over faces; 0 if static. For

@@ -22,8 +22,8 @@ struct Buckling {
   std::vector<std::vector<double>> shape;  ///< x on the rows of ElasticOperator, largest component 1
 };
 
-/// Finds the lowest `n` factors, or all if fewer. Counting negative pivots of K + s K_sigma, s above the last,
-/// ensures that none is missed. `body`: static, symmetric gradient. Throws SolveFailure. Collective.
+/// Finds the lowest `n` factors, or all if fewer. Counting negative pivots of K + s K_sigma, s above the
+/// last, ensures that none is missed. `body`: static, symmetric gradient. Throws SolveFailure. Collective.
 Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestress, int n);
 
 /// Lowest n free vibrations about the loaded equilibrium, (K + K_sigma) x = omega^2 M x. Sets the density of

@@ -59,7 +59,7 @@ constexpr GlobalIndex most_rows_2d = 2000000, most_rows_3d = 400000;
 // Relative residual left by factors of the exact matrix.
 constexpr double exact = 1e-6;
 
-/// The factors are those of this operator: nothing in the scene that the narrow matrix does not know.
+/// Throws SolveFailure if the factors do not match this operator (effects missing in the narrow matrix).
 void check_factors(const SolidProblem& problem, elastic::TiedMatrix& factors, double shift) {
   const std::size_t n = problem.elastic.n_unknowns();
   std::vector<double> x(n), force(n), back(n);

@@ -35,7 +35,7 @@ struct WallImpedance {
   /// whole mass in long steps, and rho c dt/2 if the wave does not cross the layer.
   double in_step(double dt) const;
 };
-/// Density times thickness of a wall, half of that if it is wet on both sides. `densities`, `speeds` (of pressure
+/// Density times thickness of a wall, half of that if wet on both sides. `densities`, `speeds` (pressure
 /// waves; infinite if rigid), `volumes`: per cell of this rank. `areas`: per interface face. Collective.
 WallImpedance wall_impedance(MPI_Comm comm, std::span<const double> densities, std::span<const double> speeds,
                              std::span<const double> volumes, std::span<const Vec3> areas);

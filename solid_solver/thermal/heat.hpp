@@ -73,7 +73,7 @@ class Heat final {
   std::vector<double> face_temperature(const HeatState& state) const;
   /// Heat through each patch at the accepted time. Collective.
   std::vector<PatchHeat> patch_heat() const;
-  /// Heat flux through each boundary face of owned cells into the solid at the accepted time [W/m^2]. Collective.
+  /// Heat flux into the solid per boundary face of owned cells at the accepted time [W/m^2]. Collective.
   std::vector<double> boundary_inflow() const;
   /// Heat stored in the whole solid relative to an arbitrary level [J]. Collective.
   double stored_heat() const;

@@ -45,8 +45,8 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
   const double pr = mu * fluid_.specific_heat / k, re = d / mu;  // Re per unit flux
   const double stagnant = zehner_schluender(std::min(porosity_, 0.999), filler_.conductivity / k) * k;
   Node n{};
-  // Nu = 2 + 1.1 Pr^(1/3) Re^0.6, Re on the superficial velocity (Wakao and Kaguei 1982, fitted to 15 < Re < 8500; Nu = 2,
-  // pure conduction, at rest).
+  // Nu = 2 + 1.1 Pr^(1/3) Re^0.6, Re on the superficial velocity (Wakao and Kaguei 1982, fitted to 15 < Re <
+  // 8500; Nu = 2, pure conduction, at rest).
   n.film_still = 2 * k / d;
   n.film_flow = 1.1 * k / d * std::cbrt(pr) * std::pow(re, 0.6);
   if (parameters_.film_coefficient > 0) n.film_still = parameters_.film_coefficient, n.film_flow = 0;

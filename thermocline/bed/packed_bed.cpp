@@ -163,7 +163,7 @@ void PackedBed::build(Operator& op, double tau) {
 void PackedBed::set_source(std::span<const double> source) {
   source_rate_ = 0;
   for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = source[i] / c_->area;
-  if (c_->advection != Advection::tvd) return;  // which alone asks for it
+  if (c_->advection != Advection::tvd) return;  // others do not use it
   for (std::size_t i = 0; i < source_.size(); ++i)
     source_rate_ = std::max(source_rate_, std::abs(source_[i]) / capacity_[i]);
 }
@@ -216,7 +216,7 @@ void PackedBed::filler_temperature(std::vector<double>& mean) const {
     for (std::size_t i = 0; i < n; ++i) mean[i] += shell_[j * n + i];
   const double share = c_->shells;
   for (double& t : mean) t /= share;
-  for (const BedGrid::Run& run : c_->grid.runs)  // fluid alone: there are no grains
+  for (const BedGrid::Run& run : c_->grid.runs)  // without grains, only the fluid
     if (run.layer.porosity >= 1) std::copy_n(fluid_.begin() + run.first, run.count, mean.begin() + run.first);
 }
 

@@ -53,7 +53,7 @@ class FrontError final : public TankDiagnostic {
       size += std::abs(t[i] - mean);
       if (i > 0 && i + 1 < n) bends += std::abs(t[i - 1] - 2 * t[i] + t[i + 1]);
     }
-    if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
+    if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // uniform temperature does not spread
     const double one_cell = 0.5 * bends / size;                  // s = dz
     const double way = double(n) * crossed();                    // in cells
     diagnostics::ErrorParts parts{.mesh =

@@ -139,7 +139,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     ledger_.roof += lost;
     ledger_.turnover += std::abs(lost);
   }
-  if (!wall_) {  // a wall without a model of its own gives what it gets from the liquid beside it
+  if (!wall_) {  // a wall without a model passes on the heat of the adjacent liquid
     gas_heat_.from_liquid += gas_heat_.from_wall;
     gas_heat_.from_wall = 0;
   }

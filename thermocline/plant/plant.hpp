@@ -23,7 +23,7 @@ struct CalendarStart {
   int period = 365;     ///< days until the weather repeats
 };
 
-/// What is wrong with values of a day (neither one nor 24, or a load outside 0 to 1); empty if nothing is.
+/// Problem of the values of a day (neither one nor 24, or a load outside 0 to 1); empty if nothing is.
 std::string problem_of_day(const std::vector<double>& values, bool share);
 /// Value of the hour that contains t [s].
 double at_hour(const std::vector<double>& values, double t);

@@ -201,7 +201,7 @@ void DayReport::record(const TankRecord& record) {
     charged += heat;
     charging_time += step.dt;
   }
-  // Heat brought by the flow and not stored in the bed was lost through walls, uniformly over the step (5.25-5.27).
+  // Heat brought by the flow and not stored was lost through walls, uniformly over the step (5.25-5.27).
   day_[Sums::stored] += charged - (brought - record.stored) * charging_time / record.dt;
   day_[Sums::losses] += record.losses;
   add_thickness(record);
