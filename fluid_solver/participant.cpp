@@ -106,7 +106,7 @@ coupling::Interface FluidParticipant<D>::initialise() {
   return description;
 }
 
-/// Forces of the first step that are none of the flow's.
+/// Reports forces of the first step that are not caused by the flow.
 template <int D>
 void FluidParticipant<D>::tell_impulse() const {
   const Boundary<D>& boundary = fluid_->boundary();

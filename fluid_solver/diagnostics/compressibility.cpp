@@ -15,7 +15,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// Fewer steps show only the start of a motion, and a smaller share of the mean square is rounding.
+// Fewer steps only show the start of a motion; a smaller share of the mean square is round-off.
 constexpr int judged_steps = 10;
 constexpr double rounding = 1e-9;
 
@@ -166,7 +166,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-// Density changes go with the Mach number squared over two: 5 % at 0.3.
+// Density changes scale with half the squared Mach number: 5 % at 0.3.
 diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
   const double mach = speed / sound.speed;
   return {

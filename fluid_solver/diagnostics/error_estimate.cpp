@@ -39,7 +39,7 @@ struct Fit {
     moments += row * row.transpose() / (length * length);
     values += row * value.transpose() / (length * length);
   }
-  /// In the cell itself.
+  /// Value of the fit in the cell itself.
   Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
 };
 
@@ -125,7 +125,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       see_energy(dt);
       const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps);
       drift_.add(dt, held_, mean(1), mean(2), adams_bashforth_error * sub_step * sub_step);
-      // Errors leave the flow with the outflow of all its volume, and by friction.
+      // Errors leave with the outflow, and are dissipated by friction.
       const double forgotten = friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
       for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
       const double faded = std::exp(-dt / (window * time_));
@@ -280,7 +280,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     left = parallel::sum(mesh.comm, left), all = parallel::sum(mesh.comm, all);
     return all > 0 ? std::sqrt(left / all) : 0;
   }
-  /// Mass that a compressible fluid takes up by compression is no outflow.
+  /// Mass taken up by compression is not outflow.
   void add_compression(std::vector<double>& net) const {
     const State<D>& s = fluid_.state();
     if (!s.pressure[1]) return;

@@ -21,12 +21,12 @@ template <int D>
 class FlowThroughOpenings final : public diagnostics::Diagnostic {
  public:
   explicit FlowThroughOpenings(const FluidView<D>& view) : view_(view) {
-    // A wall that moves may draw fluid in through an outlet.
+    // A moving wall may draw fluid in through an outlet.
     const bool at_rest = !view.has_mover && !view.is_prescribed && !view.has_interface;
     for (const mesh::Patch& patch : view.mesh.patches) {
       const BoundaryParameters& b = view.parameters().boundaries.at(patch.name);
       const bool inlet = condition_of(b).passage == Passage::in;
-      // A pressure that is given on purpose may push.
+      // A pressure given on purpose may drive the flow.
       const bool outlet = at_rest && gives_pressure(b) && b.pressure.text == "0";
       if (inlet || outlet) openings_.push_back({&patch, inlet});
     }

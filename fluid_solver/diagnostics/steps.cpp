@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The length of steps against their limits, and the guess of a semi-implicit step.
+// Step sizes relative to their limits, and the guess of a semi-implicit step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 namespace couplet::fluid {
 namespace {
 
-// A given step that exceeds its limit by this factor is certain to go wrong.
+// Factor above the limit at which a prescribed step certainly fails.
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
-// Error of the friction at the end of a step, over the load: what a growing oscillation reaches.
+// Error of the friction at the end of a step, relative to the load; a growing oscillation reaches it.
 constexpr double near_limit = 0.1;
 
 /// A prescribed step is used even if it is too long for the implicit term on cells with few faces (StepSize).
@@ -108,7 +108,7 @@ double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, 
   return parallel::sum(mesh.comm, rate);
 }
 
-/// Numbers of a step, or of its sub-steps: Courant number, or nu dt/h^2 where friction limits it.
+/// Courant number of a step or its sub-steps, or nu dt/h^2 if friction limits it.
 template <int D>
 class PlaceOnTheMap final : public diagnostics::Diagnostic {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walls that move while the mesh is at rest, and gaps that block the flow.
+// Walls that move on a mesh at rest, and gaps that block the flow.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {
        .advice = "add a mesh mover: 'coupling: {mesh: {participant: ...}}'"});
 }
 
-// A wall that moves across itself on a mesh at rest is an inlet.
+// A wall with normal motion on a mesh at rest acts as an inlet.
 template <int D>
 std::optional<diagnostics::Finding> walls_along_themselves(const FluidView<D>& view) {
   bool has_moving_wall = false;
@@ -78,7 +78,7 @@ std::optional<diagnostics::Finding> blocked_cells(const FluidView<D>& view) {
                                   .left_out = false});
 }
 
-// The guard ends a run that grows at once; what grows slowly is said.
+// The guard stops fast growth; this reports slow growth.
 template <int D>
 std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
   const EnergyLedger& ledger = view.fluid.state().ledger;

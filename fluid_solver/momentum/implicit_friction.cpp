@@ -16,7 +16,7 @@ constexpr double stress_of_eddies = 2;
 
 }  // namespace
 
-/// Residuals add up over the steps, so the tolerance is much tighter than the change of u in one of them.
+/// Residuals accumulate over the steps, so the tolerance is much smaller than the change of u per step.
 template <int D>
 double ImplicitFriction<D>::tolerance() const {
   return std::min(1e-7, 0.1 * scene_.parameters.pressure_tolerance);
@@ -124,7 +124,7 @@ void ImplicitFriction<D>::solve_in_passes(const Vectors<D>& w, double a, const V
   }
 }
 
-/// Makes u, found from before_ in a slow pass, the guess of the next by Anderson's acceleration. Collective.
+/// Computes the guess of the next pass from u and before_ by Anderson acceleration. Collective.
 template <int D>
 void ImplicitFriction<D>::accelerate(bool start, Vectors<D>& u) {
   const std::size_t owned = static_cast<std::size_t>(mesh_.cells.n_owned()) * D;

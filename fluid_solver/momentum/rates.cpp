@@ -68,7 +68,7 @@ COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool
   split ? face_rates<true>(mesh, nu, s, rates) : face_rates<false>(mesh, nu, s, rates);
 }
 
-/// (mean u).S, or what `whole` has beyond that.
+/// (mean u).S, or its difference from `whole`.
 template <bool Rest, int D>
 [[gnu::always_inline]] inline void mean_fluxes(const mesh::Mesh& mesh, const Vectors<D>& area,
                                                const Vectors<D>& u, const double* whole, double* flux) {

@@ -75,16 +75,16 @@ OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, dou
 
 namespace {
 
-// Shares as near as this to nothing or all are round-off.
+// Shares this close to zero or one are round-off.
 constexpr double smallest_cut = 1e-10;
-// And levels, of the size of a cell: faces along a surface are closed.
+// Likewise for levels relative to the cell size: faces along a surface are closed.
 constexpr double level_round_off = 1e-10;
 // Minimum distance of the open part's center from the surface, over cell size times open share.
 constexpr double least_depth = 0.01;
 
 double snapped(double share) { return share < smallest_cut ? 0 : share > 1 - smallest_cut ? 1 : share; }
 
-/// Part of a face: a segment, or a triangle of a fan around its middle.
+/// Part of a face: a segment, or a triangle of a fan around its center.
 template <int D>
 using Piece = std::array<LevelCorner, D>;
 
@@ -95,7 +95,7 @@ double size_of(const Piece<D>& piece) {
   if constexpr (D == 3) return side.cross(piece[2].place - piece[0].place).norm();
 }
 
-/// Volume of the simplex with its tip at `apex`, times a number that is the same for all.
+/// Volume of the simplex with its tip at `apex`, up to a constant factor.
 template <int D>
 double volume_of(const Piece<D>& piece, const Vec3& apex) {
   const Vec3 a = piece[0].place - apex, b = piece[1].place - apex;

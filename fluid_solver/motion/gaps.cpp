@@ -16,7 +16,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// Share of the flux through a pocket's inlets that their profiles may leave over.
+// Allowed net share of the flux through a pocket's inlets, due to their profiles.
 constexpr double inlet_leftover = 1e-6;
 
 }  // namespace
@@ -175,7 +175,7 @@ void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std:
   }
 }
 
-/// Widens a box by the points of a patch. Collective.
+/// Extends a box by the points of a patch. Collective.
 void extend(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points, Vec3& low,
             Vec3& high) {
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
@@ -184,7 +184,7 @@ void extend(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Ve
   MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
 }
 
-/// Corners of the faces of all ranks that reach into a box, as segments (2-D) or triangles. Collective.
+/// Corners of faces on all ranks that intersect a box, as segments (2-D) or triangles. Collective.
 std::vector<double> corners_of(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
                                const Vec3& low, const Vec3& high) {
   std::vector<double> mine;
@@ -253,7 +253,7 @@ void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>
     high[side].setConstant(-base::infinity);
     extend(mesh_, *walls_[gap][side], points, low[side], high[side]);
   }
-  // A cell that is blocked is nearer than the limit to both.
+  // A blocked cell is nearer than the limit to both walls.
   const Vec3 room = Vec3::Constant(limit), from = low[0].cwiseMax(low[1]) - room,
              to = high[0].cwiseMin(high[1]) + room;
   if ((from.array() > to.array()).any()) return;
@@ -335,7 +335,7 @@ void Gaps<D>::correct_memory(State<D>& s) const {
     if (is_blocked(f)) s.memory[f] = 0;
 }
 
-/// Linear in between the free cell would feel the slope of the pressure along the gap, which drives nothing.
+/// With linear interpolation, the free cell would see the pressure gradient in the gap, which drives no flow.
 template <int D>
 void Gaps<D>::part(const Placement<D>& at, const std::vector<double>& p, const Vectors<D>* gradient,
                    const Vectors<D>& area, Vectors<D>& sum) const {
@@ -349,7 +349,7 @@ void Gaps<D>::part(const Placement<D>& at, const std::vector<double>& p, const V
   }
 }
 
-/// A compressible fluid compresses in the parts that are shut off.
+/// A compressible fluid is compressed in parts that are cut off.
 template <int D>
 std::string Gaps<D>::cause(const Placement<D>& at) const {
   return active_ && !compressible_ ? pockets_.cause(at) : std::string();

@@ -273,7 +273,7 @@ void ImmersedBodies<D>::force_by_cuts(const Placement<D>& at, double dt, Vectors
   mesh_.cells.update_ghosts(flat<D>(u), D);
 }
 
-/// At s' in the middle of what is open of a cell: u + (s' - s) du/ds.
+/// Value at s', the center of the open part of a cell: u + (s' - s) du/ds.
 template <int D>
 void ImmersedBodies<D>::carry(const Placement<D>& at, const Vectors<D>& u, std::vector<double>& phi) const {
   if (!cut_) return;
@@ -287,7 +287,7 @@ void ImmersedBodies<D>::carry(const Placement<D>& at, const Vectors<D>& u, std::
     if (beside_surface(f)) phi[f] = 0.5 * (in_open(mesh_.owner[f]) + in_open(other(f))).dot(at.area[f]);
 }
 
-/// From the fluid cells at the faces of the marked ones.
+/// Uses fluid cells at the faces of marked cells.
 template <int D>
 void ImmersedBodies<D>::add_forces_of_steps(const Placement<D>& at, const std::vector<double>& p,
                                             const Vectors<D>& u, double viscosity, Sums& sums) const {

@@ -97,7 +97,7 @@ std::vector<Vec3> face_corners(const mesh::Mesh& mesh, const mesh::Patch& patch,
   return corners;
 }
 
-/// Adds the walls whose velocity the case gives; the others were added before.
+/// Adds walls with velocity given by the case; the others were added before.
 template <int D>
 void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t,
                            Vectors<D>& turn) const {

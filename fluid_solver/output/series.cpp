@@ -212,7 +212,7 @@ Row energies(const Fluid<D>& fluid) {
           {"pressure power [W]", e.pressure}};
 }
 
-/// Forces on the immersed bodies, and what leaks through their surfaces.
+/// Forces on the immersed bodies, and the leakage through their surfaces.
 template <int D>
 Row bodies(const Fluid<D>& fluid) {
   Row row;

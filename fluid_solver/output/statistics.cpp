@@ -7,7 +7,7 @@
 namespace couplet::fluid {
 namespace {
 
-/// Round-off may leave a square below zero; what is not a number stays so.
+/// Round-off may make a square negative; NaN is kept.
 double root(double square) { return square < 0 ? 0.0 : std::sqrt(square); }
 
 }  // namespace

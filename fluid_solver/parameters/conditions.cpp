@@ -193,7 +193,7 @@ const auto& condition_table() {
            .velocity = GivenBy::flow,
            .passage = Passage::out}},
       Entry{BoundaryType::no_slip, {.name = "no-slip", .about = "no-slip: wall at rest", .wall = true}},
-      // A wall that moves along itself.
+      // Wall with tangential motion.
       Entry{BoundaryType::moving_wall,
             {.name = "moving-wall",
              .about = "moving-wall: wall with a prescribed velocity",
@@ -215,7 +215,7 @@ const auto& condition_table() {
              .velocity = GivenBy::mesh}},
       Entry{BoundaryType::symmetry,
             {.name = "symmetry", .about = "", .row = without_friction, .velocity = GivenBy::mesh}},
-      // Fluid that leaves comes in at the partner: the mesh is joined there, no face of the boundary is left.
+      // Outflow enters at the partner: the mesh is joined there, without boundary faces.
       Entry{BoundaryType::periodic,
             {.name = "periodic",
              .about = "periodic: outflow re-enters at the partner",
@@ -230,7 +230,7 @@ const auto& condition_table() {
              .declare = declare_interface,
              .velocity = GivenBy::structure,
              .wall = true}},
-      // A wall that moves as prescribed, across itself too.
+      // Wall with prescribed motion, also in normal direction.
       Entry{
           BoundaryType::body,
           {.name = "body",

@@ -159,7 +159,7 @@ double rate_of(const config::ExpressionText& text, const Vec3& at, const diagnos
   return variance > 1e-9 * square ? std::sqrt(changes / variance) : 0;
 }
 
-/// The fastest of all that is prescribed.
+/// Largest rate of all prescribed quantities.
 double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
                     const diagnostics::CaseScene& scene) {
   std::vector<config::ExpressionText> texts;
@@ -308,7 +308,7 @@ std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& p, 
 }
 
 diagnostics::ExpectedCost expected_cost(const FluidParameters& p, const mesh::MeshFacts& mesh) {
-  // Measured: 56 MB with 4096 cells in 2-D, of which PETSc with its libraries takes 21.
+  // Measured: 56 MB with 4096 cells in 2-D, including 21 MB for PETSc and its libraries.
   const double cells = double(mesh.cells), eddies = p.turbulence ? 8 : 0;
   return {mesh.cells, 49e6 + (1800 + eddies) * cells, 2e-6 * cells};
 }

@@ -82,7 +82,7 @@ std::vector<std::string> substances() {
 
 namespace {
 
-/// One of speed, substance and pressure.
+/// Requires exactly one of speed, substance and pressure.
 void check_source_of_sound(config::Section& s, const CompressibilityParameters& p) {
   s.check(
       [&p]() -> std::string {
@@ -180,7 +180,7 @@ std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& gi
   if (p.speed_of_sound) return Sound{*p.speed_of_sound, "the fluid"};
   if (!p.substance.empty()) return of_substance(p);
   if (p.pressure) return of_gas(density, *p.pressure, p.heat_capacity_ratio);
-  // Gases of any temperature have 5e-6 to 1e-4 Pa s; a fluid as light and more viscous is a model.
+  // Gases have 5e-6 to 1e-4 Pa s at any temperature; an equally light and more viscous fluid is a model.
   if (density > 0.02 && density < 50 && viscosity > 5e-6 && viscosity < 1e-4)
     return of_gas(density, atmosphere, p.heat_capacity_ratio);
   if (density > 900 && density < 1100) return Sound{1482, "water"};

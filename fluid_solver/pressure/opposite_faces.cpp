@@ -90,7 +90,7 @@ class Walls {
   double widest_ = 0, reach_ = 0;  // largest radius; largest thickness [m]
 };
 
-/// Area that a face has in common with one of another rank.
+/// Common area of a face with one of another rank.
 struct Told {
   Index to, from;
   double area;
@@ -109,7 +109,7 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
       radius = std::max(radius, (geometry.points[v] - geometry.face_centre[f]).norm());
     mine.push_back({geometry.face_centre[f], geometry.face_area[f].normalized(), radius, b, rank});
   }
-  // All of them are here while the opposite ones are looked for, and no longer.
+  // All faces are stored on each rank only during the search.
   const std::vector<Face> all = parallel::all_gather(mesh.comm, mine);
   const Walls walls(all);
 
@@ -129,7 +129,7 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
       sums[1] += part;
       covered[std::size_t(face.entry)] += part;
       sums[2] += part * (other.centre - place).dot(face.normal);
-      // Half of what each of the two says: their common area is one number.
+      // Half of both values, because the common area is one number.
       common[{face.entry, other.rank, other.entry}] += part / 2;
       tell[std::size_t(other.rank)].push_back({other.entry, face.entry, part / 2});
     }

@@ -11,7 +11,7 @@
 
 namespace couplet::fluid {
 
-// Up to here kept Cholesky factors beat multigrid in 2-D: thin cells cost them no iterations.
+// Up to this size, stored Cholesky factors are faster than multigrid in 2-D, also with thin cells.
 constexpr GlobalIndex largest_direct = 120000;
 
 namespace {
@@ -125,14 +125,14 @@ void PressureEquation<D>::set(const Placement<D>& at, bool regular, const Diagon
   if (fixed_) std::vector<double>().swap(values_), solver_->solver().refresh();
 }
 
-// A closed domain has a pressure up to a constant only if the fluxes add up to nothing.
+// The pressure of a closed domain is solvable up to a constant only if the fluxes sum to zero.
 template <int D>
 void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
   const double sum = parallel::sum(mesh_.comm, as_vector(std::span<const double>(b)).sum());
   as_vector(std::span(b)).array() -= sum / static_cast<double>(mesh_.cells.n_global());
 }
 
-/// A tolerance that is not finite would let anything pass: fluxes whose squares overflow make one.
+/// Rejects a tolerance that is not finite, from fluxes whose squares overflow.
 template <int D>
 linalg::SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
                                                            std::span<double> p, double relative,

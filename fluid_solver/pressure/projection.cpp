@@ -241,7 +241,7 @@ void PressureProjection<D>::balance_closed_domain() {
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   const bool adjustable = sums[adjustable_area] > 0;
-  // Walls that turn let nothing through but round-off of their speeds.
+  // The flux through rotating walls is only round-off of their speeds.
   if (!adjustable && std::abs(sums[total]) > std::max(1e-6 * sums[size], 1e-12 * sums[speeds]))
     throw Error(
         "The fluid domain is closed, but the prescribed velocities give a net outflow of {:.6g} m^3/s. Add "

@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Share of the interface's area that must lie opposite itself for a line in the log.
+// Share of the interface's area that must be opposite itself for a log entry.
 constexpr double worth_telling = 0.05;
 
 /// Checks that there are two sides where the case states that they move together. Collective.
@@ -133,14 +133,14 @@ class YieldingWalls final : public Term<D> {
         sides_[b].resistance = (m + scene_.fluid.rho * at.area[f].norm() / at.conductance[f]) / step_.dt;
     }
   }
-  /// Updates the copies of faces that lie opposite on other ranks.
+  /// Updates the copies of opposite faces on other ranks.
   void share() { opposite_.map().update_ghosts(std::as_writable_bytes(std::span(sides_)), sizeof(Side)); }
   /// S'/(Z + Z' + D + D') [m^4 s/kg].
   double answer_of(const OppositeFaces::Pair& pair) const {
     const Side &here = sides_[std::size_t(pair.face)], &there = sides_[std::size_t(pair.other)];
     return here.resistance > 0 && there.resistance > 0 ? pair.area / (here.resistance + there.resistance) : 0;
   }
-  /// The walls' velocities and fluxes move by what the pressures of their sides do to them.
+  /// Adds the response of walls to the pressures on their sides to velocities and fluxes.
   void add_answers(Projected<D>& out) {
     const Placement<D>& at = *step_.to;
     share();

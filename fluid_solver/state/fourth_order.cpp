@@ -15,12 +15,12 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double parallel_cosine = 0.9999;  // of two faces
-// Obliqueness and skewness (in distances of the cells) up to which a face lies straight across its line.
+// Largest non-orthogonality and skewness (in cell distances) for a face to be straight across its line.
 constexpr double straight = 0.02;
 constexpr double along_axis = 1e-12;  // of the cosine
 constexpr double smooth = 2;          // ratio of the distances on the two sides of a cell
 
-/// A face as one of its cells sees it.
+/// A face from the point of view of one of its cells.
 struct Side {
   Index face, other;
   bool outward;  ///< S points out of the cell
@@ -33,7 +33,7 @@ bool is_straight(const Placement<D>& at, Index f) {
   return !at.skewed() || at.skew[f].norm() * at.conductance[f] <= straight * size;
 }
 
-/// The sides of each owned cell that has as many faces as a quadrilateral or a hexahedron.
+/// Sides of each owned cell with as many faces as a quadrilateral or hexahedron.
 template <int D>
 std::vector<std::vector<Side>> sides_of(const mesh::Mesh& mesh, const Placement<D>& at) {
   const Index owned = mesh.cells.n_owned();

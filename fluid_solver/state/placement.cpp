@@ -17,7 +17,7 @@ namespace {
 constexpr double least_cosine = 0.05;
 // Skewness, in distances of the cells, below which it is round-off.
 constexpr double least_skewness = 1e-6;
-// A cell whose gradient cannot be cured: too few of its faces say something.
+// A cell whose gradient cannot be corrected has too few informative faces.
 constexpr double least_determinant = 0.1;
 
 template <int D>
@@ -90,8 +90,8 @@ void set_faces(const mesh::Mesh& mesh, const FaceCentre& centre_of, Placement<D>
   if (p.obliqueness <= orthogonal) Vectors<D>().swap(p.oblique);
 }
 
-/// Cell by cell, counter-clockwise, which writes every value once. Triangles from the mean of the points keep
-/// round-off small far from the origin.
+/// Computed cell by cell in counter-clockwise order, with one write per value. Triangles from the mean of the
+/// points keep round-off small far from the origin.
 void set_cells(const mesh::Mesh& mesh, std::span<const Vec3> points, Placement<2>& p) {
   p.volume.resize(mesh.cells.n_local());
   p.centre.resize(mesh.cells.n_local());
@@ -130,7 +130,7 @@ std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, const
   return placement;
 }
 
-/// In two dimensions without the arrays of a Geometry. Periodic cells do not have all points of their faces.
+/// 2-D version without the arrays of a Geometry. Periodic cells lack some points of their faces.
 template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::span<const Vec3> points) {
   if constexpr (D == 2) {

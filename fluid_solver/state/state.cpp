@@ -132,7 +132,7 @@ void visit(State<D>& s, bool moving, bool compressible, StateFile f) {
 
 template <int D>
 void write_state(io::CheckpointWriter& file, const State<D>& s, bool compressible) {
-  // A visit that writes changes nothing.
+  // Writing does not change the state.
   visit(const_cast<State<D>&>(s), !s.points.empty() || !s.mesh_flux.empty(), compressible,
         {&file, nullptr, nullptr});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predicted face fluxes and what they remember of the mean velocities.
+// Predicted face fluxes and their memory of the mean velocities.
 #include "fluid_solver/step/stages.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
+// Largest decay of the flux memory per step for which AB2 is stable without overshoot.
 constexpr double largest_decay = 2.0 / 3;
 
 /// Weights for add_memory().
@@ -64,7 +64,7 @@ template <int D>
 void FaceFlux<D>::predict(const State<D>& from, const Vectors<D>& u) {
   const Placement<D>& now = *step_.to;
   phi_.resize(mesh_.n_flux_faces());
-  // Without the pressure the velocity at a wall is still that of level n: its change comes with grad p.
+  // Without pressure the wall velocity is still that of level n; its change comes with grad p.
   if (now.skewed()) scene_.boundary.close(mesh_, now, u, from.w, u_boundary_);
   gradient_.number = 0;
   mean_flux<D>(mesh_, now, scene_.flux_velocity(now, increment_of_fourth() ? without_pressure(u) : u),
@@ -81,8 +81,8 @@ void FaceFlux<D>::predict(const State<D>& from, const Vectors<D>& u) {
   scene_.obstacles->block(step_, phi_);
 }
 
-/// Rate at which friction and convection even out a difference in the cells, per local cell [1/s]. Fluxes
-/// relative to the mesh: the same in every frame.
+/// Smoothing rate of cell-to-cell differences by friction and convection, per local cell [1/s]. Uses fluxes
+/// relative to the mesh, which are equal in every frame.
 template <int D>
 void FaceFlux<D>::set_relaxation(const State<D>& from) {
   relaxation_.assign(mesh_.cells.n_local(), 0.0);

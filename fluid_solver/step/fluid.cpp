@@ -90,8 +90,8 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
   return w;
 }
 
-// The implicit predictor and the non-orthogonal part need the pressure of the step before: at the very first
-// step it comes from a trial of the step.
+// The implicit predictor and the non-orthogonal part require the previous pressure. In the first step it
+// comes from a trial of the step.
 template <int D>
 void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
   History<D> probe = history_;
@@ -128,7 +128,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     SubStep<D> sub_step = path_.sub_step(level(), dt, end / dt_, accepted_.points, points, time_);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
     if (history_.start == Start::after_impulse) {
-      // The pressure of a compressible fluid is no impulse, but its state.
+      // The pressure of a compressible fluid is part of its state, not an impulse.
       if (!parameters_.is_compressible()) history_.pressure = {};
       history_.start = Start::flowing;
     }
@@ -162,7 +162,7 @@ void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity, double answer) {
       if (boundary_.is_interface(b)) last_w_[b] = wall_velocity[b];
   check_wall_velocity();
   step_.project(level(), last_w_, answer);
-  // Once a prediction: what a repetition changes is the potential flow of a bounded wall velocity.
+  // Once per prediction, because repetitions only change the potential flow of a bounded wall velocity.
   if (!judged_) step_.complete(level());
   judged_ = true;
   ++statistics_.pressure_solves;
@@ -246,8 +246,8 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   step_.keep();
 }
 
-/// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
-/// loop, see docs/theory.md.
+/// The layer dragged by a wall within a step is rho sqrt(nu dt) thick, a mass that acts on w* in the loop,
+/// see docs/theory.md.
 template <int D>
 double Fluid<D>::unseen_share(const Vectors<D>& w) const {
   const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
@@ -299,7 +299,7 @@ void Fluid<D>::check_wall_velocity() const {
       time_ + dt_, place.x(), place.y(), place.z());
 }
 
-/// Mean of the step's begin and end.
+/// Mean of the start and the end of the step.
 template <int D>
 void Fluid<D>::add_turning() {
   if (!boundary_.walls_turn()) return;

@@ -54,7 +54,7 @@ COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, d
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = predicted[i] - factor * gradient[i];
 }
 
-/// Infinity if one is not finite.
+/// Largest speed; infinity if one is not finite.
 template <int D>
 COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<D>> u) {
   double largest = 0, all = 0;
@@ -105,7 +105,7 @@ std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(std::shared_p
   return seen;
 }
 
-/// The obstacles at the end of the step.
+/// Updates the obstacles to the end of the step.
 template <int D>
 void FractionalStep<D>::mark(double time) {
   using Changed = typename Obstacles<D>::Changed;
@@ -157,9 +157,8 @@ void FractionalStep<D>::mark_level(State<D>& s) {
   s.blocked = scene_.obstacles->marks();
 }
 
-/// u = u0 - grad psi with phi free of divergence: the same equation with dt = 1 s, rho = 1. Where the given
-/// wall velocity differs from u0 at the wall (an inlet that starts at once) the field becomes the potential
-/// flow.
+/// u = u0 - grad psi with divergence-free phi: the same equation with dt = 1 s, rho = 1. If the given wall
+/// velocity differs from u0 at the wall (an impulsively started inlet), the field becomes the potential flow.
 template <int D>
 void FractionalStep<D>::project_initial(State<D>& s) {
   scene_.oblique = parallel::max(mesh_.comm, s.placement->obliqueness) > orthogonal ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything before the face fluxes and the pressure equation.
+// All parts before the face fluxes and the pressure equation.
 #include "fluid_solver/step/stages.hpp"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace couplet::fluid {
 namespace {
 
-// Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, and it damps
-// stiff modes.
+// Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, damps stiff
+// modes.
 constexpr double c_modified = 1.0 / 16;
 
 /// u + (a R + b R_old)/V, an explicit step on a fixed mesh without forces. `old`: nullptr if there is none.
@@ -108,7 +108,7 @@ void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   scene_.obstacles->clear(out_.rates.viscous);
 }
 
-// Volume-integrated at t^{n+1/2}, where the pressure lives that may balance it.
+// Volume-integrated at t^{n+1/2}, the time of the pressure that may balance it.
 template <int D>
 void Predictor<D>::add_body_force(const State<D>& from, double e0, double e1) {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());

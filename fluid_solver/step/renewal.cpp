@@ -81,7 +81,7 @@ template <int D>
 bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen) {
   ++passes_;
   const double left = contraction(comm, w);
-  // Quasi-Newton methods hide how heavy the structure is as soon as they know it: the slowest step counts.
+  // Quasi-Newton methods hide the weight of the structure once they know it, so the slowest step is used.
   if (count_ == 0 && passes_ == enough_passes && unseen > largest_unseen_share)
     slowest_ = std::max(slowest_, left);
   const double allowed = slowest_ > slow ? largest_unseen_share : largest_of_heavy;
