@@ -60,7 +60,7 @@ SparseMatrix program_matrix(MPI_Comm comm, Mat a, std::vector<double>& value) {
   return matrix;
 }
 
-/// `now`, `made`: entries of the matrix that is solved and of the one that the preconditioner is made from.
+/// `now`, `made`: entries of the matrix to solve, and of that for the preconditioner.
 Result solve_by_program(const System& system, SparseMatrix& matrix, std::span<const double> now,
                         std::span<const double> made, LinearMethod method) {
   Result result;

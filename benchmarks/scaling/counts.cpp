@@ -129,7 +129,7 @@ void write() {
 
 using namespace couplet::scaling;
 
-// One line a call: what it is given, then what it names of that.
+// One line per call: its arguments, then those it uses by name.
 #define TYPES(...) (__VA_ARGS__)
 #define SENDS(NAME, GIVEN, ...)                \
   extern "C" int MPI_##NAME GIVEN {            \

@@ -151,7 +151,7 @@ Iterate AitkenRelaxation::next(Iterate x, const Iterate& image) {
 }
 
 void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
-  // A step of two passes has its second factor only now.
+  // In a step of two passes, the second factor is only known now.
   if (second_pass_) {
     take_residual(x, image);
     learn();

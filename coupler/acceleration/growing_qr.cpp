@@ -11,13 +11,13 @@
 namespace couplet::coupler {
 namespace {
 
-/// Rows `row` and `row` + 1 of R and the columns of Q that belong to them turn.
+/// Rotates rows `row` and `row` + 1 of R and the corresponding columns of Q.
 struct Rotation {
   int row;
   double c, s;
 };
 
-/// R_{i+1,column} becomes zero; Q must turn along.
+/// Eliminates R_{i+1,column}; Q must be rotated accordingly.
 void rotate(Eigen::MatrixXd& r, int i, int column, std::vector<Rotation>& turns) {
   const double a = r(i, column), b = r(i + 1, column);
   if (b == 0) return;
@@ -77,7 +77,7 @@ void GrowingQr::push_front(std::vector<double> v) {
     t[m] += dot(here, here);
   });
   sum_over(comm_, {t.data(), std::size_t(m) + 1});
-  // Second sweep, of v - Q t; again |.|^2 last.
+  // Second sweep for v - Q t, with its squared norm last.
   for_blocks(v.size(), [&](std::size_t first, std::size_t count) {
     double* here = v.data() + first;
     for (int j = 0; j < m; ++j) take_away(t[j], q_[std::size_t(j)].data() + first, here, count);

@@ -29,7 +29,7 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
   for (const auto& link : links.all()) {
     if (place_in_group(link.giver) == std::ssize(group)) continue;  // not a member
     const auto taker = place_in_group(link.taker);
-    // A mover takes before everyone.
+    // A mover takes its data first.
     if (taker == std::ssize(group) || side_by_side || place_in_group(link.giver) >= taker) add(link);
   }
   // The mover's guess of a displacement also requires its velocity.
@@ -51,7 +51,7 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
   for (Part& d : parts_)
     for (const Part& p : parts_)
       if (p.rides && p.giver == d.giver && d.datum.name == "displacement") d.velocity = p.first;
-  // Data of one kind need no scale.
+  // A single type of data needs no scale.
   const auto lead = std::ranges::find(parts_, false, &Part::rides);
   scaled_ =
       std::ranges::all_of(parts_, [&](const Part& p) { return p.rides || p.datum.unit == lead->datum.unit; });
@@ -244,7 +244,7 @@ Iterate predict(const Unknown& unknown, const History& history, double dt, int o
   return guess;
 }
 
-// Values within the step as a part of the unknown.
+// Values within the step as part of the unknown.
 
 bool Unknown::asked_within() const { return std::ranges::any_of(parts(), &Part::asked_within); }
 

@@ -99,7 +99,7 @@ void VolumeLevel::put(const Cavity& cavity, coupling::Exchange& given) const {
       load[f * std::size_t(dim_) + std::size_t(c)] += cavity.level * cavity.areas[f][c];
 }
 
-/// At the end and at the begin of the step [m^3/s].
+/// Inflow at the end and at the start of the step [m^3/s].
 std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity,
                                           const std::vector<coupling::Exchange>& known) const {
   std::vector<double> sums(2, 0.);
@@ -148,7 +148,7 @@ double VolumeLevel::pressure(const Cavity& c, const std::vector<double>& load) c
   return sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : 0;
 }
 
-/// The structure's answer to a further pressure in each cavity, of the size of the load.
+/// Response of the structure to an additional pressure in each cavity, of the size of the load.
 void VolumeLevel::probe(std::vector<coupling::Exchange>& known, const std::function<void()>& answer,
                         const Eigen::VectorXd& now) {
   slope_.resize(now.size(), now.size());
@@ -219,7 +219,7 @@ void VolumeLevel::accept(const std::vector<coupling::Exchange>& given) {
     const Flow now = flow(c, given);
     c.change += now.swept;
     c.inflow += dt_ / 2 * (now.begin + now.end);
-    // The wall stood before the first step.
+    // The wall was at rest before the first step.
     c.swing = {now.mismatch, c.begun ? c.swing[0] : -now.begin};
     c.flow = std::max(now.size, fading * c.flow);
     c.begun = true;

@@ -17,7 +17,7 @@ constexpr int judged_steps = 10;        ///< before which the velocity is not ju
 constexpr double doubtful = 0.3;        ///< deviation of the velocity, over the rate
 constexpr double least_motion = 1e-12;  ///< over the interface's extent; below it nothing moves
 
-/// Tells whether any rank's values differ in any bit.
+/// True if any rank's values differ bitwise.
 bool differ(MPI_Comm comm, const coupling::Exchange& a, const coupling::Exchange& b) {
   return parallel::max(comm, a == b ? 0. : 1.) > 0;
 }

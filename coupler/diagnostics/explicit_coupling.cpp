@@ -11,7 +11,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Participants solve to about 1e-8 of their values: less than that would be a ratio of their noise.
+// Participants solve to about 1e-8 of their values; smaller changes are noise.
 double ratio(const Residual& first, const Residual& second) {
   if (!(first.relative > 1e-6) || !std::isfinite(second.absolute)) return unknown;
   return second.absolute / first.absolute;
@@ -31,7 +31,7 @@ class AddedMass final : public CouplingDiagnostic {
   void returned(GlobalIndex step, const Iterate& x, const Iterate& image, const Iterate& again) override {
     const double r =
         ratio(worst(view_.unknown.measure(x, image)), worst(view_.unknown.measure(image, again)));
-    // At a start the ratio is that of an impulse: it may explain a failure, but is no evidence about the run.
+    // At the start the ratio is that of an impulse: it may explain a failure but does not describe the run.
     double& seen = step == 1 ? at_start_ : returned_;
     seen = std::fmax(seen, r);
   }
@@ -160,7 +160,7 @@ std::shared_ptr<CouplingDiagnostic> explicit_lag(const CouplingView& view) {
   const Schedule& schedule = view.pass.schedule();
   if (schedule.iterates) return nullptr;
   const auto parts = view.unknown.parts();
-  // Sub-steps see a line through what was given; the level of closed fluids answers by itself.
+  // Sub-steps use linear input in time; the level of closed fluids responds by itself.
   const bool possible = schedule.sub_steps.empty() && !view.pass.has_closed_fluid() && !parts.empty() &&
                         std::ranges::all_of(parts, [](const auto& p) { return p.rides || p.velocity; });
   if (!possible) return std::make_shared<UnknownLag>();

@@ -110,7 +110,7 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
   const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
   speed_.push_back(norm(comm_, velocity));
   if (speed_.size() > 4) speed_.pop_front();
-  // It turns round: most of the shape is the last one's with the other sign.
+  // The motion reverses: most of its shape equals the last one with opposite sign.
   const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;
   if (turned) {
     if (turns_ == 0) sizes_.assign(1, old_size);

@@ -10,7 +10,7 @@ namespace {
 
 using OnDivergence = CouplingParameters::OnDivergence;
 
-/// The interface swings from step to step and more and more (see OscillationGuard).
+/// Detects a growing oscillation of the interface from step to step (see OscillationGuard).
 class InterfaceOscillation final : public CouplingDiagnostic {
  public:
   explicit InterfaceOscillation(const CouplingView& view) : view_(view), guard_(view.comm) {}
@@ -24,7 +24,7 @@ class InterfaceOscillation final : public CouplingDiagnostic {
           {.id = "interface-oscillation", .severity = base::Severity::wrong, .sentence = *reason});
   }
   std::optional<app::StepFailure> suspects() const override {
-    // Halving does not save a step that swings already.
+    // Halving does not help a step that already oscillates.
     if (const auto swings = guard_.suspects(view_.scheme.now()); swings && stops())
       return app::StepFailure(*swings, false);
     return {};
@@ -61,7 +61,7 @@ namespace {
 
 using OnDivergence = CouplingParameters::OnDivergence;
 
-/// Work given and work taken at the interface (see WorkGuard).
+/// Compares the work given and taken at the interface (see WorkGuard).
 class InterfaceWork final : public CouplingDiagnostic {
  public:
   explicit InterfaceWork(const CouplingView& view) : view_(view) {}

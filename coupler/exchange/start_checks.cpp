@@ -23,7 +23,7 @@ std::vector<std::string> parts(const std::string& text, char separator) {
   return list;
 }
 
-/// `record`: implicit or explicit, serial or parallel, the participants of a serial one.
+/// `record`: implicit or explicit, serial or parallel, and the participants of a serial scheme.
 void check_scheme(const CouplingParameters& p, const std::string& who,
                   const std::vector<std::string>& record) {
   const auto& list = p.exchange->participants;

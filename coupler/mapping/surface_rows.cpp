@@ -15,7 +15,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// A part of a row: so much of the value at a face of the structure, whose mean is taken about `place`.
+/// Part of a row: weight of the value at a face of the structure, with its mean at `place`.
 struct Share {
   GlobalIndex row, source;
   Weights weight;
@@ -88,11 +88,11 @@ void finish_row(int dim, const Vec3& x, const std::vector<Vec3>& places, std::ve
   for (int pass = 0; pass < 2; ++pass) make_linear(x, places, weights);
 }
 
-/// One row at a time, its arrays kept for the next.
+/// Work arrays for one row at a time.
 class RowBuffers {
  public:
   void clear() { sources_.clear(), places_.clear(), row_.clear(); }
-  /// Equal sources follow each other.
+  /// Equal sources must be consecutive.
   void add(GlobalIndex source, const Vec3& place, const Weights& weight) {
     if (sources_.empty() || source != sources_.back())
       sources_.push_back(source), places_.push_back(place), row_.push_back({0, 0});
@@ -124,7 +124,7 @@ void finish(int dim, const std::vector<Share>& shares, GlobalIndex first, const 
   }
 }
 
-/// Each share on the rank that has its row.
+/// Sends each share to the rank of its row.
 std::vector<Share> shares_by_owner(MPI_Comm comm, const coupling::Starts& rows, std::vector<Share> shares) {
   std::vector<Share> mine =
       to_owners(comm, std::move(shares), [&](const Share& s) { return coupling::owner_of(rows, s.row); });
@@ -148,7 +148,7 @@ class OpenRows {
     if (known == list.end()) known = list.insert(list.end(), {source, {0, 0}});
     known->second.dual += weight.dual, known->second.more += weight.more;
   }
-  /// One of its faces is done. Calls finished(row, parts by source) for a whole one that was the last of.
+  /// Completes one of its faces. Calls finished(row, parts by source) for a row that was completed by it.
   template <class Finished>
   void done(std::size_t row, const SurfacePart& structure, const FaceIntegrals& integrals,
             const Finished& finished) {
@@ -187,14 +187,14 @@ std::vector<char> alone_at(MPI_Comm comm, const std::vector<GlobalIndex>& vertic
   return alone;
 }
 
-/// Rows that the faces of `mine` give to: at their corners or of their own.
+/// Rows with contributions from faces of `mine`, at their corners or centers.
 struct Targets {
   const PointSet& points;  ///< of this rank
   bool at_vertices;
   GlobalIndex first;
 };
 
-/// Finished rows go to `entries`, the rest is returned.
+/// Finished rows go to `entries`, the others are returned.
 std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const SurfacePart& mine,
                              MappingParameters::Type type, const Targets& targets,
                              std::vector<Transfer::Entry>& entries) {
@@ -246,7 +246,7 @@ std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& stru
   const std::vector<Share> known = shares_by_owner(comm, points.starts, std::move(shares));
   finish(structure.dim, known, targets.first, points.points, entries);
   for (const Share& s : known) has[std::size_t(s.row - targets.first)] = 1;
-  // A vertex of no face.
+  // Vertices without a face.
   std::vector<Vec3> lone;
   std::vector<GlobalIndex> positions;
   for (std::size_t i = 0; i < has.size(); ++i)

@@ -68,7 +68,7 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
   return bound;
 }
 
-/// Values at these positions (ascending) from the ranks that have them; this rank's own without a message.
+/// Values at these positions (ascending) from their ranks; this rank's own without a message.
 template <class Value, class Get>
 std::vector<Value> fetch(MPI_Comm comm, const coupling::Starts& starts,
                          const std::vector<GlobalIndex>& positions, Get get) {
@@ -101,7 +101,7 @@ std::vector<Value> fetch(MPI_Comm comm, const coupling::Starts& starts,
   return all;
 }
 
-/// Numbers within an ascending list of positions that holds a stretch of this rank's and some others.
+/// Numbers within an ascending list of positions that contains a segment of this rank and some others.
 class Numbering {
  public:
   /// Numbers all values in `positions`; this rank's segment starts at `first`.
@@ -245,7 +245,7 @@ std::vector<GlobalIndex> Surroundings::faces_around(const std::vector<GlobalInde
   struct Touch {
     GlobalIndex vertex, face;
   };
-  // A face may be another rank's than its vertices: each vertex' owner learns of its faces.
+  // A face may be on another rank than its vertices: each vertex's owner is told of its faces.
   const auto rank = std::size_t(parallel::comm_rank(comm_));
   std::vector<std::vector<Touch>> tell(std::size_t(parallel::comm_size(comm_)));
   for (std::size_t f = 0; f < part_.face_centres.size(); ++f)

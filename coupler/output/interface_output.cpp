@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void array(std::ofstream& out, const std::string& name, const std::vector<double>& values, int components) {
-  // ParaView takes vectors of three components for arrows and warps.
+  // ParaView requires three components for arrows and warps.
   const int shown = components == 2 ? 3 : components;
   out << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n",
                      name, shown);
