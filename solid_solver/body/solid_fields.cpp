@@ -25,7 +25,7 @@ std::vector<bool> uniform_surroundings(const mesh::Mesh& mesh) {
   return uniform;
 }
 
-/// Unit normal of a boundary face whose points are at `places`, out of the body as the reference one is.
+/// Outward unit normal of a boundary face with points at `places`, oriented as the reference one.
 Vec3 normal_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face,
                std::span<const Vec3> places) {
   const auto corners = mesh.face_points[face];

@@ -144,7 +144,7 @@ void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
   }
 }
 
-/// All that the equations ask of a type: its projector and its stiffness at a face.
+/// Row of a condition type: its projector and its stiffness at a face.
 elastic::BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) const {
   const Vec3 n = geometry_->face_area[face].normalized();
   const Tensor3 none = Tensor3::Zero(), across = n * n.transpose(), lifted = c.normal * c.normal.transpose();
@@ -163,7 +163,7 @@ elastic::BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) con
       return elastic::support_row(lifted, none);
     case Type::hard_support: {
       const Vec3 along = n.cross(c.normal);
-      // On the top or bottom of the plate there is no edge to go along.
+      // At the top and bottom of the plate there is no edge direction.
       const bool has_edge = along.norm() > 1e-3;
       return elastic::support_row(
           has_edge ? Tensor3(lifted + along * along.transpose() / along.squaredNorm()) : lifted, none);

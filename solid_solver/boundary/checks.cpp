@@ -110,7 +110,7 @@ constexpr double resisted = 1e-9;
 using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the center, rotation times the size of the body
 using Resistance = Eigen::Matrix<double, 6, 6>;
 
-/// Sum over the ranks, entry by entry.
+/// Component-wise sum over the ranks.
 void add_over_ranks(MPI_Comm comm, std::vector<double>& values) {
   const std::vector<double> all = parallel::all_gather(comm, values);
   const std::size_t n = values.size();
@@ -207,7 +207,7 @@ void add_face(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic, I
   const Vec3 n = geometry.face_area[face].normalized();
   const elastic::BoundaryRow& row = elastic.at(face);
   if (row.held) resist(at_centre, row.known);
-  // Any spring holds: its stiffness only says how far the body moves.
+  // Any spring holds, because its stiffness only determines the displacement.
   if (const double stiffest = row.spring.norm(); stiffest > 0) resist(at_centre, row.spring / stiffest);
   if (row.level) resist(normal_gradients(n), Tensor3::Identity());
   for (const Index v : mesh.face_points[face])
@@ -261,7 +261,7 @@ std::vector<std::string> free_modes(const Body& body, int dim, bool axisymmetric
     return resistance(1, 1) > resisted * std::max(resistance.trace(), std::numeric_limits<double>::min())
                ? std::vector<std::string>()
                : std::vector<std::string>{"translation along y, the axis"};
-  // In 2-D the other three motions do not exist.
+  // The other three motions do not exist in 2-D.
   if (dim == 2)
     for (const int i : {2, 3, 4}) {
       resistance.row(i).setZero();
@@ -274,7 +274,7 @@ std::vector<std::string> free_modes(const Body& body, int dim, bool axisymmetric
   for (int i = 0; i < 6; ++i)
     if (eigen.eigenvalues()[i] <= resisted * largest) free.push_back(eigen.eigenvectors().col(i));
   std::vector<std::string> names;
-  // Rotations first, so that what is left of them are plain translations; these are named first.
+  // Eliminates rotations first, so that pure translations remain; these are reported first.
   for (const Motion& motion : reduce(free, {3, 4, 5, 0, 1, 2})) names.push_back(describe(motion, body, dim));
   std::ranges::stable_partition(names, [](const std::string& n) { return n.starts_with("translation"); });
   return names;

@@ -17,7 +17,7 @@ namespace couplet::solid {
 
 namespace {
 
-/// Least over largest extent squared of faces that take a moment about every axis.
+/// Smallest over largest squared extent of faces that carry a moment about any axis.
 constexpr double flat = 1e-10;
 /// Relative tolerance for a moment about a line of faces.
 constexpr double rounding = 1e-9;
@@ -103,7 +103,7 @@ Vec3 DistributedForce::moment_about_centre(double t) const {
   return moment;
 }
 
-/// A moment about an axis on which all faces lie would go lost.
+/// A moment about a line of faces cannot be applied.
 void DistributedForce::check_taken(const Vec3& moment, const Vec3& force) const {
   const double scale = force.norm() * (arm_.norm() + std::sqrt(inertia_.trace() / area_)) + moment.norm();
   if ((lost_ * moment).norm() <= rounding * scale) return;
@@ -134,7 +134,7 @@ namespace {
 constexpr double along_axis = 0.02, curved = 0.04;
 // Share of a force that may be along an axis found from such facets.
 constexpr double most_axial = 0.05;
-// Rounds until the loaded half fits the pressure; mostly it is one.
+// Maximum number of iterations for the loaded half; usually one.
 constexpr int most_rounds = 20;
 
 }  // namespace
@@ -188,7 +188,7 @@ Vec3 BearingLoad::force_at(double t) const {
   return force;
 }
 
-/// q: see the class. Rounds until the half chosen by the force is the one where the pressure is positive.
+/// q as in the class. Iterates until the half chosen by the force is the one with positive pressure.
 BearingLoad::Push BearingLoad::find_push(const Vec3& force) const {
   const Vec3 wanted = force - force.dot(axis_) * axis_;
   Vec3 push = wanted;
@@ -281,7 +281,7 @@ namespace {
 /// A point farther from the nearest face than this many face widths is not on the body.
 constexpr double widths = 2;
 
-/// The nearest boundary face of all ranks: of several the first of the file.
+/// Nearest boundary face of all ranks; ties go to the first in the file.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
   GlobalIndex id = std::numeric_limits<GlobalIndex>::max();

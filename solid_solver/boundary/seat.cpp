@@ -14,7 +14,7 @@ namespace couplet::solid {
 
 namespace {
 
-/// A face looks at the seat when its normal is within 60 degrees of the way to it.
+/// A face is oriented towards the seat if its normal is within 60 degrees of the direction.
 constexpr double least_cosine_to_seat = 0.5;
 /// Stiffness of a rigid seat over that of the cells: each multiplier update reduces the penetration tenfold.
 constexpr double rigid_scale = 10;

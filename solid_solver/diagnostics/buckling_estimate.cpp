@@ -105,7 +105,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   const double here = compression(mesh, prestress), ratio = slenderness(mesh, geometry);
   if (!(here > more_compression * compression_seen)) return {};
   if (!(here / parallel::min(mesh.comm, softest) * ratio * ratio >= least_strain)) return {};
-  // As forces, which soft motions answer to: what stiff ones leave would end the iteration before.
+  // Given as forces, to excite soft motions: errors in stiff ones would stop the iteration earlier.
   const std::vector<double> force = body.any_start();
   std::vector<double> of_stress(force.size());
   if (!method.approximate_inverse(force, of_stress)) return {};
@@ -127,7 +127,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   };
   modes::Curvature found = look(BucklingEstimate::low);
   if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
-  // Under less load fewer motions are soft: one of them is nearer to the softest.
+  // Fewer motions are soft under less load, so this one is closer to the softest.
   if (modes::Curvature closer = look(BucklingEstimate::imperfect); closer.is_negative) {
     closer.iterations += found.iterations;
     found = std::move(closer);

@@ -31,10 +31,10 @@ double product(MPI_Comm comm, std::span<const double> a, std::span<const double>
 struct PhaseDrift {
   double way = 0, size = 0;        // integral of |v|, largest |u| [m]
   double kinetic = 0, strain = 0;  // integrals of the energies of the whole body [J s]
-  /// Error of the displacement over its size, with a relative error `stiffness` of the strain energy.
+  /// Relative error of the displacement for a relative error `stiffness` of the strain energy.
   double over_size(double stiffness) const {
     if (!(size > 0) || !(strain > 0)) return 0;
-    // |v| of a swing is 2/pi of its amplitude w A in the mean.
+    // The mean |v| of an oscillation is 2/pi of its amplitude w A.
     const double angle = 0.5 * std::numbers::pi * way / size;
     return std::min(2.0, 0.5 * stiffness * angle * std::min(1.0, kinetic / strain));
   }
@@ -93,7 +93,7 @@ class ErrorEstimate final : public diagnostics::Diagnostic {
   std::optional<HeatErrors> heat_;  // of temperatures that are solved for and strain the body
 };
 
-/// Residual of the last solve over the size of its rows.
+/// Residual of the last solve relative to its rows.
 double ErrorEstimate::left_by_solver() const {
   const LastSolve& last = view_.stepper.last_solve();
   return body_.equilibrium().share_left(view_.stepper.effort().residual, norm(view_.comm(), last.rhs));
@@ -164,7 +164,7 @@ double ErrorEstimate::missed_of_large_strain() const {
   return std::max(size > 0 ? 0.5 * difference / size : 0, inner ? inner->missed() : 0);
 }
 
-/// The displacement follows as softly as the deformed body does. NaN: its tangent has no solution.
+/// The displacement changes with the sensitivity of the deformed body. NaN if its tangent has no solution.
 double ErrorEstimate::finite_mesh_error() const {
   const double energy = missed_of_large_strain();
   if (!stability_) return energy;
@@ -210,7 +210,7 @@ void ErrorEstimate::observe(diagnostics::Report&) {
   if (strain_) see_swing(step);
 }
 
-/// Half of u . K u is the strain energy, of the gradients without an energy nearly so.
+/// Half of u . K u is the strain energy, approximately also for gradients without an energy.
 void ErrorEstimate::see_swing(const time::StepErrors::Seen& step) {
   const SolidState& now = view_.now();
   const std::vector<double> u = view_.unknowns();

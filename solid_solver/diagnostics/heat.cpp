@@ -139,7 +139,7 @@ class HeatError final : public diagnostics::Diagnostic {
 }  // namespace
 
 diagnostics::Made heat_swing(const Heat& heat) {
-  // The one scheme that does not damp.
+  // The only scheme without damping.
   if (heat.is_steady() || heat.parameters().scheme != HeatParameters::Scheme::trapezoidal) return nullptr;
   return std::make_shared<HeatSwing>(heat);
 }

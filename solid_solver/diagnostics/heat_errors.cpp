@@ -29,7 +29,7 @@ struct Fit {
     moments += weight * row * row.transpose();
     values += weight * value * row;
   }
-  /// In the cell itself; in a plane the third direction is left out.
+  /// Value of the fit in the cell itself; 2-D omits the third direction.
   double value() const { return moments.completeOrthogonalDecomposition().solve(values)[0]; }
 };
 
@@ -76,7 +76,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   const auto n = std::size_t(mesh_.cells.n_owned());
   std::vector<double> rate(n);
   for (std::size_t c = 0; c < n; ++c) rate[c] = (now.cells[c] - before.cells[c]) / now.dt;
-  // Rates are those of the middles of steps, as far apart as half of both.
+  // Rates are at mid-steps, whose distance is the mean of both steps.
   if (dt_ > 0 && rate_.size() != n)
     throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
   if (dt_ > 0)  // the same on all ranks, also on one without cells

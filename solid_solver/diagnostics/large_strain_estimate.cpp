@@ -35,7 +35,7 @@ Displacement combined(double a, const Displacement& u, double b, const Displacem
   return w;
 }
 
-/// The inner forces F of the body at large strain.
+/// Internal forces F of the body at large strain.
 class Forces {
  public:
   explicit Forces(const SolidBody& body) : n_(body.elastic().n_unknowns()) {
@@ -160,7 +160,7 @@ LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const
     c[i] = (odd2[i] - 2 * odd[i]) / (6 * s * s * s);
   }
   const Displacement u2{stiffness.solve(q), Values(known.size(), 0)};
-  // u2 is made as large as u1, so that the differences see both.
+  // Scales u2 to the size of u1, so that differences resolve both.
   const double size2 = std::sqrt(dot(u2.unknowns, u2.unknowns));
   const double t = size2 > 0 ? std::sqrt(dot(u1.unknowns, u1.unknowns)) / size2 : 1;
   const Values with = forces.part(s, combined(1, u1, t, u2), 1),

@@ -17,7 +17,7 @@ using P = SolidParameters;
 
 bool deforms(const P& p) { return p.analysis != P::Analysis::thermal; }
 
-/// The largest coefficient that the case gives as a number [1/K].
+/// Largest constant expansion coefficient in the case [1/K].
 std::optional<double> largest_expansion(const P& p) {
   std::optional<double> largest;
   for (const SolidMaterial& m : materials_of(p))

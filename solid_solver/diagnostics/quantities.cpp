@@ -21,11 +21,11 @@ std::vector<QuantityEstimate> estimates_of(const Estimate& estimate) {
   }
 }
 
-/// Numbers that the run is made for, with what its mesh leaves in them.
+/// Quantities of interest with their mesh errors.
 class Quantities final : public diagnostics::Diagnostic {
  public:
   explicit Quantities(const SolidView& view) : view_(view) {}
-  /// While there is what the state was solved with.
+  /// Computed while the solver of the state is still available.
   void observe(diagnostics::Report&) override {
     if (view_.stepper.step().is_last) estimate();
   }

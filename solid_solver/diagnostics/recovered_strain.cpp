@@ -64,7 +64,7 @@ void RecoveredStrain::recover() {
     slot_[std::size_t(cell)] = Index(linear_.size());
     linear_.push_back(fit(cell, patch));
   }
-  // The run holds most memory here.
+  // Frees memory at its peak.
   std::vector<double>().swap(mean_), std::vector<double>().swap(volume_);
 }
 
@@ -169,7 +169,7 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
     }
 }
 
-/// Twice its energy [J]: of a strain that is linear in the cell.
+/// Twice its energy [J], for a strain that is linear in the cell.
 double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const {
   const mesh::Geometry& g = geometry_;
   const int dim = mesh_.dim;

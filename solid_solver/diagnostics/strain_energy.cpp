@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A solution judged by its own energy: work against strain energy, and one face gradient against another.
+// Consistency of a solution: stress work against strain energy, and one face gradient against another.
 #include "solid_solver/diagnostics/strain_energy.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace couplet::solid {
 namespace {
 
-/// From the owner to the node across.
+/// Vector from the owner to the opposite node.
 Vec3 line_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   const mesh::Geometry& g = geometry;
   const Vec3 across =
@@ -30,7 +30,7 @@ elastic::FaceGradientScheme other_scheme(elastic::FaceGradientScheme scheme) {
                                                           : elastic::FaceGradientScheme::corrected;
 }
 
-/// Half of what the force on a face does on the way between the displacements on both sides of it.
+/// Half the work of a face force over the difference of the displacements on both sides.
 double work_on(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const SolidState& state, Index f,
                const Vec3& force) {
   const Vec3& area = rows.geometry().face_area[f];
@@ -57,7 +57,7 @@ struct WithinCells {
     if (smooth) smooth->add(f, gradient);
     if (recovered) recovered->add(f, strain);
   }
-  /// After all faces. Collective.
+  /// Call after all faces. Collective.
   void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u,
               std::span<const double> points, StrainAudit& audit) {
     if (variation) audit.inner_variation = variation->missed();

@@ -7,7 +7,7 @@ namespace couplet::solid {
 
 using diagnostics::Made;
 
-// Each in the file of its subject; nullptr where it does not apply.
+// Each is in the file of its subject; nullptr if not applicable.
 Made linear_theory(const SolidView& view);
 Made neglected_inertia(const SolidView& view);
 Made limits_of_material(const SolidView& view);

@@ -21,15 +21,15 @@ namespace couplet::solid {
 
 namespace {
 
-// Iterations after which a shorter load step is the cheaper way.
+// Iterations after which a shorter load step is cheaper.
 constexpr int most_iterations = 20;
-// A step may multiply the residual by this much, of a residual of at least `small` of the load's.
+// Allowed growth of the residual in a step, if it is at least `small` relative to the load.
 constexpr double growth = 30, small = 1e-3;
-// The first iteration of a step may do more: it goes through the linear theory's idea of the new state.
+// Allowed growth in the first iteration, which passes through the prediction of linear theory.
 constexpr double first = 1e6;
 // Shortest step length; below it the direction is useless.
 constexpr double shortest = 1. / 128;
-// Forcing of the linear solves.
+// Forcing terms of the linear solves.
 constexpr double loosest = 0.05, tightest = 1e-4, with_pressures = 1e-6;
 // Tolerance if momenta must be conserved, because the residual of a linear solve adds momentum (2e-10
 // relative in 40 steps with the looser ones, 2e-13 with this).
@@ -130,7 +130,7 @@ TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const doub
   return *solvers_.front();
 }
 
-/// r = b - A(u) and its norm; infinite where a face is inside out.
+/// r = b - A(u) and its norm; infinite if a face is inverted.
 double FiniteStrain::residual(const Load& load, std::span<const double> u, double& ratio) {
   kernel_->linearise(u, load.known, load.mass_factor, r_);
   ratio = parallel::min(mesh_.comm, kernel_->worst().ratio);
@@ -149,7 +149,7 @@ double FiniteStrain::residual(const Load& load, std::span<const double> u, doubl
   return std::isfinite(size) && std::isfinite(whole_) ? size : std::numeric_limits<double>::infinity();
 }
 
-/// p of the accepted state, moved on with the linear change to the first guess.
+/// p of the accepted state, updated by the linear change to the first guess.
 void FiniteStrain::start_pressures(const Load& load, std::span<const double> u) {
   is_carried_ = false;
   kernel_->set_own_pressures(false);
@@ -198,7 +198,7 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du_[i];
 }
 
-/// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
+/// u + s du with the largest s of 1, 1/2, ... that keeps det F positive and the residual below `most`.
 bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& now, double most) {
   if (load.mass_factor == 0 && !load.pressing && iterates_.size() == 1) jump_.predict(u, du_);
   for (double s = 1; s >= shortest; s *= 0.5) {
@@ -242,7 +242,7 @@ linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double
   if (!std::isfinite(now.residual))
     throw SolveFailure("The initial guess of the step inverts a cell. {}", where_worst());
   const double scale = scale_of(load, u, now.residual);
-  // Its difference quotients divide rounding by the change over the step.
+  // Its difference quotients divide round-off by the change over the step.
   const auto floor = [&] {
     double largest = 0;
     for (const double v : u) largest = std::max(largest, std::abs(v));
@@ -321,7 +321,7 @@ linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::
   } catch (const SolveFailure& failure) {
     kernel_->forget_start();
     if (!parallel::any(mesh_.comm, !load.accepted.empty())) throw;
-    // Features of the accepted state that may be why no other is found.
+    // Features of the accepted state may prevent finding another one.
     kernel_->set_own_pressures(false);
     kernel_->linearise(load.accepted, load.accepted_known, 0, trial_);
     const std::string fold =
@@ -331,7 +331,7 @@ linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::
   }
 }
 
-/// With a rigid seat until a change of its multipliers leaves nothing to correct.
+/// With a rigid seat, iterates until its multipliers converge.
 linalg::SolveStatistics FiniteStrain::press(const Load& load, std::span<double> u) {
   linalg::SolveStatistics all = iterate(load, u);
   if (!load.pressing || !load.pressing->seat().is_rigid()) return all;
@@ -409,7 +409,7 @@ void FiniteStrain::set_pressure(std::vector<double> of_faces) {
   if (path_) whole_pressure_ = std::move(of_faces);
 }
 
-/// theta = 1 + the integral of alpha dT: lengths of the body as it was at the reference temperature.
+/// theta = 1 + the integral of alpha dT: lengths refer to the body at the reference temperature.
 void FiniteStrain::set_expansion(const std::function<std::vector<double>()>& of_faces) {
   std::vector<double> strains = of_faces();
   if (strains.empty()) return;

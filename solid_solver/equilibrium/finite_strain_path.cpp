@@ -23,7 +23,7 @@ namespace couplet::solid {
 namespace {
 
 constexpr int most_path_iterations = 15;
-// As in plain load steps (finite_strain.cpp).
+// As in ordinary load steps (finite_strain.cpp).
 constexpr double path_growth = 30, path_first = 1e6, path_small = 1e-3, path_shortest = 1. / 64;
 // Tolerance of the linear solves: near a limit point both solutions are large and almost cancel.
 constexpr double path_linear = 1e-8;
@@ -51,7 +51,7 @@ struct FiniteStrain::PathSearch {
   NewtonIterate now{};
 };
 
-/// The kernel's pressures and the rows at a load factor.
+/// Sets the kernel's pressures and the rows at a load factor.
 void FiniteStrain::scale_loads(PathSearch& path, double factor) {
   path.rows.assign(path.whole.rows.begin(), path.whole.rows.end());
   path.known.assign(path.whole.known.begin(), path.whole.known.end());
@@ -113,7 +113,7 @@ void FiniteStrain::search_path(PathSearch& path, std::span<double> u, double cha
       from, path.now.length, path_growth, where_worst());
 }
 
-/// From the last equilibrium along the tangent, which is the normal of the plane to be met.
+/// Step from the last equilibrium along the tangent, which is the normal of the plane to be met.
 void FiniteStrain::leave(PathSearch& path, TangentSolver& solver, std::span<double> u) {
   scale_loads(path, path.factor);
   start_pressures(path.load, u);
@@ -191,7 +191,7 @@ void FiniteStrain::load(io::CheckpointReader& file, std::span<const double>, std
   is_restored_ = true;
 }
 
-// Tells whether the equilibrium that was found holds.
+// Stability of the equilibrium.
 
 SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
                                           const linalg::LinearMap& elastic, std::vector<double> start) {

@@ -62,9 +62,9 @@ std::string worst_cell(const mesh::Mesh& mesh, const mesh::Geometry& geometry, d
                      w.x[0], w.x[1], w.x[2], w.ratio);
 }
 
-// Strain and Cauchy's stress at large strain.
+// Strain and Cauchy stress at large strain.
 
-/// Green's (F^T F - I) / 2.
+/// Green's strain (F^T F - I)/2.
 void LargeStrain::to_strain(std::span<Tensor3> gradients) const {
   for (Tensor3& g : gradients) g = (0.5 * (g + g.transpose()) + 0.5 * g * g.transpose()).eval();
 }

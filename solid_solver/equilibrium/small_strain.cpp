@@ -71,7 +71,7 @@ class ContactNewton {
           "'factors'.");
   }
 
-  /// r = b + C^T f - K u, and what it is measured by.
+  /// r = b + C^T f - K u, and its scale.
   double residual() {
     p_.stiffness(u_, r_);
     for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b_[i] - r_[i];
@@ -109,7 +109,7 @@ class ContactNewton {
     return i;
   }
 
-  /// u + s du with the s <= 1 at which du . r changes its sign: along du the energy is convex.
+  /// u + s du with the s <= 1 at which du . r changes sign; the energy is convex along du.
   void correct() {
     const std::vector<double> change = p_.pressing.seat().along(du_, {}), start = along_;
     p_.stiffness(du_, kdu_);

@@ -14,16 +14,16 @@ namespace couplet::solid {
 
 namespace {
 
-// Cells below which the rigid motions of aggregates gain nothing, cells an aggregate, and most aggregates.
+// Minimum cells for rigid motions of aggregates to help, cells per aggregate, and maximum aggregates.
 constexpr GlobalIndex small_body = 64, cells_of_tangent_aggregate = 32;
 constexpr GlobalIndex most_tangent_aggregates = 160;
 // New factors cost as much as dozens of iterations, but are required if the tangent has changed much.
 constexpr int most_with_old_factors = 12, most_before_new_factors = 60;
 
-// Factors in space need some 50 kB a cell.
+// Factors require about 50 kB per cell in 3-D.
 constexpr GlobalIndex most_to_factor = 20000;
 
-/// The rotation of F = R U by Higham's iteration; I where F is inside out.
+/// Rotation of F = R U by Higham's iteration; I if F is inverted.
 Tensor3 rotation_of(const Tensor3& f) {
   if (!(f.determinant() > 1e-6)) return Tensor3::Identity();
   Tensor3 r = f;
@@ -109,7 +109,7 @@ void TangentSolver::follow(bool with_modes) {
   modes_->update(body);
 }
 
-/// LU: away from equilibrium, and under a pressure that follows, the tangent need not be positive.
+/// LU, because the tangent may be indefinite away from equilibrium or under follower pressure.
 void TangentSolver::make_factors() {
   is_fresh_ = !(factors_ && iterations_ <= most_with_old_factors);
   if (!is_fresh_) return;
@@ -163,7 +163,7 @@ linalg::SolveStatistics TangentSolver::solve(std::span<const double> r, std::spa
     return counted(r, du, options);
   } catch (const SolveFailure&) {
     if (!options.is_symmetric) throw;
-    // Not positive away from equilibrium, perhaps: what does not need it.
+    // The tangent may be indefinite away from equilibrium: uses a method that allows this.
     std::ranges::fill(du, 0.0);
     options.is_symmetric = false;
   }

@@ -159,7 +159,7 @@ void UpdatedLagrangian::find_change(std::span<const double> unknowns, std::span<
       mesh_.n_flux_faces());
 }
 
-/// F = f F_u, W and P at the faces. False: some face is inside out.
+/// Computes F = f F_u, W and P at the faces; false if some face is inverted.
 bool UpdatedLagrangian::find_stress() {
   const Index n = mesh_.n_flux_faces();
   deformation_.resize(n);
@@ -218,7 +218,7 @@ bool UpdatedLagrangian::look(std::span<const double> unknowns, std::span<const d
   return find_stress();
 }
 
-/// r = b - M m u - A(u) and its norm; infinite where a face is inside out.
+/// r = b - M m u - A(u) and its norm; infinite if a face is inverted.
 double UpdatedLagrangian::residual(const EquilibriumLoad& load, std::span<const double> u,
                                    std::span<double> r) {
   if (!look(u, load.known)) return std::numeric_limits<double>::infinity();
@@ -254,7 +254,7 @@ linalg::SolveStatistics UpdatedLagrangian::find(const EquilibriumLoad& load, Sol
   double size = residual(load, u, r);
   if (!std::isfinite(size))
     throw SolveFailure("The initial guess of the step inverts a cell. {}", where_worst());
-  // In motion b holds the inertia of the place itself, far larger than what accelerates the body.
+  // In motion b contains the inertia of the position itself, which far exceeds the accelerating force.
   std::vector<double> inner(u.size(), 0);
   if (load.mass_factor > 0) add_forces(inner);
   const std::span<const double> loads = load.mass_factor > 0 ? std::span<const double>(inner) : load.rows;
@@ -289,7 +289,7 @@ std::vector<double> UpdatedLagrangian::forces(std::span<const double> unknowns,
   return result;
 }
 
-/// W a face times the pyramids of owned cells over it.
+/// Sum of W per face times the pyramids of owned cells over it.
 double UpdatedLagrangian::energy(std::span<const double> unknowns, std::span<const double> known) {
   look(unknowns, known);
   const Index n = mesh_.cells.n_owned();
@@ -302,7 +302,7 @@ double UpdatedLagrangian::energy(std::span<const double> unknowns, std::span<con
   return parallel::sum(mesh_.comm, here);
 }
 
-/// Each face once over all ranks, where the cell of its owner lives.
+/// Each face once over all ranks, on the rank of its owner cell.
 void UpdatedLagrangian::visit(std::span<const double> unknowns, std::span<const double> known,
                               const Take& take) {
   look(unknowns, known);
@@ -310,7 +310,7 @@ void UpdatedLagrangian::visit(std::span<const double> unknowns, std::span<const 
     if (mesh_.owner[f] < mesh_.cells.n_owned()) take(f, deformation_[f], stress_[f]);
 }
 
-/// Loads need not be taken off: faces that are held take none.
+/// Loads need no subtraction, because held faces have none.
 std::vector<elastic::Wrench> UpdatedLagrangian::holding_forces(std::span<const double> unknowns,
                                                                std::span<const double> known,
                                                                const elastic::ElasticLoads&) {

@@ -33,7 +33,7 @@ constexpr double inertia_rules = 0.1;
 
 double size_squared(double volume, int dim) { return std::pow(volume, 2.0 / dim); }
 
-/// Cells with one face more than dimensions.
+/// True if all cells have one face more than dimensions.
 bool are_simplices(const mesh::Mesh& mesh) {
   std::vector<int> faces(mesh.cells.n_owned(), 0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {

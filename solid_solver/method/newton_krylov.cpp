@@ -15,7 +15,7 @@
 namespace couplet::solid {
 namespace {
 
-// Aggregates of the rigid coarse space: more gain little and their factors grow.
+// Maximum aggregates of the rigid coarse space: more hardly help, and their factors grow.
 constexpr int most_aggregates = 200;
 // Minimum cells per aggregate for its rigid motions to be smooth on the scale of cells.
 constexpr GlobalIndex cells_of_aggregate = 64;
@@ -23,15 +23,14 @@ constexpr GlobalIndex cells_of_aggregate = 64;
 constexpr GlobalIndex cells_of_slender_aggregate = 32;
 constexpr int fewest_aggregates = 8;
 constexpr GlobalIndex fewest_cells = 4;
-// Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube
-// has 3.
+// Length over thickness 2 V/S above which bending needs the rigid coarse space; a cube has 3.
 constexpr double slender = 12;
 // For the symmetric operator: slenderness, or this many cells for the first limit.
 constexpr double very_slender = 60;
 constexpr GlobalIndex many_cells = 4000;
 // Inertia over the stiffness of a cell's faces above which no motion is slow.
 constexpr double heavy = 0.03;
-// Residual over right-hand side that double precision still gives.
+// Smallest relative residual attainable in double precision.
 constexpr double finest_tolerance = 1e-15;
 // For time steps with factors, which take one or two iterations; saves one product in three.
 constexpr int steps_carried = 3;
@@ -174,7 +173,7 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
 /// instead of 1945 (to 1e-10). A plate of 4600 cells saves 6 of 46 iterations; 295 000 take 71, not 49.
 void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
   const mesh::Mesh& mesh = problem_.mesh;
-  // Half as long as thick, where the cells are fine enough for that.
+  // Half as long as thick, if the cells are fine enough.
   const GlobalIndex cells = mesh.cells.n_global();
   const GlobalIndex aggregates = std::min<GlobalIndex>(
       most_aggregates, std::max(cells / cells_of_slender_aggregate,
@@ -230,7 +229,7 @@ linalg::SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span
     if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
     return statistics;
   } catch (const SolveFailure& e) {
-    // Never the method that has just failed.
+    // Suggests a method other than the failed one.
     const char* other = !problem_.is_symmetric() ? "{type: block-coupled, linear-solver: direct}"
                         : multigrid_             ? "{face-gradient: symmetric, preconditioner: factors}"
                                                  : "{face-gradient: corrected}";

@@ -47,7 +47,7 @@ bool wants_mixed_form(const SolidProblem& problem) {
   return parallel::max(problem.mesh.comm, ratio) >= bulk_of_mixed_form;
 }
 
-/// The mixed form has pressures where the volume strain is that of cells.
+/// The mixed form has pressures only if the volume strain is that of cells.
 void check_mixed_form(const SolidProblem& problem, const MethodParameters& parameters) {
   if (parameters.preconditioner != Preconditioner::mixed) return;
   if (!problem.is_symmetric())
@@ -58,7 +58,7 @@ void check_mixed_form(const SolidProblem& problem, const MethodParameters& param
         "selects cells from nu = 0.4): with the volume strain of faces there is no mean stress per cell.");
 }
 
-/// Steps so short that inertia makes the system easy. Collective.
+/// True if steps are so short that inertia makes the system easy. Collective.
 bool is_easy(const SolidProblem& problem) {
   return problem.mesh.dim == 2 && problem.mesh.cells.n_global() > factors_beside_inertia &&
          heaviness(problem) >= 1 && !wants_mixed_form(problem);
@@ -71,7 +71,7 @@ bool factors_pay(const SolidProblem& problem, const MethodParameters& parameters
   return cost.fits() && (is_hard ? cost.set_up <= set_up_of_hard : parameters.solves >= cost.pays_after());
 }
 
-/// Fills in what is left to the program; gives the reason.
+/// Resolves `automatic` settings. Returns the reason.
 std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   const GlobalIndex cells = problem.mesh.cells.n_global();
   const bool easy = is_easy(problem);
@@ -88,7 +88,7 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
           "'corrected'.");
     if (parameters.preconditioner == Preconditioner::automatic) {
       const bool mixed = wants_mixed_form(problem);
-      // Stiffnesses of several materials may be far apart.
+      // Stiffnesses of several materials may differ strongly.
       const bool is_hard = mixed || parallel::any(problem.mesh.comm, !problem.mesh.cell_material.empty());
       const bool direct = factors_pay(problem, parameters, is_hard);
       parameters.preconditioner = direct  ? Preconditioner::factors
@@ -195,7 +195,7 @@ constexpr double loading = 0.1, entry_time = 4e-9;
 constexpr double plane_entries = 25, space_entries = 75;
 // Ratio of set-up to a solve: analysis and elimination.
 constexpr double plane_set_up = 70, space_set_up = 120;
-// A term of a face in a product and a cycle of multigrid [s], iterations of a motion, whose guesses are good.
+// Time of a face's term in a product and a multigrid cycle [s]; iterations, and those with good guesses.
 constexpr double term_time = 11e-9, iterations = 30, iterations_of_simplices = 100;
 // Exponent of the iterations in heaviness: 21, 14, 8 for 1, 10, 100.
 constexpr double lightening = 0.25;
@@ -233,7 +233,7 @@ FactorCost factor_cost(const mesh::Mesh& mesh, const mesh::Geometry& geometry, d
   if (mesh.dim == 2) {
     cost.entries = plane_entries * n.cells * std::max(1.0, std::log2(n.cells / length));
   } else {
-    // Each vertex with its multiplier.
+    // Each vertex includes its multiplier.
     const double rows = n.nodes + 2 * n.points;
     cost.entries = space_entries * rows * std::max(std::cbrt(rows / length), std::log2(rows) / 2);
     set_up = space_set_up;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of a solid and what its next first guesses learn from, on file.
+// State of a solid and data for its next first guesses in a file.
 #include <fmt/format.h>
 
 #include <array>

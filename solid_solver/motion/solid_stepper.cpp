@@ -93,7 +93,7 @@ void SolidStepper::start_from_rest() {
   trial_ = state_;
 }
 
-// All that was made for the old constants goes.
+// Discards all data made for the old constants.
 void SolidStepper::apply_stiffness() {
   if (!body_.apply_stiffness()) return;
   systems_.clear();
@@ -182,14 +182,14 @@ void SolidStepper::release_solver() {
   }
 }
 
-// The local error of a step, and the step size that follows from it.
+// Local error of a step, and the resulting step size.
 
 namespace {
 
-// The next step aims below the tolerance by this factor, so that few steps are refused.
+// Safety factor of the tolerance for the next step, so that few steps are rejected.
 constexpr double safety = 0.85;
 
-// The errors of several steps add up before damping and dissipation forget them.
+// Share of the tolerance per step, because errors add up until damping and dissipation reduce them.
 constexpr double share_of_a_step = 0.1;
 
 }  // namespace

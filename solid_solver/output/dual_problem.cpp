@@ -39,7 +39,7 @@ Values rows_of_stress(const SolidBody& body, const std::vector<Tensor3>& stress)
   return rows;
 }
 
-/// take(owned cell, face, volume of its pyramid).
+/// Calls take(owned cell, face, volume of its pyramid).
 template <class Take>
 void visit_pyramids(const SolidBody& body, const Take& take) {
   const mesh::Mesh& mesh = body.mesh();

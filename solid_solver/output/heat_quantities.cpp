@@ -110,7 +110,7 @@ LocalHeat fitted_heat(const Conduction& conduction, const CellsAround& around, I
   return result;
 }
 
-/// n . gradient that the scheme has of (x - x_f) . second . (x - x_f) / 2, whose own is zero.
+/// The scheme's n . gradient of (x - x_f) . second . (x - x_f)/2, whose exact value is zero.
 double defect_of_gradient(const Conduction& conduction, Index f, const Tensor3& second) {
   const mesh::Mesh& mesh = conduction.mesh();
   const mesh::Geometry& g = conduction.geometry();
@@ -144,7 +144,7 @@ double varied_flux(const mesh::Mesh& mesh, const mesh::Geometry& g, Index f, con
   return mesh.dim / 6. * pyramid * (2 * across - of_t.dot(of_z));
 }
 
-/// Quadratics around all local cells. Collective.
+/// Quadratic fits around all local cells. Collective.
 std::vector<LocalHeat> local_heat(const Heat& heat, const HeatState& field) {
   const mesh::Mesh& mesh = heat.conduction().mesh();
   const CellsAround around(heat.conduction());
@@ -245,7 +245,7 @@ class HeatEstimates {
     return e;
   }
 
-  /// All of its vertices have a prescribed temperature.
+  /// True if all of its vertices have a prescribed temperature.
   bool is_given(const io::Probe& probe) const {
     double solved = 0;
     for (std::size_t i = 0; i < probe.points().size(); ++i)
@@ -254,14 +254,14 @@ class HeatEstimates {
     return parallel::sum(mesh_.comm, solved) < 1e-9;
   }
 
-  /// A source of 1 W where the temperature is read, in the nodes that it is read from.
+  /// Source of 1 W at the probe, in the nodes used for its value.
   std::vector<double> rows_of(const io::Probe& probe) const {
     std::vector<double> cells(std::size_t(mesh_.cells.n_local()), 0),
         faces(std::size_t(mesh_.boundary.n_local()), 0);
     std::vector<double> shares(std::size_t(mesh_.points.n_local()), 0);
     for (std::size_t i = 0; i < probe.points().size(); ++i)
       shares[std::size_t(probe.points()[i])] += probe.weights()[i];
-    // Points have their nodes on their owner.
+    // The nodes of points are on their owner.
     mesh_.points.add_to_owners(shares);
     for (Index v = 0; v < mesh_.points.n_owned(); ++v) {
       if (shares[std::size_t(v)] == 0 || std::ranges::count(conduction_.known_points(), v)) continue;
@@ -292,7 +292,7 @@ class HeatEstimates {
     return rows;
   }
 
-  /// w = 1 on the patch, 0 on the others that have a temperature; a film's ambient temperature likewise.
+  /// w = 1 on the patch, 0 on others with a temperature; likewise for the ambient temperature of a film.
   QuantityEstimate through(const std::string& name, const std::string& patch) const {
     QuantityEstimate e{.name = name, .what = "heat into the solid through", .unit = "W", .patch = patch};
     for (const PatchHeat& h : heat_.patch_heat())

@@ -21,7 +21,7 @@ constexpr double shift_part = 1e-4;
 // A squared frequency below this part of mu/(rho L^2) is a rigid motion.
 constexpr double rigid_part = 1e-8;
 
-/// mu / (rho L^2) of the slowest cell, with L the diagonal of the body's box [1/s^2].
+/// mu/(rho L^2) of the slowest cell, with L the diagonal of the body's bounding box [1/s^2].
 double slowest_scale(const SolidProblem& problem, std::span<const double> cell_mass) {
   const mesh::Geometry& geometry = problem.geometry();
   const mesh::Mesh& mesh = problem.mesh;
@@ -38,7 +38,7 @@ struct SurfacePoint {
   double x[3];
 };
 
-/// Sum over this rank's rows of M x with a rigid motion along each axis.
+/// Sum over this rank's rows of M x for a unit translation along each axis.
 std::vector<double> participation(const SolidProblem& problem, const modes::EigenModes& modes) {
   const std::size_t dim = problem.mesh.dim, n = problem.elastic.n_unknowns(), count = modes.shape.size();
   std::vector<double> along(n), inertia(n), sums(3 * count, 0);
@@ -82,7 +82,7 @@ bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method
   return parallel::sum(mesh.comm, blocks) * mesh.dim <= (mesh.dim == 2 ? most_rows_2d : most_rows_3d);
 }
 
-/// The search with factors of the shifted stiffness.
+/// Search with factors of the shifted stiffness.
 modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
                                     double shift) {
   const mesh::Geometry& geometry = problem.geometry();
@@ -103,7 +103,7 @@ modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const
   return modes::lowest_modes(of, n, -shift);
 }
 
-/// The search with one preconditioner.
+/// Search with one preconditioner.
 modes::EigenModes search(const SolidProblem& problem, const MethodParameters& method,
                          std::span<const double> cell_mass, int n, double shift) {
   std::vector<double> inertia;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Free vibrations and buckling of SolidOutput.
+// Free vibrations and buckling in SolidOutput.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ double energy_error(const SolidBody& body, const modes::EigenModes& modes) {
   return most;
 }
 
-/// [kg]
+/// Mass per owned cell [kg].
 std::vector<double> cell_masses(const SolidBody& body) {
   std::vector<double> mass;
   for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)

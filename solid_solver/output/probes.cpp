@@ -21,7 +21,7 @@ bool is_stress(std::string_view field) {
   return field == "stress" || field == "equivalent-stress" || field == "principal-stress";
 }
 
-/// A field that an effect keeps at points; its name and unit are the effect's.
+/// Field of an effect at points, with its name and unit.
 io::OutputField effect_field(const SolidBody& body, const std::string& name) {
   std::vector<io::OutputField> fields;
   if (ThermalStrain* thermal = body.thermal()) thermal->add_fields(fields);

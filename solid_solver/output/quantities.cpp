@@ -199,7 +199,7 @@ Vec3 place_of(const SolidQuantity& quantity) {
   return place;
 }
 
-// Not a number is more than all others.
+// NaN is treated as largest.
 double QuantityEstimate::error() const {
   if (std::isnan(local) || std::isnan(dual)) return std::nan("");
   const double larger = std::max(std::abs(local), std::abs(dual));

@@ -146,7 +146,7 @@ namespace {
 
 using Type = SolidCondition::Type;
 
-/// Nothing, or one expression a component.
+/// Either empty, or one expression per component.
 void declare_vector(config::Section& s, const char* key, std::vector<config::ExpressionText>& texts,
                     const int& dimension, const char* unit, const char* doc) {
   constexpr std::pair usual_length{1e-9, 1e4}, usual_pressure{1e-9, 1e11};

@@ -70,7 +70,7 @@ void check_finite_sheet(config::Section& s, SolidParameters& p) {
       "thickness, which is not supported; use 'traction' (per undeformed area), or model the sheet in 3-D");
 }
 
-/// A law belongs to large strain; the energy-momentum stress to one time scheme.
+/// A law requires large strain; the energy-momentum stress requires one time scheme.
 void check_law(config::Section& s, SolidParameters& p) {
   s.check(
       [&p]() -> std::string {

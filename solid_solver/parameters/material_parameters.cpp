@@ -195,7 +195,7 @@ std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials) {
 
 namespace {
 
-/// Elastic matrices of the materials at places.
+/// Elastic matrices of the materials as a function of position.
 class Matrices {
  public:
   explicit Matrices(const SolidParameters& p) : parameters_(p) {
@@ -259,7 +259,7 @@ elastic::LameConstants lame_constants(const SolidParameters& p, const SolidMater
   elastic::LameConstants lame = material.orthotropic
                                     ? elastic::isotropic_mean(matrix_of(*material.orthotropic))
                                     : lame_constants(material.youngs_modulus, material.poissons_ratio);
-  // sigma_zz = 0 eliminates the strain across the plane.
+  // sigma_zz = 0 eliminates the out-of-plane strain.
   if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
     lame.lambda = 2 * lame.lambda * lame.mu / (lame.lambda + 2 * lame.mu);
   return lame;

@@ -140,7 +140,7 @@ void declare(config::Section& s, MethodParameters& m) {
 
 namespace {
 
-/// Forces of a partner on some patch or part of one.
+/// True if a partner's forces act on some patch or part of one.
 bool is_loaded_by_partner(const SolidParameters& p) {
   if (p.interface_data && p.interface_data->temperature) return false;
   return std::ranges::any_of(p.boundaries, [](const auto& entry) {

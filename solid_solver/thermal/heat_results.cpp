@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Heat on file, at points and faces, through patches, and the answers of its matrix to other data.
+// Heat in files, at points and faces, through patches, and solutions of its matrix for other data.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +12,7 @@
 
 namespace couplet::solid {
 
-/// The known values as fields, zeros elsewhere: per local point, per boundary face of owned cells.
+/// Known values as fields, zero elsewhere: per local point, per boundary face of owned cells.
 std::pair<std::vector<double>, std::vector<double>> Heat::known_fields() const {
   std::pair<std::vector<double>, std::vector<double>> fields;
   fields.first.assign(mesh_->points.n_local(), 0.);

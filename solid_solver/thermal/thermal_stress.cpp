@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From temperature to strain and stress.
+// Strain and stress from the temperature.
 #include <algorithm>
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
@@ -13,7 +13,7 @@ double ThermalStrain::modulus(Index cell) const {
   return (plane_stress_ ? 2 : 3) * lame.lambda + 2 * lame.mu;
 }
 
-// As the operator has its constants: the mean within a material.
+// Constants as in the operator: mean within a material.
 double ThermalStrain::face_modulus(Index face) const {
   const double here = modulus(mesh_->owner[face]);
   return face < mesh_->n_interior ? 0.5 * (here + modulus(mesh_->neighbour[face])) : here;
@@ -122,7 +122,7 @@ double ThermalStrain::coupling_number() const {
   return most;
 }
 
-// The temperature in files of fields.
+// Temperature fields in files.
 
 std::vector<double> ThermalStrain::point_temperature() const {
   if (heat_) return heat_->point_temperature(heat_->accepted());
