@@ -11,7 +11,7 @@
 namespace couplet::mesh_mover {
 namespace {
 
-// Share of its volume that a simplex keeps in a step.
+// Share of its volume that a simplex keeps in each step.
 constexpr double least_kept = 0.1;
 // Limits of -g . d of a Newton step over the energy and the weights, about the squared mean change of the
 // deformation gradient. Below the first the mesh is at rest; the second applies to slow convergence, as for
@@ -116,7 +116,7 @@ class BarrierMotion final : public MotionMethod {
   }
 
  private:
-  /// The remaining way of held directions; its largest component over all ranks. Collective.
+  /// Remaining displacement of held directions. Returns its largest component over all ranks. Collective.
   double remaining(std::span<const double> prescribed, std::span<const double> u,
                    std::vector<double>& way) const {
     double most = 0;
@@ -131,7 +131,7 @@ class BarrierMotion final : public MotionMethod {
     }
     return parallel::max(mesh_.comm, most);
   }
-  /// One Newton step of `u`, with the way or without; the share of it that was taken.
+  /// One Newton step of `u`, with or without the boundary motion. Returns the share that was taken.
   double advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
     const bool exact = find_direction(u, way, BarrierSystem::Hessian::exact);
     if (!exact) find_direction(u, way, BarrierSystem::Hessian::projected);
@@ -141,7 +141,7 @@ class BarrierMotion final : public MotionMethod {
     return moves ? line_search(u, limit, most_growth * energy_ + simplices_.total, 0)
                  : line_search(u, limit, energy_ + 1e-13 * simplices_.total, least_decrease * slope_);
   }
-  /// direction_ and slope_ at `u`; false if this Hessian gives none that lowers the energy.
+  /// Sets direction_ and slope_ at `u`; false if this Hessian gives no descent direction.
   bool find_direction(const std::vector<double>& u, const std::vector<double>& way,
                       BarrierSystem::Hessian hessian) {
     const std::size_t owned = std::size_t(mesh_.points.n_owned()) * dim_;
@@ -166,7 +166,7 @@ class BarrierMotion final : public MotionMethod {
     slope_ = parallel::sum(mesh_.comm, slope_);
     return slope_ <= 0;
   }
-  /// The largest of 1, 1/2, 1/4, ... times `limit` whose energy is at most `most` + `slope` times it.
+  /// Largest of 1, 1/2, 1/4, ... times `limit` with an energy of at most `most` + `slope` times it.
   double line_search(std::vector<double>& u, double limit, double most, double slope) {
     for (double share = limit; share > shortest_step; share /= 2) {
       for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * direction_[i];
@@ -180,7 +180,7 @@ class BarrierMotion final : public MotionMethod {
     throw SolveFailure(
         "method: barrier: Newton's line search failed: no step along its direction lowers the distortion.");
   }
-  /// To the last bit.
+  /// Sets the boundary exactly.
   void arrive(std::span<const double> prescribed, std::vector<double>& u) const {
     for (Index v = 0; v < mesh_.points.n_local(); ++v)
       if (held_.moved[v].topLeftCorner(dim_, dim_).isIdentity(0))

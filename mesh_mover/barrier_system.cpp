@@ -17,7 +17,7 @@
 namespace couplet::mesh_mover {
 namespace {
 
-/// The simplices of a kind of cell, by corners of the cell.
+/// Simplices of a cell type by corners of the cell.
 std::span<const CellCorner> simplices_of(mesh::CellType type) {
   const std::vector<CellCorner>& corners = corners_of(type).corners;
   const bool is_simplex = type == mesh::CellType::triangle || type == mesh::CellType::tetrahedron;
@@ -79,7 +79,7 @@ namespace {
 // normal relative to held directions (6 degrees).
 constexpr double same_surface = 0.9, new_direction = 0.1;
 
-/// Mean normals of the surfaces that the face vectors `areas` around a point belong to.
+/// Mean normals of the surfaces with the face vectors `areas` around a point.
 std::vector<Vec3> surfaces(std::vector<Vec3> areas) {
   std::vector<Vec3> means;
   while (!areas.empty()) {
@@ -95,7 +95,7 @@ std::vector<Vec3> surfaces(std::vector<Vec3> areas) {
   return means;
 }
 
-/// Projector on what the planes with these face vectors hold.
+/// Projector on the directions held by planes with these face vectors.
 Tensor3 held_by(std::vector<Vec3> areas) {
   Tensor3 held = Tensor3::Zero();
   for (const Vec3& n : surfaces(std::move(areas))) {
@@ -344,7 +344,7 @@ void BarrierSystem::add_simplices(std::span<const double> u, std::span<const dou
   }
 }
 
-/// P H P + (I - P) in the owned rows, the unit entries of the size of the others.
+/// P H P + (I - P) in the owned rows, with unit entries scaled to the size of the others.
 template <int D>
 void BarrierSystem::finish_rows(std::vector<double>& residual) {
   using Block = Eigen::Matrix<double, D, D, Eigen::RowMajor>;

@@ -122,7 +122,7 @@ std::optional<AffineFit::Coefficients> AffineFit::operator()(std::span<const dou
 
 namespace {
 
-// 1 - |cosine| between a face and the patch's mean normal up to which it is flat.
+// Largest 1 - |cosine| between a face and the patch's mean normal for a flat patch.
 constexpr double flat = 1e-9;
 
 /// True if all faces are parallel. Parts may face each other (two sides of a slice), so that their face

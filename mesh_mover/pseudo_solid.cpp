@@ -61,7 +61,7 @@ class PseudoSolid final : public MotionMethod {
       for (const Index v : points_of(mesh, patch)) given_point_[v] = 1;
     }
     if (!held) throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
-    // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
+    // On a point of several patches, holding overrides motion, so that corners stay closed.
     for (const mesh::Patch& patch : mesh.patches)
       if (parameters.boundaries.at(patch.name).motion == BoundaryMotion::fixed)
         for (const Index v : points_of(mesh, patch)) given_point_[v] = 0;
@@ -128,7 +128,7 @@ class PseudoSolid final : public MotionMethod {
           factors_->solve(r, z);
         });
   }
-  /// Displacement of what is held and moved, a known column each; the motion is taken from `prescribed`.
+  /// Displacement of held and moved columns; the motion is taken from `prescribed`.
   std::vector<double> known(std::span<const double> prescribed) const {
     std::vector<double> values(rows_->n_known() * dim_, 0.0);
     const std::vector<Index>& points = rows_->constraints().points();

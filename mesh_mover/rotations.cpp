@@ -15,7 +15,7 @@ namespace couplet::mesh_mover {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
-// r2 / r1 below which nothing can turn in between.
+// Ratio r2/r1 below which there is no room to rotate.
 constexpr double least_room = 1.05;
 
 /// Vector of the rotation nearest to M; of all equivalent ones (plus whole turns) the nearest to `before`.

@@ -31,7 +31,7 @@ std::string contact_asked_by(const S& s) {
                      shortest / s.time_step);
 }
 
-/// Effect that a run judges without having it.
+/// Card of an effect that a run judges but does not include.
 PlateCard left_out(const char* name, const char* key, const char* judged_by) {
   return {name, key, [](const S&) { return std::string(); }, {}, judged_by};
 }

@@ -16,7 +16,7 @@
 namespace couplet::plate {
 namespace {
 
-/// A direction says where to, not how far.
+/// Normalizes directions.
 Parameters with_unit_directions(Parameters p) {
   p.placement.x.stableNormalize();
   p.placement.y.stableNormalize();
@@ -95,7 +95,7 @@ void Structure::refuse_wound_springs() const {
       place.depth, place.centre.x(), place.centre.y(), place.centre.z());
 }
 
-/// The seat, and what a step should be for it.
+/// Creates the seat and recommends a step size for it.
 void Structure::make_contact() {
   const Parameters& p = parameters_;
   contact_ = std::make_unique<Contact>(surface_, *p.contact, p.placement.normal(),
@@ -147,7 +147,7 @@ coupling::Interface Structure::initialise() {
   return interface;
 }
 
-/// A scheme that has made more energy than the structure ever had moves something else than the structure.
+/// Throws if the scheme created more energy than the structure ever had.
 void Structure::refuse_made_energy() const {
   const double made = trial_.energies.mismatch(),
                had = std::max(trial_.energies.largest, trial_.energies.own());
@@ -161,7 +161,7 @@ void Structure::refuse_made_energy() const {
           : "a smaller 'simulation.time-step'");
 }
 
-/// Rank 0's forces on the faces, 3 each, on every rank; empty if nobody gives any.
+/// Distributes rank 0's forces on the faces, 3 each, to all ranks; empty if there are none.
 std::vector<double> Structure::received(const coupling::Exchange& in, const char* name) const {
   const auto given = in.find(name);
   std::vector<double> force = given == in.end() ? std::vector<double>{} : given->second;
@@ -221,7 +221,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
     trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (surface_.omega()[m] * surface_.omega()[m]);
     trial_.v[m] = 0;
   }
-  // Equal loads give the same answer again.
+  // Equal loads give the same result.
   const bool first = !repeats_;
   repeats_ = trial_.q == solved_ && trial_.q == state_.q;
   if (repeats_) {

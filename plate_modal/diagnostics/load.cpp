@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that faces, steps and modes see the prescribed pressures, and that faces and steps resolve them.
+// Checks that faces, steps and modes receive the prescribed pressures and resolve them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
                     apart),
         "the step does not resolve the load: use ten or more steps per load period");
   }
-  // A load that does nothing yet may come, so it is judged at the end.
+  // A load without effect so far may change, so it is judged at the end.
   void conclude(diagnostics::Report& report) override {
     if (fine_ > 0) report.errors.mesh += within_faces();  // NaN with modes of a file
     if (!has_acted_ && (view_.pressure->changes_in_time() || !view_.pressure->is_uniform()))
@@ -76,7 +76,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
           "the prescribed pressures were 0 at every face centre in every step",
           "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face "
           "or a step with the same resultant");
-    // Rounding remains where the modes do not move along the forces, or where these cancel.
+    // Only round-off remains if modes do not move along the forces, or forces cancel.
     const double part = std::sqrt(part_ / most_);
     if (part < 1e-9)
       report_neglected(
@@ -129,7 +129,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     }
     if (!pressure.is_uniform()) fine_ += std::max(of_fine, of_middle);
   }
-  /// Compares the load in the middle of the step with its mean over some samples of the step.
+  /// Compares the load at mid-step with its mean over samples of the step.
   void look_within_step(int samples) {
     const double start = view_.step.time, dt = view_.step.dt;
     std::vector<double> middle(view_.surface.omega().size()), mean(middle.size(), 0), one(middle);
@@ -156,7 +156,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   double part_ = 0, most_ = 0;  // squares over all modes of the loads, and of these along the motion
   double within_ = 0,
          fine_ = 0;  // the same of what the faces miss and of the loads, each over (omega^2 + omega_1^2)
-  // Squares over all modes of the load in the middle of a step less its mean over the step, and of the load.
+  // Squared difference of the mid-step load from its mean over the step, summed over modes, and squared load.
   double apart_ = 0, size_ = 0;
   long samples_ = 0;
 };

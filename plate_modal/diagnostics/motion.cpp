@@ -13,7 +13,7 @@ namespace {
 constexpr double least_steps = 10, good_steps = 20;
 /// Minimum number of samples: one jump in fewer steps gives no information about the load.
 constexpr double least_samples = 16;
-/// A load that has turned less often is no vibration.
+/// Minimum number of reversals for a load to count as a vibration.
 constexpr double least_turns = 8;
 
 }  // namespace
@@ -59,7 +59,7 @@ void Motion::accepted(const ModalState& before, const ModalState& after, std::sp
 /// A changing load as its static displacement. Steps with hardly any change (a constant load, a pulse that
 /// has ended) give no information, because the mode is then free.
 void Motion::follow(Mode& mode, double rate, double load, double dt) {
-  // Rounding of a load that stays is no change.
+  // Round-off of a constant load is no change.
   const double moved = load - mode.last_load;
   const double signed_change = std::abs(moved) < 1e-9 * std::abs(load) ? 0 : moved / dt;
   const double change = std::abs(signed_change);

@@ -65,7 +65,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
           0.6 * displacement * displacement);
   }
 
-  // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
+  // Stretch stiffens a plate with held edges by about 1 + 0.5 (w/h)^2, depending on the edges.
   void look_at_stretch(diagnostics::Report& report, double deflection) const {
     const double stiffening = 0.5 * deflection * deflection;
     report_neglected(
@@ -84,7 +84,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
       return all.norm() > 0 ? (all - all.dot(normal) * normal).norm() / all.norm() : 0;
     };
     double share = share_of(p.initial_velocity);
-    // Supports hold the weight along a plate; nothing holds a plate that may fall as a whole.
+    // Supports carry in-plane weight; a free plate has none.
     if (!p.gravity.empty() && moves_freely()) share = std::max(share, share_of(Vec3(p.gravity.data())));
     report_neglected(
         report, "motion in the plane", share, 0.01,
@@ -107,8 +107,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
                      "shear and rotary inertia soften such modes: keep fewer, or use a volume model",
                      4 * ratio * ratio);  // twice the 2 % of omega at 0.1, in the motion
   }
-  /// Thickness over half the length of a bending wave of this frequency in the thickest part of the plate:
-  /// D k^4 = rho h omega^2. NaN for a frequency that is not known.
+  /// Thickness over half the bending wavelength at this frequency in the thickest part of the plate: D k^4 =
+  /// rho h omega^2. NaN for an unknown frequency.
   double thickness_over_wave(double omega) const {
     const Parameters& p = view_.parameters;
     if (std::isnan(omega)) return omega;

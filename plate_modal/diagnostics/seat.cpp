@@ -12,7 +12,7 @@
 namespace couplet::plate {
 namespace {
 
-/// An impact that moves less of the energy is not counted: a structure that rests on its seat trembles.
+/// Minimum share of the energy for an impact to be counted, because a structure resting on its seat vibrates.
 constexpr double least_work = 0.02;
 
 /// Shortest impact on the seat in steps, and whether there was contact. The error of the impact time is a

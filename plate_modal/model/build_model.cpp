@@ -109,7 +109,7 @@ void check_names(const Midsurface& s, const Parameters& p, const std::string& na
           name, patch);
 }
 
-/// The file of the mid-surface, meshed if it is a drawing.
+/// File of the mid-surface; a drawing is meshed first.
 std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / *p.mesh;
   if (!std::filesystem::is_regular_file(file))
@@ -127,7 +127,7 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
   return kind == ".geo" ? mesh::mesh_geo(file, 2, p.mesh_parameters) : file;
 }
 
-/// The mid-surface of the mesh that the parameters name, its lengths times their scale.
+/// Mid-surface of the mesh in the parameters, with scaled lengths.
 Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = mesh_file(p, folder);
   mesh::RawMesh raw = mesh::read_msh(file);
@@ -144,10 +144,10 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   return surface;
 }
 
-/// Rigid motions come with the rounding of the stiffness: below this eigenvalue they are none [1/s^2].
+/// Largest eigenvalue of a rigid motion, due to round-off of the stiffness [1/s^2].
 double rigid_limit(const PlateModel& plate) { return 1e-6 * plate.frequency_scale(); }
 
-/// A plate that may fall and turn in some ways must be able to do so in all of them.
+/// Throws Error if only some of a free plate's rigid motions were found.
 void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) {
   if (!(modes.next < rigid_limit(plate))) return;
   const modes::EigenModes first = plate.modes(3);  // there are no more: a fall and two turns
@@ -172,7 +172,7 @@ std::string key_with_content(const std::string& key, const modes::ModalModel& mo
   return key + "-" + content.text();
 }
 
-/// Takes the modes of an earlier run if they belong to the same mesh and data and are as they were written.
+/// Reuses the modes of an earlier run if they belong to the same mesh and data and are unmodified.
 bool reuse_modes(Built& built, const std::filesystem::path& file, const std::string& key) {
   const std::string kept = modes::key_of_modes(file);
   if (!kept.starts_with(key + "-")) return false;
@@ -189,7 +189,7 @@ bool reuse_modes(Built& built, const std::filesystem::path& file, const std::str
   return false;
 }
 
-/// Notes what a user who draws a curved edge by straight lines should know.
+/// Adds notes about curved edges drawn as straight lines.
 void look_at_corners(Built& built, const Midsurface& surface, const std::vector<Support>& support) {
   const std::vector<OutlinePoint> outline = outline_of(surface);
   const std::vector<Index> corners = blunt_corners(surface, outline, support);
@@ -228,7 +228,7 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
   const double least = std::sqrt(rigid_limit(plate)) / (2 * std::numbers::pi);
   for (double& f : built.model.frequency)
     if (f < least) f = 0;
-  // Without the key they are found again, and what was noted is said again.
+  // Without the key, modes are recomputed and their notes are repeated.
   if (!context.output_folder.empty())
     modes::write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
 }

@@ -18,8 +18,7 @@ namespace {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Twice the area of the smallest corner triangle, positive if the cell turns counter-clockwise and bulges
-/// everywhere.
+/// Twice the area of the smallest corner triangle; positive for a convex counter-clockwise cell.
 double least_corner(const Midsurface& s, std::span<const Index> cell) {
   double least = std::numeric_limits<double>::infinity();
   const std::size_t n = cell.size();
@@ -100,7 +99,7 @@ std::map<std::pair<Index, Index>, Index> element_of_edges(const mesh::RawMesh& r
   return element;
 }
 
-/// Edges of a patch that are not on the outline would hold nothing, whatever their entry says.
+/// Rejects edges of a patch inside the outline, which would have no effect.
 void refuse_inside(const Midsurface& s, const mesh::RawMesh& raw,
                    const std::map<std::pair<Index, Index>, Index>& elements,
                    const std::map<std::pair<Index, Index>, int>& uses) {
@@ -163,7 +162,7 @@ Vec2 along(const Midsurface& s, int edge) {
   return s.points[s.edges[edge].to] - s.points[s.edges[edge].from];
 }
 
-/// Angle from one edge to the next, to the left positive.
+/// Angle from one edge to the next, positive to the left.
 double turn_between(const Midsurface& s, int first, int second) {
   const Vec2 a = along(s, first), b = along(s, second);
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
@@ -178,14 +177,14 @@ double turn_to_end(const Midsurface& s, int edge, int beyond, int other, double 
   if (beyond >= 0 && s.edges[edge].curve == s.edges[beyond].curve)
     if (const double turn = is_after ? turn_between(s, edge, beyond) : turn_between(s, beyond, edge);
         std::abs(turn) <= sharp)
-      // No more than the turn itself: a corner next to this point is none of the curve's own.
+      // At most the turn itself: a corner next to this point is not part of the curve.
       return std::clamp(turn * here / (here + along(s, beyond).norm()), -std::abs(turn_here),
                         std::abs(turn_here));
   const bool within = std::abs(turn_here) <= sharp && s.edges[edge].curve == s.edges[other].curve;
   return within ? turn_here * here / (here + along(s, other).norm()) : 0;
 }
 
-/// The direction `a`, turned to the left.
+/// Direction `a` rotated to the left.
 Vec2 turned(const Vec2& a, double angle) { return Eigen::Rotation2Dd(angle) * a.normalized(); }
 
 }  // namespace

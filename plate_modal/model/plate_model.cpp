@@ -17,7 +17,7 @@ namespace {
 /// Minimum angle at which two supports of a point hold its slope in two directions: for edges of one type
 /// that meet in a blunt corner, and of two types, whose tangents are less accurate on a coarse mesh. At a
 /// blunt corner of simply supported edges both slopes vanish in the limit, but the deflection is only
-/// as smooth as r^1.1. A plate of 20 sides with 7 edges is 47 % too stiff with both held, 15 % too soft otherwise.
+/// as smooth as r^1.1. A plate of 20 sides with 7 edges is 47 % too stiff with both held, else 15 % too soft.
 constexpr double blunt = 25 * base::degree, unlike = 10 * base::degree, rounding = 1e-6;
 
 /// Direction of the slope held by a support at an edge with this tangent: w = 0 along an edge holds the
@@ -213,7 +213,7 @@ modes::EigenModes PlateModel::modes(int n) const {
         n, free);
   modes::EigenModes modes = modes::lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
   for (std::vector<double>& shape : modes.shape) {
-    // One of the two signs: the first of the largest deflections is positive.
+    // Fixes the sign: the first of the largest deflections is positive.
     double largest = 0;
     for (std::size_t r = 0; r < shape.size(); r += 3) largest = std::max(largest, std::abs(shape[r]));
     for (std::size_t r = 0; r < shape.size(); r += 3) {

@@ -9,7 +9,7 @@
 namespace couplet::plate {
 namespace {
 
-/// A side of the plate: faces whose normal is within 60 degrees of that of the plate.
+/// Side of the plate: faces with normals within 60 degrees of that of the plate.
 constexpr double least_cosine = 0.5;
 /// Above any real pressure (4e11 Pa in the center of the earth), and far below the overflow of doubles.
 constexpr double largest_pressure = 1e15;
