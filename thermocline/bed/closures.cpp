@@ -14,7 +14,7 @@ const int n_nodes = 257;  // every 4 K over 1000 K
 double zehner_schluender(double porosity, double kappa) {
   const double b = 1.25 * std::pow((1 - porosity) / porosity, 10.0 / 9), n = 1 - b / kappa;
   const double root = std::sqrt(1 - porosity);
-  // The bracket over N; near kappa = B both vanish, and the first terms of its series serve.
+  // The bracket over N; near kappa = B both vanish, so the first terms of its series are used.
   const double bridge =
       std::abs(n) < 1e-3
           ? (2 * b + 1) / 6 + n * (3 * b + 1) / 12
@@ -32,7 +32,7 @@ MassFlux::MassFlux(double g_abs)
 LayerClosure::LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler,
                            double porosity, double diameter)
     : parameters_(parameters), fluid_(fluid), filler_(filler), porosity_(porosity), diameter_(diameter) {
-  // A little beyond the fluid's limits: a run that leaves them is warned about, not stopped.
+  // Slightly beyond the fluid's limits, because a run that leaves them is only warned about.
   const double lowest = std::max(fluid.lowest - 50, 150.0), highest = std::min(fluid.highest + 100, 1500.0);
   first_ = lowest;
   inverse_spacing_ = (n_nodes - 1) / (highest - lowest);

@@ -8,7 +8,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// N shells, or as many as e.n for N = 0.
+/// N shells, or e.n shells for N = 0.
 template <int N>
 [[gnu::always_inline]] inline void gather(const GrainElimination& e, const GrainCells& c,
                                           const double* shells, const double* extra, double* fluid,
@@ -73,7 +73,7 @@ Grains::Grains(const Filler& filler, double porosity, double diameter, int shell
   const auto mean_square = [&](int j) {
     return 0.6 * (std::pow(radius(j), 5) - std::pow(radius(j + 1), 5)) * n;
   };
-  // 8 pi k R r^3/(difference) a grain, 3 (1 - eps)/(4 pi R^3) grains a volume.
+  // 8 pi k R r^3/(difference) per grain, 3 (1 - eps)/(4 pi R^3) grains per volume.
   const double radius_m = 0.5 * diameter;
   const double scale = 6 * (1 - porosity) * filler.conductivity / (radius_m * radius_m);
   surface = scale / (1 - mean_square(0));

@@ -25,7 +25,7 @@ class FirstOrderAdvection final : public TankDiagnostic {
           .what = fmt::format("implicit advection with this step smears a front that crosses the bed over "
                               "{:.2g} of its height (standard deviation)",
                               std::sqrt(part)),
-          // A tenth to spare.
+          // With a margin of a tenth.
           .advice = fmt::format("use 'simulation.time-step: {:.2g} s'",
                                 0.9 * limit * limit / part * seen_->advance / seen_->flow),
           .left_out = false});

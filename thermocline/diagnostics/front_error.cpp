@@ -31,7 +31,7 @@ class FrontError final : public TankDiagnostic {
     report.errors = spread_profile();
     if (const double unused = unused_by_spreading(1); unused > 0 && !(report.errors.mesh > unused)) {
       report.errors.mesh = unused;
-      // Upwind: a front widens with the root of the cell size.
+      // Upwind: a front widens with the square root of the cell size.
       report.errors.mesh_order = std::log2(unused / unused_by_spreading(2));
     }
     report.errors.dimension = 1;
@@ -39,7 +39,7 @@ class FrontError final : public TankDiagnostic {
 
  private:
   Advection scheme() const { return view_.parameters().bed.advection; }
-  /// Share of the bed that the largest flow can have crossed.
+  /// Share of the bed that can have been crossed at the largest flow.
   double crossed() const { return std::min(1., seen_->flow * view_.time() / crossing_mass()); }
 
   diagnostics::ErrorParts spread_profile() const {

@@ -30,7 +30,7 @@ class Gas final : public TankDiagnostic {
   }
 
  private:
-  /// Mach number where the gas is hottest and the pores are narrowest, at the pressure at which it leaves.
+  /// Mach number at the hottest gas and narrowest pores, at the outlet pressure.
   void look_at_speed(diagnostics::Report& report) const {
     const Fluid& f = view_.fluid();
     double narrowest = 1;

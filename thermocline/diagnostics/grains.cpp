@@ -54,7 +54,7 @@ class ResolvedGrains final : public TankDiagnostic {
   }
 
  private:
-  /// Film d / (2 conductivity) of the layers of grains, at the largest flow and the bed's mean temperature.
+  /// Film times d/(2 conductivity) of grain layers at the largest flow and the bed's mean temperature.
   double largest_biot() const {
     double mean = 0, largest = 0;
     for (const double t : bed().fluid()) mean += t / double(bed().fluid().size());

@@ -13,7 +13,7 @@ namespace {
 
 Film combine(double convection, double emissivity, double surface, double surroundings4, double gain,
              const Ambient& air) {
-  // eps sigma (T^4 - T_env^4) linear about the surface temperature.
+  // eps sigma (T^4 - T_env^4), linearized about the surface temperature.
   const double radiation = 4 * emissivity * stefan_boltzmann * std::pow(surface, 3);
   const double offset = emissivity * stefan_boltzmann * (3 * std::pow(surface, 4) + surroundings4);
   Film film;
@@ -64,7 +64,7 @@ Film side_film(const OutsideParameters& p, double surface, double diameter, doub
       film.conductivity / height;
   const double around =
       0.5 * std::pow(sky_temperature(air.temperature), 4) + 0.5 * std::pow(air.temperature, 4);
-  // The sun meets the projection D H of the side's area pi D H.
+  // The sun sees the projected area D H of the side's area pi D H.
   const double across = std::sqrt(std::max(0.0, 1 - air.sun_height * air.sun_height));
   const double gain = air.sun_height > 0 ? p.solar_absorptance * air.dni * across / std::numbers::pi : 0;
   return combine(cubes(forced, still), p.emissivity, surface, around, gain, air);
@@ -130,7 +130,7 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
     disc = 2 * area_ * nu * air.conductivity / height_;
     side = side_ * vertical_plate_nusselt(near_wall.rayleigh(wall - gas_, height_), near_wall.prandtl) *
            near_wall.conductivity / height_;
-    // Newton for the gas and the roof's surface with these films.
+    // Newton's method for the gas and the roof's surface with these films.
     const double gas_balance =
         store * (gas_ - before) + disc * (2 * gas_ - liquid - roof_) + side * (gas_ - wall);
     const double roof_balance = disc * (roof_ - gas_) + roof_conductance * (roof_ - roof_cell) +
