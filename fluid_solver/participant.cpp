@@ -90,8 +90,8 @@ void FluidParticipant<D>::set_up_motion() {
 template <int D>
 coupling::Interface FluidParticipant<D>::initialise() {
   if (!interface_) return {};
-  coupling::Interface description =
-      description_;  // of this rank, which may hold no part; the data are those of all
+  // This rank may have no part of the interface; the data are those of all ranks.
+  coupling::Interface description = description_;
   using Place = coupling::Interface::Place;
   description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};

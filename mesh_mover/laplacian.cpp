@@ -156,8 +156,8 @@ void Laplacian::set_weights() {
     }
     around_.push_row(cells[v]);
   }
-  if (!periodic_.empty())
-    periodic_.add_up(totals, 1);  // the cells around a point are those around all its copies
+  // The cells around a point are those around all its copies.
+  if (!periodic_.empty()) periodic_.add_up(totals, 1);
   for (Index v = 0; v < mesh_.points.n_local(); ++v)
     for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i) weight_[i] /= totals[v];
 }

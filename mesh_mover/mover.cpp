@@ -244,8 +244,8 @@ void Mover::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   file.write(mesh::Entries::points, "displacement", accepted_);
   file.write_scalar("barrier-in-force", parameters_.method == Method::barrier && !laplacian_ ? 1 : 0);
-  if (!incremental())
-    (laplacian_ ? laplacian_ : method_)->save(file);  // else it starts from nothing in each step
+  // The incremental form has no state between steps.
+  if (!incremental()) (laplacian_ ? laplacian_ : method_)->save(file);
 }
 
 void Mover::load(io::CheckpointReader& file) {

@@ -134,8 +134,8 @@ bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh:
     sum += area * area.transpose() / area.norm();
   }
   MPI_Allreduce(MPI_IN_PLACE, sum.data(), 9, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  const Vec3 normal =
-      Eigen::SelfAdjointEigenSolver<Tensor3>(sum).eigenvectors().col(2);  // of the largest value
+  // Eigenvector of the largest eigenvalue.
+  const Vec3 normal = Eigen::SelfAdjointEigenSolver<Tensor3>(sum).eigenvectors().col(2);
   double off = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     off = std::max(off, 1 - std::abs(geometry.face_area[f].normalized().dot(normal)));

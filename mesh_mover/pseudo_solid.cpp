@@ -107,8 +107,8 @@ class PseudoSolid final : public MotionMethod {
 
  private:
   void make_solver(const linalg::LinearOptions& options) {
-    const bool joined =
-        parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty());  // its points have nodes on other ranks
+    // Its points have nodes on other ranks.
+    const bool joined = parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty());
     if (options.method == linalg::LinearMethod::direct_symmetric && dim_ == 2 && !joined) {
       matrix_ = std::make_unique<linalg::SparseMatrix>(elastic::symmetric_matrix(mesh_, *rows_, {}));
       linalg::LinearOptions of_factors;

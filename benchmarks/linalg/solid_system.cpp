@@ -87,8 +87,8 @@ Result by_assembled(const System& system, const SolidBody& body, const std::stri
   const double difference =
       std::sqrt(parallel::sum(system.comm, squares[0]) / parallel::sum(system.comm, squares[1]));
   const bool is_same = difference < 1e-7;
-  MatInfo
-      info;  // entries of 8 bytes with columns of 4; it knows no more of a matrix that was made of triplets
+  // Entries of 8 bytes with columns of 4; unknown for a matrix made of triplets.
+  MatInfo info;
   petsc_check(MatGetInfo(p, MAT_GLOBAL_SUM, &info));
   std::snprintf(text, sizeof text, "assembled in %.3g s, %.3g entries, %.0f MB%s", assembling.seconds(),
                 info.nz_used, 12 * info.nz_used / 1048576, is_same ? "" : ", not quite the operator");

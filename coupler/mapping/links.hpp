@@ -51,8 +51,8 @@ class Links {
                               const std::vector<double>& values) const;
   MPI_Comm comm_;
   std::vector<std::string> names_;
-  std::vector<std::vector<std::size_t>>
-      entries_;  // by participant: numbers of this rank's vertices and faces
+  // By participant: numbers of this rank's vertices and faces.
+  std::vector<std::vector<std::size_t>> entries_;
   std::vector<Link> links_;
   std::vector<std::string> notes_;
 };

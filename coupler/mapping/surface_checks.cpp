@@ -119,8 +119,8 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
                                 std::max(mean(comm, source_size), mean(comm, target_size)));
   if (!report.problem.empty()) return report;
   const std::vector<Neighbour> found = nearest(comm, target.points, source);
-  const std::vector<double> there =
-      local_size(comm, target.points, from);  // of the source's faces at the targets
+  // Sizes of the source's faces at the targets.
+  const std::vector<double> there = local_size(comm, target.points, from);
   for (std::size_t i = 0; i < target.points.size() && report.problem.empty(); ++i) {
     const double size = std::max(there[i], target_size[i]);
     if (found[i].distance <= 2 * size) continue;

@@ -215,8 +215,8 @@ std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const 
     buffers.finish(structure.surface.dim, list[row],
                    targets.points.points[std::size_t(list[row] - targets.first)], entries);
   };
-  entries.reserve(20 *
-                  targets.points.points.size());  // as of a surface beside one with faces of the same size
+  // As for adjacent surfaces with faces of the same size.
+  entries.reserve(20 * targets.points.points.size());
   std::vector<FaceIntegrals::Part> parts;
   for (Index f = 0; f < Index(mine.faces.size()); ++f) {
     const auto vertex = corners(mine.surface, f);

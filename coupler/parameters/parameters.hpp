@@ -67,8 +67,8 @@ struct CouplingParameters {
     bool foreign() const { return !displacement.empty() || !load.empty(); }
   };
   struct Structure : Role {
-    std::string displacement = "displacement",
-                load{};  // as its program calls them; load: the sum of all forces
+    // Names in its program; load: the sum of all forces.
+    std::string displacement = "displacement", load{};
     bool foreign() const { return displacement != "displacement" || !load.empty(); }
   };
   std::optional<Fluid> fluid;

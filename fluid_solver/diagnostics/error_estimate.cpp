@@ -153,8 +153,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     parts.mesh = recovered_difference() / speed;
     parts.step = step_part();
     const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
-    const auto& known =
-        fluid_.parameters().compressibility;  // the trapezoidal rule knows the divergence before, too
+    // The trapezoidal rule also knows the divergence before.
+    const auto& known = fluid_.parameters().compressibility;
     const bool open = known && known->scheme == WaveScheme::trapezoidal;
     parts.linear = (open ? fluid_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
     return parts;
@@ -310,8 +310,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   Driving driving_;
   Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
   double left_of_late_ = 0;  // largest recent norm
-  double carried_ = 0,
-         changed_ = 0;  // recent maxima: convective part of the rates, and the rates [m/s^2]
+  // Recent maxima: convective part of the rates, and the rates [m/s^2].
+  double carried_ = 0, changed_ = 0;
 };
 
 }  // namespace

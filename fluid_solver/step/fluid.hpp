@@ -126,8 +126,8 @@ class Fluid {
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
   Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_
   Vectors<D> pressure_force_, viscous_force_;
-  Vectors<D> given_turn_,
-      turn_;  // at the end of the step: from set_turn(); of all walls. Empty if none rotates
+  // At the end of the step: from set_turn(), and of all walls. Empty if none rotates.
+  Vectors<D> given_turn_, turn_;
   FluidStatistics statistics_;
 };
 

@@ -45,8 +45,8 @@ template struct Loads<3>;
 
 namespace {
 
-constexpr double least_share_of_lines =
-    0.5;                           // of cells and directions that have lines, for which fourth order pays
+// Share of cells and directions with lines above which fourth order pays off.
+constexpr double least_share_of_lines = 0.5;
 constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
 
 COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, double factor,

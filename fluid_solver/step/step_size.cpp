@@ -24,8 +24,8 @@ constexpr double tolerated_growth = 5e-4;
 constexpr double longest_implicit = 16;
 // Ratio of largest eigenvalues, fourth to second order: of (8 sin k - sin 2k)/6, and 16/3 over 4.
 constexpr double fourth_convection = 1.3722, fourth_friction = 4. / 3;
-constexpr double largest_courant =
-    1;  // accuracy: beyond it the explicit convection is no longer resolved in time
+// Beyond this, explicit convection is no longer resolved in time.
+constexpr double largest_courant = 1;
 
 // Roots of (1 + a d) z^2 - (1 - b d + 3/2 i k) z + (c d + i k/2) = 0, the pair at constant step with a =
 // 9/16, b = 3/8, c = 1/16.

@@ -154,8 +154,8 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   PlateView view_;
   bool has_acted_ = false;
   double part_ = 0, most_ = 0;  // squares over all modes of the loads, and of these along the motion
-  double within_ = 0,
-         fine_ = 0;  // the same of what the faces miss and of the loads, each over (omega^2 + omega_1^2)
+  // Likewise of the part missed by the faces and of the loads, each over (omega^2 + omega_1^2).
+  double within_ = 0, fine_ = 0;
   // Squared difference of the mid-step load from its mean over the step, summed over modes, and squared load.
   double apart_ = 0, size_ = 0;
   long samples_ = 0;

@@ -129,8 +129,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
   std::shared_ptr<const Motion> motion_;
   double size_ = 0;
   std::vector<Vec3> rotations_;  // of each rigid mode [1/(sqrt(kg) m)], 0 for the others
-  double displacement_ = 0,
-         rotation_ = 0;  // largest of any vertex [m]; of the body as a whole [rad]
+  // Largest of any vertex [m]; of the body as a whole [rad].
+  double displacement_ = 0, rotation_ = 0;
 };
 
 }  // namespace

@@ -32,8 +32,8 @@ double least_corner(const Midsurface& s, std::span<const Index> cell) {
 /// The model is in the x-y plane of the mesh, and 'placement' gives its position in space. A mesh in another
 /// plane, or a curved one, would only be seen from above.
 void refuse_out_of_plane(const mesh::RawMesh& raw) {
-  constexpr double tolerance =
-      1e-6;  // of the mesh's size: coordinates of a file have no more digits than this
+  // Relative to the mesh size: coordinates in a file have no more digits.
+  constexpr double tolerance = 1e-6;
   std::vector<Index> used;
   for (Index c = 0; c < raw.cell_points.size(); ++c)
     for (const Index p : raw.cell_points[c]) used.push_back(p);

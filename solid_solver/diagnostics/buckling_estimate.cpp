@@ -135,8 +135,8 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   const auto enough = [](const std::vector<double>& rho) {
     return rho.size() > settled && rho[rho.size() - 1 - settled] - rho.back() < settled_part * -rho.back();
   };
-  const modes::LowestQuotient least =
-      modes::lowest_quotient(of, found.x, most_refinements, enough);  // -1 / lambda
+  // -1 / lambda
+  const modes::LowestQuotient least = modes::lowest_quotient(of, found.x, most_refinements, enough);
   const double factor = -1 / least.value;
   return {.factor = factor,
           .growth = growth_of(body, body.unknowns_of(state.cell_u, state.face_u), least.x, factor),

@@ -45,8 +45,8 @@ double share_of_geometry(const Deformation& d, const std::optional<LargeStrainEs
 // The static response to a load of angular frequency w has a relative error r = inertia/load = (w/w_1)^2 if
 // that is small, and is useless otherwise: a sudden load moves a body twice as far.
 Opinion neglected_inertia(const P& p, double inertia_over_load) {
-  if (p.analysis != P::Analysis::static_ || has_finite_strain(p))
-    return {};  // static steps at large strain are load steps: t is no time
+  // Static steps at large strain are load steps, so t is not a time.
+  if (p.analysis != P::Analysis::static_ || has_finite_strain(p)) return {};
   return diagnostics::finding_of({.effect = "inertia",
                                   .number = inertia_over_load,
                                   .limit = 0.01,

@@ -42,8 +42,8 @@ struct EquilibriumLoad {
   /// guess already has them.
   std::span<const double> before;
   double mass_factor = 0;  ///< m
-  bool is_conserving =
-      false;  ///< use the stress that conserves energy and momenta from the accepted state on
+  /// Use the stress that conserves energy and momenta from the accepted state on.
+  bool is_conserving = false;
   std::span<const double> accepted{}, accepted_known{};  ///< the accepted state
   std::span<const double> inertia{};                     ///< per owned cell, m times mass; empty if static
   std::span<const double> node_inertia{};                ///< of the unknown nodes, for kernels with mass

@@ -193,8 +193,8 @@ modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenMod
   if (parallel::comm_rank(mesh.comm) != 0) return {};
   for (const double value : modes.eigenvalue)
     model.frequency.push_back(std::sqrt(std::max(0.0, value)) / (2 * std::numbers::pi));
-  std::map<GlobalIndex, std::size_t>
-      source;  // a vertex between ranks comes more than once, with the same values
+  // A vertex shared by ranks appears more than once, with equal values.
+  std::map<GlobalIndex, std::size_t> source;
   for (std::size_t i = 0; i < all.size(); ++i) source.try_emplace(all[i].id, i);
   std::map<GlobalIndex, Index> number;
   for (const auto& [id, i] : source) {

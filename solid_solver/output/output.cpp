@@ -249,8 +249,8 @@ void SolidOutput::write_path(double time) {
 
 void SolidOutput::write_effort(double time) {
   const SolverEffort& effort = stepper_.effort();
-  if (effort.solves == 0 || parallel::comm_rank(body_.mesh().comm) != 0)
-    return;  // at the start nothing was solved
+  // At the start there was no solve.
+  if (effort.solves == 0 || parallel::comm_rank(body_.mesh().comm) != 0) return;
   if (!solver_series_)
     solver_series_.emplace(
         context_.output_folder / "solver.csv",

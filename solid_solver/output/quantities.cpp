@@ -85,8 +85,8 @@ Vec3 quadratic_displacement(const mesh::Mesh& mesh, const elastic::ElasticOperat
 
 namespace {
 
-constexpr double least_weight =
-    1e-9;  // of a point in the value at a place; below, the place lies on a side without it
+// Smallest weight of a point in a value; below, the place is on a side without it.
+constexpr double least_weight = 1e-9;
 
 std::string method_of(const QuantityEstimate& q) {
   return q.body > 0 && q.error() == q.body ? "as the whole body" : "dual-weighted";
