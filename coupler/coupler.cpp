@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A coupled run from its start to its end; coupler/step.cpp has the step.
+// A coupled run from start to end; coupler/step.cpp contains the step.
 #include "coupler/coupler.hpp"
 
 #include <limits>
@@ -47,7 +47,7 @@ std::vector<std::unique_ptr<coupling::Channel>> list(CouplerChannels c) {
 
 Coupler::Coupler(const CouplingParameters& parameters, const app::SimulationParameters& simulation,
                  CouplerChannels channels, CouplerFolders folders)
-    // Braces: the names are read before the channels are taken away.
+    // Braces fix the order: names are read before the channels are moved.
     : Coupler{MPI_COMM_SELF, with_roles(parameters, channels), simulation, list(std::move(channels)),
               std::move(folders)} {}
 
@@ -104,7 +104,7 @@ std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
     if (std::string reason = d->stop(); !reason.empty()) return app::StepFailure(std::move(reason), false);
   const long before = iterations_;
   auto failure = attempt_once(step);
-  // Only what the iteration itself may have failed at is tried again: no scheme mends a first pass.
+  // Retries only failures of the iteration: no scheme helps a failed first pass.
   if (!failure || !failure->halving_helps || iterations_ - before < 2 || !scheme_.failed()) return failure;
   auto learnt = std::move(accelerator_);
   start_acceleration();
@@ -132,9 +132,9 @@ std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step
   return {};
 }
 
-/// Findings of the coupling come before those of a participant.
+/// Findings of the coupling precede those of a participant.
 app::StepFailure Coupler::cause_of(const std::string& reported) const {
-  // Without the advice that goes with it: a smaller step or another mesh would not help.
+  // Omits the advice, because a smaller step or another mesh would not help.
   const std::string met = reported.substr(0, reported.find(". Try ") + 1);
   std::string remarks;
   for (const auto& d : known_->diagnostics) {
@@ -149,7 +149,7 @@ void Coupler::start_acceleration() {
   if (pass_.schedule().iterates) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
 }
 
-/// `problem`: why the run stopped before its end; then its error is not judged.
+/// `problem`: why the run stopped early; its error is then not judged.
 void Coupler::finalise(const std::string& problem) {
   enter_(app::Phase::finalise, {});
   Monitor& monitor = known_->record.monitor();
@@ -177,7 +177,7 @@ std::vector<diagnostics::Coordinate> Coupler::position() const {
            double(parameters_.convergence.max_iterations), "strong-robin"}};
 }
 
-// Checkpoints: what the coupler keeps over a restart.
+// Checkpoints: state of the coupler.
 namespace {
 
 void write(io::CheckpointWriter& file, const std::string& name, const Iterate& x, const IterateOrder& order) {
@@ -185,7 +185,7 @@ void write(io::CheckpointWriter& file, const std::string& name, const Iterate& x
   file.write(order.rider, name + "-rider", x.rider);
 }
 
-/// As much as the coupling has unknowns and values that ride along, or nothing.
+/// Reads an iterate of the coupling's size, or an empty one.
 Iterate read(io::CheckpointReader& file, const std::string& name, const IterateOrder& order) {
   return {file.read_or_none(order.unknown, name, 1), file.read_or_none(order.rider, name + "-rider", 1)};
 }

@@ -27,46 +27,46 @@ namespace couplet::coupler {
 struct CouplerFolders {
   std::filesystem::path output;       ///< for the coupler's own files
   std::filesystem::path checkpoints;  ///< of the whole job
-  std::filesystem::path restart;      ///< the checkpoint to continue from; empty: fresh start
+  std::filesystem::path restart;      ///< checkpoint to continue from; empty for a fresh start
 };
 
-/// Channels by role, for callers without configuration: the roles take the channels' names.
+/// Channels by role, for callers without configuration. The roles take the channels' names.
 struct CouplerChannels {
   std::unique_ptr<coupling::Channel> fluid, structure, mesh;  ///< mesh may be empty
 };
 
-/// Drives any number of participants from start to end. A step is a fixed point x = H(x), where H is one Pass through the
-/// participants and x what they exchange (Unknown): predict, pass, accelerate until it converges, accept. All ranks of the
-/// coupler do the same with their own parts of the interfaces.
+/// Drives any number of participants from start to end. A step is a fixed-point problem x = H(x), where H is
+/// one Pass and x the exchanged data (Unknown): predict, pass, accelerate until convergence, accept. All
+/// ranks of the coupler do the same with their parts of the interfaces.
 class Coupler {
  public:
-  /// `channels`: to everyone of the schedule, in any order.
+  /// `channels`: to all participants of the schedule, in any order.
   Coupler(MPI_Comm comm, const CouplingParameters& parameters, const app::SimulationParameters& simulation,
           std::vector<std::unique_ptr<coupling::Channel>> channels, CouplerFolders folders);
-  /// In one process.
+  /// Coupler in one process.
   Coupler(const CouplingParameters& parameters, const app::SimulationParameters& simulation,
           CouplerChannels channels, CouplerFolders folders);
-  /// Called when the coupler turns to another phase, with the time if there is one.
+  /// Sets a callback for changes of phase, with the time if there is one.
   void on_phase(std::function<void(app::Phase, std::optional<double>)> callback) {
     enter_ = std::move(callback);
   }
-  /// Initialises, runs, finalises. Returns an empty text, or why the run stopped before its end.
+  /// Initializes, runs and finalizes. Returns an empty text, or why the run stopped early.
   std::string run();
 
   GlobalIndex steps() const { return loop_.steps(); }
   double time() const { return loop_.time(); }
   int halvings() const { return loop_.halvings(); }
   long iterations() const { return iterations_; }
-  /// The budget of the whole job, once it has ended well.
+  /// Error budget of the whole job, after a successful end.
   const diagnostics::ErrorParts& errors() const { return errors_; }
-  /// Where the job stands on the maps of the coupling.
+  /// Position of the job on the maps of the coupling.
   std::vector<diagnostics::Coordinate> position() const;
   const coupling::Exchange& given_by(const std::string& name) const {
     return pass_.given()[pass_.index_of(name)];
   }
 
  private:
-  /// Parts that are built from the interfaces once they are known.
+  /// Parts created once the interfaces are known.
   struct Known {
     Known(MPI_Comm comm, const Coupler& coupler);
     Unknown unknown;
@@ -82,7 +82,7 @@ class Coupler {
   FixedPointResult iterate(const coupling::Step& step, Iterate guess, const FixedPointMap& map);
   FixedPointResult pass_once(const coupling::Step& step, Iterate guess, const FixedPointMap& map);
   void accept(double time, int output);
-  /// Forgets what was learnt from other passes than those that follow.
+  /// Forgets what was learned from passes of another kind.
   void start_acceleration();
   app::StepFailure cause_of(const std::string& reported) const;
   void save(const std::filesystem::path& folder);
@@ -96,8 +96,8 @@ class Coupler {
   app::StepLoop loop_;
   Pass pass_;
   SchemeChoice scheme_;
-  std::unique_ptr<Accelerator> accelerator_;  // nullptr: one pass per step
-  History history_;                           // of accepted steps; empty before all has been given
+  std::unique_ptr<Accelerator> accelerator_;  // nullptr with one pass per step
+  History history_;                           // of accepted steps; empty until all data have been given
   FixedPointResult last_;                     // of the step just solved
   double last_dt_ = 0;
   long iterations_ = 0;

@@ -91,7 +91,7 @@ void Pass::give_back(std::vector<coupling::Exchange> given) {
 std::vector<coupling::Exchange> Pass::operator()(std::vector<coupling::Exchange> known, bool first,
                                                  coupling::Scheme scheme) {
   const bool move_mesh = schedule_.mover && (first || scheme != coupling::Scheme::semi_implicit);
-  // The mover gets the motion that is known before anybody has answered in this pass.
+  // The mover uses the motion known before any answer in this pass.
   if (move_mesh && (first || !schedule_.mesh_on_guess)) guess_ = links_->input(0, known);
   answered_anew_ = false;
   if (schedule_.side_by_side) return side_by_side(known, move_mesh);
@@ -103,7 +103,7 @@ std::vector<coupling::Exchange> Pass::operator()(std::vector<coupling::Exchange>
   return known;
 }
 
-/// All of the group are asked at once. Failures are collected, so that every reply is taken.
+/// Sends to all members of the group first. Collects failures, so that every reply is received.
 std::vector<coupling::Exchange> Pass::side_by_side(const std::vector<coupling::Exchange>& known,
                                                    bool move_mesh) {
   for (const std::size_t i : group_) ask(i, known, move_mesh);
@@ -125,7 +125,7 @@ std::vector<coupling::Exchange> Pass::side_by_side(const std::vector<coupling::E
 }
 
 void Pass::ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh) {
-  // The moved one blocks until the mesh has been moved, so the mover's command goes out first.
+  // The moved participant blocks until the mesh has moved, so the mover is asked first.
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
   if (with_mover) partners_.front().send({coupling::Op::solve, {}, guess_, 0, -1, ""});
   coupling::Command command{coupling::Op::solve, {}, links_->input(i, known), 0, -1, ""};
@@ -135,7 +135,7 @@ void Pass::ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool
 
 void Pass::answer(std::size_t i, coupling::Exchange& given, bool move_mesh) {
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
-  // A failed motion makes the moved one fail too; the mover knows the reason. Both replies are always taken.
+  // A failed motion makes the moved participant fail, too; the mover knows the reason. Receives both replies.
   std::optional<SolveFailure> mover_failed;
   if (with_mover) {
     try {
@@ -156,7 +156,7 @@ void Pass::answer(std::size_t i, coupling::Exchange& given, bool move_mesh) {
   answered_(i, taken_[i], given);
 }
 
-/// After `i` has answered, where fluids are closed.
+/// Called after the answer of `i`, for closed fluids.
 void Pass::hold_volume(std::size_t i, std::vector<coupling::Exchange>& known) {
   volume_level_->loaded(i, taken_[i], known[i]);
   if (i != volume_level_->structures().back()) return;

@@ -18,26 +18,27 @@
 
 namespace couplet::coupler {
 
-/// Everyone who takes part in the coupling, and one pass through them: each is asked with what the others have given, in
-/// the order of the schedule. All calls are collective over the coupler's ranks, which do the same with their own parts
-/// of the interfaces.
+/// Participants of a coupling, and one pass through them. Each is solved with the data given by the others,
+/// in the order of the schedule. All calls are collective over the coupler's ranks, each with its parts of
+/// the interfaces.
 class Pass {
  public:
-  /// `channels`: to everyone of the schedule, in any order.
+  /// `channels`: to all participants of the schedule, in any order.
   Pass(MPI_Comm comm, const CouplingParameters& parameters,
        std::vector<std::unique_ptr<coupling::Channel>> channels);
 
-  /// Gets to know all interfaces and links them. Throws Error if they do not fit together.
+  /// Receives all interfaces and links them. Throws Error if they are incompatible.
   void initialise(const CouplingParameters& parameters);
-  /// Values before the first step, from those that gave any to those that take them.
+  /// Transfers values given before the first step.
   void exchange_initial_values();
-  /// Sends one command to everyone.
+  /// Sends one command to all participants.
   void ask_all(const coupling::Command& command);
 
-  /// One pass from what is `known` to what all give. `first`: of the step. Throws SolveFailure if a participant fails.
+  /// Performs one pass from `known` to new data. `first`: of the step. Throws SolveFailure if a participant
+  /// fails.
   std::vector<coupling::Exchange> operator()(std::vector<coupling::Exchange> known, bool first,
                                              coupling::Scheme scheme);
-  /// Returns what a pass gave to the channels, for their next replies.
+  /// Returns the data of a pass to the channels, as buffers for later replies.
   void give_back(std::vector<coupling::Exchange> given);
   /// Called after each answer in a pass.
   void on_answer(
@@ -47,28 +48,26 @@ class Pass {
   }
 
   const Schedule& schedule() const { return schedule_; }
-  const std::vector<Partner>& partners() const {
-    return partners_;
-  }  ///< in the order of Schedule::everyone()
+  /// In the order of Schedule::everyone().
+  const std::vector<Partner>& partners() const { return partners_; }
   std::vector<Partner*> everyone();
   std::size_t index_of(const std::string& name) const;
-  const std::vector<std::size_t>& group() const { return group_; }  ///< indices of those that are iterated
+  const std::vector<std::size_t>& group() const { return group_; }  ///< indices of the iterated participants
   const std::vector<Side>& sides() const { return sides_; }
   const Links& links() const { return *links_; }
   bool has_closed_fluid() const { return volume_level_.has_value(); }
-  VolumeLevel* volume_level() {
-    return volume_level_ ? &*volume_level_ : nullptr;
-  }  ///< nullptr: no closed fluid
-  /// Answer of each in the last pass of the last solved step.
+  /// nullptr if there is no closed fluid.
+  VolumeLevel* volume_level() { return volume_level_ ? &*volume_level_ : nullptr; }
+  /// Data given by each in the last pass of the last solved step.
   const std::vector<coupling::Exchange>& given() const { return given_; }
   const std::vector<coupling::Exchange>& taken() const { return taken_; }
   void set_given(std::vector<coupling::Exchange> given) {
     give_back(std::exchange(given_, std::move(given)));
   }
-  /// Tells whether somebody began to answer otherwise in the last pass (Participant::answered_anew).
+  /// True if some participant renewed its prediction in the last pass (Participant::answered_anew).
   bool answered_anew() const { return answered_anew_; }
 
-  /// State of the coupling's own parts: levels of closed fluids, displacements of foreign structures.
+  /// Saves or loads the coupling's own state: levels of closed fluids, displacements of foreign structures.
   void save(io::CheckpointWriter& file) const;
   void load(io::CheckpointReader& file);
 
@@ -87,7 +86,7 @@ class Pass {
   std::optional<Links> links_;
   std::optional<VolumeLevel> volume_level_;
   std::vector<coupling::Exchange> given_, taken_;
-  coupling::Exchange guess_;  // of the motion, which the mover has been given
+  coupling::Exchange guess_;  // of the motion, as given to the mover
   bool answered_anew_ = false;
   std::function<void(std::size_t, const coupling::Exchange&, const coupling::Exchange&)> answered_ =
       [](std::size_t, const coupling::Exchange&, const coupling::Exchange&) {};

@@ -10,7 +10,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// Explicit coupling looks at what comes back in further passes: in the steps 1 (to explain a failure), 4, 16, 64, ...
+/// Explicit coupling examines its response in more passes in steps 1 (to explain a failure), 4, 16, 64, ...
 bool looks_at(GlobalIndex step) {
   const auto n = static_cast<std::uint64_t>(step);
   return n == 1 || (n >= 4 && std::has_single_bit(n) && std::countr_zero(n) % 2 == 0);
@@ -51,7 +51,7 @@ void Coupler::solve(const coupling::Step& step) {
   const bool iterates_on_data = !unknown.parts().empty();
   const bool begins = iterates_on_data && history_.now.unknown.empty() && history_.now.rider.empty();
   if (begins || !iterates_on_data) {
-    // Data that nobody has given yet are missing from this first pass.
+    // Data that have not been given yet are missing from the first pass.
     pass_from(std::vector<coupling::Exchange>(pass_.partners().size()));
     if (!unknown.scaled()) unknown.scale(outputs);
     last_ = {unknown.gather(outputs), unknown.gather(outputs), {}, 1};
@@ -67,7 +67,7 @@ void Coupler::solve(const coupling::Step& step) {
   last_dt_ = step.dt;
 }
 
-/// Passes and accelerated guesses until the residuals of all unknowns are below their bounds.
+/// Iterates passes and accelerated guesses until all residuals are below their bounds.
 FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, const FixedPointMap& map) {
   Unknown& unknown = known_->unknown;
   for (const auto& d : known_->diagnostics) d->begin_step();
@@ -78,7 +78,7 @@ FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, con
   const ResidualMeasure measure = [&](const Iterate& x, const Iterate& image) {
     return unknown.measure(x, image);
   };
-  // Values within the step are iterated on at the times that the first pass shows.
+  // Values within the step are iterated at the times found in the first pass.
   std::optional<Iterate> seen;
   const bool begins = history_.now.unknown.empty() && history_.now.rider.empty();
   if (!begins && unknown.asked_within()) {
@@ -92,14 +92,14 @@ FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, con
                            observer);
 }
 
-/// The step of explicit coupling. What further passes return is shown to the diagnostics, and leaves no trace.
+/// Performs a step of explicit coupling. Results of additional passes only go to the diagnostics.
 FixedPointResult Coupler::pass_once(const coupling::Step& step, Iterate guess, const FixedPointMap& map) {
   FixedPointResult result;
   result.x = std::move(guess);
   result.image = map(result.x);
   result.residual = worst(known_->unknown.measure(result.x, result.image));
   result.iterations = 1;
-  // Sub-steps see a line through what was given, which each further pass would bend.
+  // Sub-steps use linear input in time, which each additional pass would change.
   if (step.scheme != coupling::Scheme::explicit_ || !pass_.schedule().sub_steps.empty() ||
       !looks_at(step.number))
     return result;
@@ -113,13 +113,13 @@ FixedPointResult Coupler::pass_once(const coupling::Step& step, Iterate guess, c
   return result;
 }
 
-/// The step becomes state n.
+/// Makes the step state n.
 void Coupler::accept(double time, int output) {
   Unknown& unknown = known_->unknown;
   enter_(app::Phase::accept, {});
   pass_.ask_all({coupling::Op::accept_step, {}, {}, time, output, ""});
   enter_(app::Phase::accept, time);
-  // Scales are found after the first step, and hold from then on.
+  // Scales are determined after the first step and then kept.
   if (!unknown.scaled() && unknown.complete(pass_.given())) {
     unknown.scale(pass_.given());
     last_.image = unknown.gather(pass_.given());

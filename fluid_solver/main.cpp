@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
                 io::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
                               parameters.mesh_parameters, fluid::periodic_patches(parameters), {}, false,
                               parameters.mesh_scale);
-            for (auto& [patch, boundary] : parameters.boundaries)  // files lie beside the case
+            for (auto& [patch, boundary] : parameters.boundaries)  // files are next to the case
               if (boundary.table)
                 boundary.table->file = (context.case_folder / boundary.table->file).string();
             fluid::MotionLink link;

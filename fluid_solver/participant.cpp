@@ -23,7 +23,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// Sub-steps of a step over those of the step last told in the log, or the other way round.
+// Ratio of the number of sub-steps to the one last logged, or its inverse, that is logged again.
 constexpr double most_times_as_many = 2;
 
 bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
@@ -90,8 +90,8 @@ void FluidParticipant<D>::set_up_motion() {
 template <int D>
 coupling::Interface FluidParticipant<D>::initialise() {
   if (!interface_) return {};
-  coupling::Interface description =
-      description_;  // of this rank, which may hold no part; the data are those of all
+  // This rank may have no part of the interface; the data are those of all ranks.
+  coupling::Interface description = description_;
   using Place = coupling::Interface::Place;
   description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
@@ -106,7 +106,7 @@ coupling::Interface FluidParticipant<D>::initialise() {
   return description;
 }
 
-/// Forces of the first step that are none of the flow's.
+/// Reports forces of the first step that are not caused by the flow.
 template <int D>
 void FluidParticipant<D>::tell_impulse() const {
   const Boundary<D>& boundary = fluid_->boundary();
@@ -166,9 +166,9 @@ coupling::Exchange FluidParticipant<D>::forces() const {
   return out;
 }
 
-/// Share of what a pass changes that the pressure's solver may leave. A pass of the semi-implicit scheme begins where the last
-/// one ended, so that what is left shrinks with the passes; one of the implicit scheme begins anew. Explicit coupling has no
-/// further pass but the audit's, which measures how much of a change comes back: it must not miss it (1 % more iterations).
+/// Share of a change between passes that the pressure solver may leave. Passes of the semi-implicit scheme
+/// start from the last one, so the rest decreases; those of the implicit scheme start anew. The audit of
+/// explicit coupling measures the response to a change and must resolve it (1 % more iterations).
 template <int D>
 double FluidParticipant<D>::answer() const {
   return !interface_ || step_.scheme == coupling::Scheme::standalone ? 0
@@ -267,8 +267,7 @@ std::vector<std::string> FluidParticipant<D>::finish() {
                       fluid_->parameters().statistics->start)};
 }
 
-/// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
-/// asks for them.
+/// Logs the number of sub-steps, with the limiting cell, if it has changed much since the last entry.
 template <int D>
 void FluidParticipant<D>::tell_sub_steps() {
   const int now = fluid_->statistics().sub_steps;

@@ -18,22 +18,22 @@
 
 namespace couplet::fluid {
 
-/// Makes the link to a mesh mover once the mesh has its final place; empty for a mesh at rest.
+/// Creates the link to a mesh mover once the mesh is in its final position. Empty for a mesh at rest.
 using MotionLink = std::function<std::unique_ptr<coupling::MeshMotionSource>(const mesh::Mesh&,
                                                                              std::span<const Vec3> points)>;
 
-/// The fluid seen from outside. Takes "velocity" (and "displacement", which the mesh mover uses) at the
-/// interface vertices, gives "pressure-force" and "viscous-force" on the interface faces, acting on the
-/// structure.
+/// Interface of the fluid to a coupling. It takes "velocity" (and "displacement", which the mesh mover uses)
+/// at the interface vertices. It gives "pressure-force" and "viscous-force", the forces on the structure, at
+/// the interface faces.
 ///
-///   semi-implicit      the first solve() of a step moves the mesh and does all but the last pressure
-///   equation;
-///                      every solve() costs one pressure equation. Where friction would say something else
-///                      with the wall velocity of a later pass than with the first guess (see
-///                      unseen_share()), that pass repeats the step's first part, on the mesh of the guess:
-///                      equal input gives equal output between such passes, not across them
-///   implicit, explicit every solve() moves the mesh and starts from level n
-///   standalone         interfaces are walls at rest; bodies move as the case prescribes, in every scheme
+///   scheme              what solve() does
+///   semi-implicit       every call solves a pressure equation; the first does the rest of the step before
+///   implicit, explicit  every call moves the mesh and starts from level n
+///   standalone          interfaces are walls at rest; bodies move as the case prescribes, in every scheme
+///
+/// If a later pass of the semi-implicit scheme changes friction noticeably (see unseen_share()), that pass
+/// repeats the first part on the mesh of the first guess. Equal input then gives equal output only between
+/// such passes.
 template <int D>
 class FluidParticipant final : public coupling::Participant {
  public:
@@ -51,7 +51,7 @@ class FluidParticipant final : public coupling::Participant {
   void write_monitors(double time) override;
   std::vector<std::string> finish() override;
 
-  /// View for diagnostics; it refers to this participant, which must outlive it. After initialise().
+  /// View for diagnostics. It refers to this participant, which must outlive it. Call after initialise().
   FluidView<D> view() const {
     return {mesh_,         *fluid_,           fluid_->sizes(), step_,     bool(interface_),
             bool(motion_), bool(prescribed_), displacement_,   renewals_, unseen_share_};
@@ -63,7 +63,7 @@ class FluidParticipant final : public coupling::Participant {
   std::vector<Vec3> body_velocities(const mesh::Patch& patch) const;
   std::vector<double> wall_load(const coupling::Exchange& in) const;
   void take_wall_mass(const coupling::Exchange& in);
-  /// The case moves bodies, or a mesh mover moves some by itself.
+  /// True if the case moves bodies or a mesh mover moves some of its own accord.
   bool moves_bodies() const { return prescribed_ || (motion_ && !fluid_->boundary().body_patches().empty()); }
   bool yields() const { return interface_ && fluid_->boundary().yields(); }
   double wall_displacement(const coupling::Exchange& in) const;
@@ -80,31 +80,31 @@ class FluidParticipant final : public coupling::Participant {
   const mesh::Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
   std::unique_ptr<coupling::InterfaceMap> interface_;   // nullptr without an interface patch
-  coupling::Interface description_;                     // of what this rank has of it
+  coupling::Interface description_;                     // this rank's part of the interface
   mesh::Csr interface_vertices_;                        // per interface face: entries of interface_->points()
   std::vector<double> interface_area_;                  // per interface face, at rest [m^2]
-  std::vector<double> cell_height_;                     // of the cells beside them, at rest [m]
-  std::unique_ptr<coupling::MeshMotionSource> motion_;  // by a mesh mover
-  std::unique_ptr<fv::PrescribedMotion> prescribed_;    // by the case
+  std::vector<double> cell_height_;                     // of the cells at the interface faces, at rest [m]
+  std::unique_ptr<coupling::MeshMotionSource> motion_;  // from a mesh mover
+  std::unique_ptr<fv::PrescribedMotion> prescribed_;    // from the case
   std::optional<RunningStatistics<D>> statistics_;
   FluidOutput<D> output_;
   coupling::Step step_;
-  std::vector<Vec3> points_;  // of the first guess; semi-implicit only
-  bool predicted_ = false;    // in the step under way
-  bool renewed_now_ = false;  // the prediction, in the last pass
+  std::vector<Vec3> points_;  // points of the first guess; semi-implicit only
+  bool predicted_ = false;    // prediction of the current step is done
+  bool renewed_now_ = false;  // the last pass repeated the prediction
   Renewal<D> renewal_;
-  Vectors<D> w_;  // of the last pass
-  // Interface on a mesh at rest: largest displacement over the height of the cell there.
+  Vectors<D> w_;  // wall velocity of the last pass
+  // Largest displacement of an interface on a mesh at rest, over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
-  int renewals_ = 0;         // of the prediction, in the last step
+  int renewals_ = 0;         // repeated predictions in the last step
   double unseen_share_ = 0;  // error of the friction at the end of the last step, over the load
-  int told_sub_steps_ = 1;   // in the log
+  int told_sub_steps_ = 1;   // number of sub-steps last logged
 };
 
-/// Adds the diagnostics of a participant that make_participant() made. After its initialise().
+/// Adds the diagnostics of a participant created by make_participant(). Call after its initialise().
 void add_diagnostics(const coupling::Participant& participant, diagnostics::Diagnostics& all);
 
-/// The participant of the dimension that the parameters name.
+/// Creates the participant for the dimension given in the parameters.
 std::unique_ptr<coupling::Participant> make_participant(mesh::LoadedMesh loaded,
                                                         const FluidParameters& parameters,
                                                         FluidContext context, const MotionLink& link);

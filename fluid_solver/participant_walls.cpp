@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data of the walls that other programs or a prescribed motion move.
+// Data of walls moved by other programs or a prescribed motion.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 namespace {
 
-/// A datum of the interface; nothing where none was given, as at the very start.
+/// Datum of the interface; empty if not given, as at the start.
 std::vector<double> datum(const coupling::Exchange& in, const char* name) {
   const auto given = in.find(name);
   return given == in.end() ? std::vector<double>{} : given->second;
@@ -19,7 +19,7 @@ std::vector<double> datum(const coupling::Exchange& in, const char* name) {
 
 }  // namespace
 
-/// One a corner of each face of the patch, at the end of the step. After receive_points().
+/// One value per corner of each face of the patch, at the end of the step. Call after receive_points().
 template <int D>
 std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch) const {
   if (!prescribed_) {
@@ -39,8 +39,8 @@ std::vector<Vec3> FluidParticipant<D>::body_velocities(const mesh::Patch& patch)
                                  step_.dt);
 }
 
-/// Velocity w of all walls that move, at a face the mean of those of its vertices, and their turn (see turn_of()). Both are
-/// empty if no wall moves. After receive_points().
+/// Velocity w of all moving walls, at a face the mean of its vertices, and their turn (see turn_of()). Both
+/// are empty if no wall moves. Call after receive_points().
 template <int D>
 std::pair<Vectors<D>, Vectors<D>> FluidParticipant<D>::wall_motion(const coupling::Exchange& in) const {
   const bool coupled = interface_ && step_.scheme != coupling::Scheme::standalone;
@@ -72,7 +72,7 @@ std::pair<Vectors<D>, Vectors<D>> FluidParticipant<D>::wall_motion(const couplin
   return {w, turn};
 }
 
-/// The pressure that the structure has answered to, per boundary face [Pa]; nothing at the very start.
+/// Pressure to which the structure has responded, per boundary face [Pa]; empty at the start.
 template <int D>
 std::vector<double> FluidParticipant<D>::wall_load(const coupling::Exchange& in) const {
   std::vector<double> load(mesh_.boundary.n_owned(), 0.);
@@ -83,7 +83,7 @@ std::vector<double> FluidParticipant<D>::wall_load(const coupling::Exchange& in)
   return load;
 }
 
-/// `impedance: structure`.
+/// Takes the masses for `impedance: structure`.
 template <int D>
 void FluidParticipant<D>::take_wall_mass(const coupling::Exchange& in) {
   const std::vector<double> masses = interface_->scatter_faces(datum(in, "surface-density"), 1);
@@ -92,8 +92,7 @@ void FluidParticipant<D>::take_wall_mass(const coupling::Exchange& in) {
   fluid_->set_wall_mass(faces, masses);
 }
 
-/// Largest mean displacement of an interface face over the height of the cell beside it.
-/// Collective.
+/// Largest mean displacement of an interface face over the height of its cell. Collective.
 template <int D>
 double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) const {
   const std::vector<double> at_points = interface_->scatter_vertices(datum(in, "displacement"), D);

@@ -19,27 +19,27 @@
 
 namespace couplet::mesh_mover {
 
-/// The simplices that a barrier keeps from turning over: each triangle and tetrahedron by itself, of other cells one
-/// at each corner, spanned by its edges there. Flat arrays over the local cells, those of owned cells first.
+/// Simplices that the barrier keeps from inverting: triangles and tetrahedra themselves, in other cells one
+/// at each corner, spanned by its edges. Flat arrays over the local cells, owned cells first.
 struct Simplices {
   int dim = 0;
-  Index n_owned = 0;            ///< of owned cells: every simplex of the mesh counts on one rank
+  Index n_owned = 0;            ///< of owned cells; every simplex of the mesh counts on one rank
   std::vector<Index> points;    ///< dim + 1 local points each
-  std::vector<double> inverse;  ///< of the reference edges, dim x dim by columns each [1/m]
+  std::vector<double> inverse;  ///< inverse of the reference edges, dim x dim by columns each [1/m]
   std::vector<double> weight;   ///< share of its cell's reference volume times (V / mean V)^-chi [m^dim]
   std::vector<Index> cell;      ///< local cell each
   double total = 0;             ///< sum of the weights over all ranks
   Index size() const { return static_cast<Index>(weight.size()); }
 };
 
-/// `volumes`: V per local cell. Throws SolveFailure if a simplex of the reference mesh is flat or inverted. Collective.
+/// `volumes`: V per local cell. Throws SolveFailure for a flat or inverted reference simplex. Collective.
 Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
                          std::span<const double> volumes);
 
-/// The symmetric Dirichlet energy [smith2015] of a simplex with the deformation gradient F,
-///   W = |F|^2 + |F^-1|^2 - 2 D = sum_i (s_i^2 + s_i^-2 - 2),   s_i the stretches:
-/// zero for rigid motions alone, infinite where det F -> 0; a cell that is compressed to a share s costs what one that
-/// is stretched by 1/s does.
+/// Symmetric Dirichlet energy [smith2015] of a simplex with the deformation gradient F and stretches s_i,
+///   W = |F|^2 + |F^-1|^2 - 2 D = sum_i (s_i^2 + s_i^-2 - 2).
+/// It is zero only for rigid motions and infinite as det F -> 0. Compression to a ratio s costs as much as
+/// stretching by 1/s.
 template <int D>
 struct Distortion {
   using Matrix = Eigen::Matrix<double, D, D>;
@@ -53,10 +53,10 @@ struct Distortion {
     return 2 * f - 2 * (inverse * inverse.transpose() * inverse).transpose();
   }
 
-  /// d2W/dF2 in the frame of the stretches, F = U diag(s) V^T [smith2019]: of the (ij) entry with itself `own`,
-  /// with the (ji) entry `across`. W is a sum over the stretches, so the stretches have W''(s_i) = 2 + 6 s_i^-4; each
-  /// pair of them a symmetric mode (W'_i - W'_j) / (s_i - s_j) and an antisymmetric one (W'_i + W'_j) / (s_i + s_j),
-  /// which alone may be negative: `is_projected` without that.
+  /// d2W/dF2 in the frame of the stretches, F = U diag(s) V^T [smith2019]: coupling of the entry (ij) with
+  /// itself (`own`) and with (ji) (`across`). W is a sum over the stretches with W''(s_i) = 2 + 6 s_i^-4.
+  /// Each pair of them has a symmetric mode (W'_i - W'_j)/(s_i - s_j) and an antisymmetric one (W'_i +
+  /// W'_j)/(s_i + s_j). Only the latter may be negative; `is_projected` removes that.
   struct Tangent {
     Matrix u, v;
     Matrix own, across;
@@ -93,26 +93,26 @@ struct Distortion {
   }
 };
 
-/// Which directions of a point its patches hold or move. A point on several patches: `fixed` wins over what moves it,
-/// and the plane of a patch that slides over both, so that corners stay closed; where planes meet at an edge (of one
-/// patch or several) a point slides along the edge, where they meet at a corner it rests.
+/// Directions in which patches hold or move a point. If a point is on several patches, `fixed` overrides
+/// motion, and the plane of a sliding patch overrides both, so that corners stay closed. Where such planes
+/// meet at an edge the point slides along it; where they meet at a corner it is fixed.
 struct HeldPoints {
-  /// Per local point: projector on the directions in which it is free (I inside the mesh, 0 where all is given) and
-  /// on those in which it follows what is prescribed.
+  /// Per local point: projectors on its free directions (I inside the mesh, 0 if all are given) and on those
+  /// with a prescribed motion.
   std::vector<Tensor3> free, moved;
 };
 
-/// Throws Error if no patch holds or moves the mesh, or one is periodic. Collective.
+/// Throws Error if no patch holds or moves the mesh, or if one is periodic. Collective.
 HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                             const Parameters& parameters);
 
-/// The first place in (0, limit] where c0 + c1 a + c2 a^2 + c3 a^3 falls to zero, from below to a thousandth; limit:
-/// nowhere. c0 > 0.
+/// First zero in (0, limit] of c0 + c1 a + c2 a^2 + c3 a^3, from below, with a relative error of 1e-3; limit
+/// if there is none. c0 > 0.
 inline double first_root(const std::array<double, 4>& c, double limit) {
   const auto at = [&](double a) { return c[0] + a * (c[1] + a * (c[2] + a * c[3])); };
   const auto below = [](double x) { return x < 0 ? x : 0; };
   if (c[0] + limit * (below(c[1]) + limit * (below(c[2]) + limit * below(c[3]))) > 0) return limit;
-  // Between its extrema it is monotone.
+  // The function is monotone between its extrema.
   std::array<double, 3> ends{limit, limit, limit};
   int n = 0;
   const double a = 3 * c[3], b = c[2], root = b * b - a * c[1];
@@ -140,26 +140,26 @@ inline double first_root(const std::array<double, 4>& c, double limit) {
   return limit;
 }
 
-/// Distortion energy of the simplices of a mesh, its gradient and its projected Hessian over the owned points. Positions
-/// and directions: dim values per local point, ghosts current.
+/// Distortion energy of the simplices of a mesh, its gradient and projected Hessian over the owned points.
+/// Positions and directions have dim values per local point, ghosts current.
 class BarrierSystem {
  public:
   enum class Hessian { exact, projected };
-  /// All by reference. Collective.
+  /// Keeps references. Collective.
   BarrierSystem(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Simplices& simplices,
                 const HeldPoints& held);
 
-  /// Sum of weight x W; infinite if a simplex is not positive. Collective.
+  /// Sum of weight x W; infinite if a simplex is flat or inverted. Collective.
   double energy(std::span<const double> displacement) const;
-  /// Fills the matrix P H P + (I - P), where H may be without the negative parts of its simplices, and gives
-  /// `residual` = -P (g + H `known`): right-hand side of the step that moves
-  /// the held directions by `known`. Collective.
+  /// Assembles the matrix P H P + (I - P), where `hessian` may remove the negative parts of H. Returns in
+  /// `residual` the right-hand side -P (g + H `known`) of the step that moves the prescribed directions by
+  /// `known`. Collective.
   void assemble(std::span<const double> displacement, std::span<const double> known,
                 std::vector<double>& residual, Hessian hessian);
-  /// Largest share of `direction`, at most 1, along which no simplex falls below `least` of its volume. Collective.
+  /// Largest share of `direction`, at most 1, such that each simplex keeps `least` of its volume. Collective.
   double largest_step(std::span<const double> displacement, std::span<const double> direction,
                       double least) const;
-  /// Where the cell with the largest energy per weight lies [m], moved. Collective.
+  /// Moved position [m] of the cell with the largest energy per weight. Collective.
   Vec3 worst_place(std::span<const double> displacement) const;
   const linalg::SparseMatrix& matrix() const { return *matrix_; }
 
@@ -176,10 +176,10 @@ class BarrierSystem {
   const Simplices& simplices_;
   const HeldPoints& held_;
   int dim_;
-  mesh::Csr graph_;              // per owned point: local points of the simplices around it
+  mesh::Csr graph_;              // per owned point: local points of adjacent simplices
   std::vector<Index> diagonal_;  // per owned point: its own entry of the graph
-  std::vector<Index> entry_;  // per simplex and pair of its points: entry of the graph, -1: not an owned row
-  std::vector<double> blocks_;  // per entry of the graph: dim x dim by rows
+  std::vector<Index> entry_;     // per simplex and pair of points: entry of the graph; -1 if not an owned row
+  std::vector<double> blocks_;   // per entry of the graph: dim x dim by rows
   std::unique_ptr<linalg::SparseMatrix> matrix_;
 };
 

@@ -11,17 +11,17 @@
 namespace couplet::mesh_mover {
 namespace {
 
-// Share of its volume that a simplex keeps in a step.
+// Share of its volume that a simplex keeps in each step.
 constexpr double least_kept = 0.1;
-// Limits of -g . d of a Newton step over the energy and the weights: nearly the square of the mean change of the deformation
-// gradient. Below the first the mesh is at rest; below the second if it comes to rest slowly, as cells do that are
-// pressed to the verge of buckling; below the third the boundary moves on.
+// Limits of -g . d of a Newton step over the energy and the weights, about the squared mean change of the
+// deformation gradient. Below the first the mesh is at rest; the second applies to slow convergence, as for
+// cells near buckling; below the third the boundary advances.
 constexpr double at_rest = 1e-5, slowly_at_rest = 1e-4, nearly_at_rest = 1e-2, slow = 0.1;
-// Factor by which the energy may grow as the boundary moves, beside the sum of the weights.
+// Factor by which energy plus weights may grow as the boundary moves.
 constexpr double most_growth = 2;
 constexpr double linear_tolerance = 3e-3;
 constexpr int most_steps = 200;
-// Energy over the sum of the weights from which on no valid mesh is expected: cells of a thousandth of their width.
+// Energy over the weights above which no valid mesh is expected: cells at a thousandth of their width.
 constexpr double most_energy = 1e6;
 // Constants of the Armijo rule.
 constexpr double least_decrease = 1e-4, shortest_step = 1e-8;
@@ -36,15 +36,15 @@ linalg::LinearOptions options_of(const mesh::Mesh& mesh, const linalg::LinearOpt
   return options;
 }
 
-/// Mesh motion that cannot fold: the points minimise the distortion of the cells from their reference shapes,
+/// Mesh motion that cannot fold. Points minimize the distortion of cells relative to their reference shapes,
 ///   sum_s V_s (V/mean V)^-chi (|F|^2 + |F^-1|^2 - 2 D),
-/// over the simplices s of the cells, which is infinite where one turns flat. Newton's method with the Hessian without
-/// its negative part [teran2005, smith2019] from the last solve's mesh; each step is cut where a simplex would lose
-/// nine tenths of its volume. What remains of the boundary's way is part of each step, so that the boundary moves as
-/// far at once as the cells at it let it; where it has arrived, the energy falls from step to step.
+/// over their simplices s, which is infinite for a flat one. Newton's method with the positive part of the
+/// Hessian [teran2005, smith2019] starts from the last mesh. Each step is limited so that no simplex loses
+/// nine tenths of its volume, and includes the rest of the boundary's displacement as far as adjacent cells
+/// allow. Once the boundary has arrived, the energy decreases monotonically.
 class BarrierMotion final : public MotionMethod {
  public:
-  /// `volumes`: V per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
+  /// `volumes`: V per local cell; empty for those of the mesh. Throws Error if no patch holds the mesh.
   BarrierMotion(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
                 std::span<const double> volumes)
       : mesh_(mesh),
@@ -116,7 +116,7 @@ class BarrierMotion final : public MotionMethod {
   }
 
  private:
-  /// The remaining way of held directions; its largest component over all ranks. Collective.
+  /// Remaining displacement of held directions. Returns its largest component over all ranks. Collective.
   double remaining(std::span<const double> prescribed, std::span<const double> u,
                    std::vector<double>& way) const {
     double most = 0;
@@ -131,7 +131,7 @@ class BarrierMotion final : public MotionMethod {
     }
     return parallel::max(mesh_.comm, most);
   }
-  /// One Newton step of `u`, with the way or without; the share of it that was taken.
+  /// One Newton step of `u`, with or without the boundary motion. Returns the share that was taken.
   double advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
     const bool exact = find_direction(u, way, BarrierSystem::Hessian::exact);
     if (!exact) find_direction(u, way, BarrierSystem::Hessian::projected);
@@ -141,7 +141,7 @@ class BarrierMotion final : public MotionMethod {
     return moves ? line_search(u, limit, most_growth * energy_ + simplices_.total, 0)
                  : line_search(u, limit, energy_ + 1e-13 * simplices_.total, least_decrease * slope_);
   }
-  /// direction_ and slope_ at `u`; false if this Hessian gives none that lowers the energy.
+  /// Sets direction_ and slope_ at `u`; false if this Hessian gives no descent direction.
   bool find_direction(const std::vector<double>& u, const std::vector<double>& way,
                       BarrierSystem::Hessian hessian) {
     const std::size_t owned = std::size_t(mesh_.points.n_owned()) * dim_;
@@ -166,7 +166,7 @@ class BarrierMotion final : public MotionMethod {
     slope_ = parallel::sum(mesh_.comm, slope_);
     return slope_ <= 0;
   }
-  /// The largest of 1, 1/2, 1/4, ... times `limit` whose energy is at most `most` + `slope` times it.
+  /// Largest of 1, 1/2, 1/4, ... times `limit` with an energy of at most `most` + `slope` times it.
   double line_search(std::vector<double>& u, double limit, double most, double slope) {
     for (double share = limit; share > shortest_step; share /= 2) {
       for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * direction_[i];
@@ -180,7 +180,7 @@ class BarrierMotion final : public MotionMethod {
     throw SolveFailure(
         "method: barrier: Newton's line search failed: no step along its direction lowers the distortion.");
   }
-  /// To the last bit.
+  /// Sets the boundary exactly.
   void arrive(std::span<const double> prescribed, std::vector<double>& u) const {
     for (Index v = 0; v < mesh_.points.n_local(); ++v)
       if (held_.moved[v].topLeftCorner(dim_, dim_).isIdentity(0))

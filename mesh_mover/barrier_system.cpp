@@ -17,7 +17,7 @@
 namespace couplet::mesh_mover {
 namespace {
 
-/// The simplices of a kind of cell, by corners of the cell.
+/// Simplices of a cell type by corners of the cell.
 std::span<const CellCorner> simplices_of(mesh::CellType type) {
   const std::vector<CellCorner>& corners = corners_of(type).corners;
   const bool is_simplex = type == mesh::CellType::triangle || type == mesh::CellType::tetrahedron;
@@ -75,11 +75,11 @@ Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
 
 namespace {
 
-// Cosine above which normals around a point are those of one curved surface (26 degrees), and the part of a normal
-// across what is held already below which it holds nothing new (6 degrees).
+// Minimum cosine between normals at a point of one curved surface (26 degrees), and minimum new part of a
+// normal relative to held directions (6 degrees).
 constexpr double same_surface = 0.9, new_direction = 0.1;
 
-/// Mean normals of the surfaces that the face vectors `areas` around a point belong to.
+/// Mean normals of the surfaces with the face vectors `areas` around a point.
 std::vector<Vec3> surfaces(std::vector<Vec3> areas) {
   std::vector<Vec3> means;
   while (!areas.empty()) {
@@ -95,7 +95,7 @@ std::vector<Vec3> surfaces(std::vector<Vec3> areas) {
   return means;
 }
 
-/// Projector on what the planes with these face vectors hold.
+/// Projector on the directions held by planes with these face vectors.
 Tensor3 held_by(std::vector<Vec3> areas) {
   Tensor3 held = Tensor3::Zero();
   for (const Vec3& n : surfaces(std::move(areas))) {
@@ -151,7 +151,7 @@ HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geomet
 
 namespace {
 
-/// Edges of a simplex: of the reference places plus a displacement, or of a displacement alone.
+/// Edges of a simplex: of the reference positions plus a displacement, or of a displacement only.
 template <int D>
 struct SimplexEdges {
   using Matrix = Eigen::Matrix<double, D, D>;
@@ -208,7 +208,7 @@ std::array<double, 4> determinant(const Eigen::Matrix3d& a, const Eigen::Matrix3
           b.determinant()};
 }
 
-/// The simplex that is distorted most and its energy per weight; -1: there is none here.
+/// Most distorted simplex and its energy per weight; -1 if there is none.
 template <int D>
 std::pair<Index, double> worst_here(const SimplexEdges<D>& edges, std::span<const double> u) {
   std::pair<Index, double> worst{-1, -1};
@@ -249,7 +249,7 @@ void BarrierSystem::make_pattern() {
       if (p[k] < n) around[p[k]].insert(around[p[k]].end(), p, p + corners);
   }
   for (Index v = 0; v < n; ++v) {
-    around[v].push_back(v);  // a point of no simplex: the apex of a pyramid that is alone on its rank
+    around[v].push_back(v);  // a point without simplices, such as the apex of a single pyramid on its rank
     std::ranges::sort(around[v]);
     around[v].erase(std::unique(around[v].begin(), around[v].end()), around[v].end());
     diagonal_.push_back(graph_.offset[v] +
@@ -291,8 +291,8 @@ double BarrierSystem::largest_step(std::span<const double> u, std::span<const do
                             : step_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u, direction, least));
 }
 
-// Per simplex with the gradients b_k of its corner functions: g_k = w P b_k, H_kl = w b_k . d2W/dF2 . b_l, in the frame
-// of its stretches.
+// Per simplex with the gradients b_k of its corner functions: g_k = w P b_k and H_kl = w b_k . d2W/dF2 . b_l,
+// in the frame of its stretches.
 template <int D>
 void BarrierSystem::add_simplices(std::span<const double> u, std::span<const double> known,
                                   std::vector<double>& residual, Hessian hessian) {
@@ -344,7 +344,7 @@ void BarrierSystem::add_simplices(std::span<const double> u, std::span<const dou
   }
 }
 
-/// P H P + (I - P) in the owned rows, the unit entries of the size of the others.
+/// P H P + (I - P) in the owned rows, with unit entries scaled to the size of the others.
 template <int D>
 void BarrierSystem::finish_rows(std::vector<double>& residual) {
   using Block = Eigen::Matrix<double, D, D, Eigen::RowMajor>;

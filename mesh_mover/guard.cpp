@@ -26,7 +26,7 @@ bool least_is_worst(int measure) {
   return measure == MeshState::volume_ratio || measure == MeshState::scaled_jacobian;
 }
 
-/// The worst of all ranks, of equal ones the cell with the least number. Collective.
+/// Extreme value over all ranks; ties go to the lowest cell number. Collective.
 void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
   struct Entry {
     double value, number;

@@ -12,14 +12,14 @@
 
 namespace couplet::mesh_mover {
 
-/// One number about the mesh and the cell that has it.
+/// Extreme value of a measure, and its cell.
 struct Worst {
   double value = 0;
   GlobalIndex cell = 0;
   Vec3 place = Vec3::Zero();  ///< [m]
 };
 
-/// How a moved mesh compares with its reference.
+/// Quality of a moved mesh relative to its reference.
 struct MeshState {
   enum Measure { volume_ratio, scaled_jacobian, edge_ratio, angle, area_change, shape_change, n_measures };
   std::array<Worst, n_measures> worst;
@@ -27,20 +27,20 @@ struct MeshState {
 /// Names and units for files and messages, in the order of the measures.
 extern const std::array<const char*, MeshState::n_measures> measure_names;
 
-/// Measures of moved cells: volume over that of the reference; least scaled Jacobian of the corners
-/// [knupp2000], 1 where they are at right angles (in simplices: where all angles are equal); longest over shortest edge; angle
-/// between face normals and the lines of the cells' centres [degree]; f_A = |log2(V/V0)| and
-/// f_AR = |log2(AR/AR0)|, AR = (longest edge)^dim / V [stein2003].
+/// Quality measures of moved cells: volume ratio to the reference; smallest scaled Jacobian of the corners
+/// [knupp2000] (1 for right angles, in simplices for equal angles); ratio of longest to shortest edge; angle
+/// between face normals and the lines of cell centers [degree]; f_A = |log2(V/V0)| and f_AR = |log2(AR/AR0)|
+/// with AR = (longest edge)^dim / V [stein2003].
 class Guard {
  public:
   Guard(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
 
   /// Collective.
   MeshState measure(const mesh::Geometry& moved) const;
-  /// Per local cell, of one measure but the angle.
+  /// Values of a measure per local cell, except for the angle.
   std::vector<double> of_cells(MeshState::Measure measure, const mesh::Geometry& moved) const;
-  /// Sentence about what is beyond a limit; empty if nothing is: inverted cells, cells that cross themselves, and what
-  /// the parameters ask for. Collective.
+  /// Describes violated limits: inverted or self-intersecting cells, and limits of the parameters. Empty if
+  /// there are none. Collective.
   std::string refusal(const mesh::Geometry& moved) const;
 
  private:
@@ -59,10 +59,10 @@ class Guard {
 };
 
 using CellEdge = std::array<int, 2>;
-/// The corner, then the ends of its edges: right-handed in a good cell; -1 in two dimensions.
+/// The corner, then the ends of its edges: right-handed in a valid cell; -1 in 2-D.
 using CellCorner = std::array<int, 4>;
 
-/// Edges and corners of a kind of cell in VTK order. Corners of a pyramid: those of its base, the apex has four edges.
+/// Edges and corners of a cell type in VTK order. A pyramid has no corner at its apex (four edges).
 struct CellCorners {
   std::vector<CellEdge> edges;
   std::vector<CellCorner> corners;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double axis_tolerance = 1e-6, least_cosine = 0.02;
 
-/// The axis a patch is normal to. Collective.
+/// Axis normal to a patch. Collective.
 int normal_axis(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
   std::array<double, 3> off{};
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
@@ -28,7 +28,7 @@ int normal_axis(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const me
 
 }  // namespace
 
-/// Laplacian::Equation: components that hold the same patches share it.
+/// Equation shared by components that hold the same patches.
 struct Laplacian::Equation {
   std::unique_ptr<linalg::SparseMatrix> matrix;
   std::unique_ptr<linalg::LinearSolver> solver;
@@ -103,7 +103,7 @@ void Laplacian::set_kinds(const Parameters& parameters) {
     held_.push_back(held);
     for (int c = 0; c < dim_; ++c) anything_held[c] = anything_held[c] || held[c];
     for_faces(patch, [&](Index f) { patch_of_[f - mesh_.n_interior] = static_cast<int>(p); });
-    // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
+    // On a point of several patches, holding overrides motion, so that corners stay closed.
     for (const Index v : points_of(mesh_, patch))
       for (int c = 0; c < dim_; ++c) {
         PointKind& kind = kind_[v][c];
@@ -131,7 +131,7 @@ void Laplacian::set_kinds(const Parameters& parameters) {
   }
 }
 
-/// A point that is held on one side of periodic patches is held on the other.
+/// Holds points on both sides of periodic patches if one side is held.
 void Laplacian::share_kinds() {
   if (periodic_.empty()) return;
   std::vector<double> fixed(kind_.size() * 3, 0.0);
@@ -143,7 +143,7 @@ void Laplacian::share_kinds() {
       if (fixed[std::size_t(v) * 3 + c] > 0) kind_[v][c] = PointKind::fixed;
 }
 
-// Thesis (2.49): inverse distance, so every weight is positive.
+// Thesis (2.49): inverse-distance weights, which are all positive.
 void Laplacian::set_weights() {
   std::vector<std::vector<Index>> cells(mesh_.points.n_local());
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
@@ -156,8 +156,8 @@ void Laplacian::set_weights() {
     }
     around_.push_row(cells[v]);
   }
-  if (!periodic_.empty())
-    periodic_.add_up(totals, 1);  // the cells around a point are those around all its copies
+  // The cells around a point are those around all its copies.
+  if (!periodic_.empty()) periodic_.add_up(totals, 1);
   for (Index v = 0; v < mesh_.points.n_local(); ++v)
     for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i) weight_[i] /= totals[v];
 }
@@ -181,7 +181,7 @@ void Laplacian::set_coefficients(const std::vector<double>& stiffness) {
     const Vec3 to = interior ? Vec3(g.cell_centre[mesh_.neighbour[f]] + mesh_.shift(f)) : g.face_centre[f];
     const Vec3 d = to - g.cell_centre[p];
     const double e = interior ? (stiffness[p] + stiffness[mesh_.neighbour[f]]) / 2 : stiffness[p];
-    // A mesh that was moved (incremental form) may have faces that lean over: no negative coefficient.
+    // A moved mesh (incremental form) may have inclined faces: avoids negative coefficients.
     const double area = g.face_area[f].norm();
     coefficient_[f] = e * area * area / std::max(g.face_area[f].dot(d), least_cosine * area * d.norm());
   }
@@ -202,7 +202,7 @@ void Laplacian::solve_cells(int c, std::span<const double> prescribed, std::vect
     if (held_[patch_of_[f - mesh_.n_interior]][c])
       b[mesh_.owner[f]] += coefficient_[f] * boundary_value(f, c, prescribed);
   for (Index i = 0; i < n; ++i) x[i] = cells[std::size_t(i) * dim_ + c];
-  // A wall that passes through rest leaves b at round-off: the residual cannot fall below that of A x0.
+  // If a wall passes its rest position, b is at round-off, and the residual cannot fall below that of A x0.
   double scale[2] = {0, 0};
   for (Index i = 0; i < n; ++i) {
     scale[0] += std::pow(equation_[c]->diagonal[i] * x[i], 2);

@@ -8,7 +8,7 @@
 namespace couplet::mesh_mover {
 namespace {
 
-/// How near the worst cell of the run came to being inverted.
+/// Smallest scaled Jacobian of the run.
 class LeastJacobian final : public diagnostics::Diagnostic {
  public:
   explicit LeastJacobian(const Mover& mover) : mover_(mover) {}

@@ -17,45 +17,45 @@
 
 namespace couplet::mesh_mover {
 
-/// From the displacement of what moves to that of every point, on the mesh that it was made with.
+/// Computes the displacement of all points from that of the moving patches, on a fixed reference mesh.
 class MotionMethod {
  public:
   virtual ~MotionMethod() = default;
-  /// `prescribed`: dim values per local point, ghosts current, read on patches whose displacement is given.
-  /// Result: dim values per local point [m], ghosts up to date. Throws SolveFailure. Collective.
+  /// `prescribed`: dim values per local point, ghosts current, read on patches with given displacement.
+  /// Returns dim values per local point [m], ghosts current. Throws SolveFailure. Collective.
   virtual std::vector<double> solve(std::span<const double> prescribed) = 0;
   /// Statistics of the last solve.
   virtual linalg::SolveStatistics last() const = 0;
-  /// State that the next solve starts from. Collective.
+  /// State from which the next solve starts. Collective.
   virtual void save(io::CheckpointWriter& file) const = 0;
   virtual void load(io::CheckpointReader& file) = 0;
 };
 
-/// Stiffness (V / mean V)^-chi of thesis (4.12) per local cell, V the `volumes`. Collective.
+/// Stiffness (V / mean V)^-chi of thesis (4.12) per local cell; V: `volumes`. Collective.
 std::vector<double> stiffness_of(const mesh::Mesh& mesh, std::span<const double> volumes, double stiffening);
 
-/// Laplacian mesh motion, thesis (4.11)-(4.12): div(E grad d) = 0 for the displacement d relative to the
-/// reference mesh, E = V^-chi of the reference volumes, one equation a component, on cells; points by
-/// inverse-distance interpolation.
+/// Laplacian mesh motion, thesis (4.11)-(4.12): div(E grad d) = 0 for the displacement d from the reference
+/// mesh, with E = V^-chi of the reference volumes. Each component is solved on cells and interpolated to
+/// points by inverse distance.
 ///
-/// Solving for the total displacement on the reference mesh, where the thesis adds increments on the last
-/// one, makes the motion independent of the path (no drift over cycles) and the matrix constant: it is
-/// factorised once a run. The flux is the two-point part of (2.57) alone: an M-matrix, so that no point
-/// overshoots its surroundings, which serves a mesh better than second order would.
+/// The total displacement on the reference mesh, instead of the thesis's increments, makes the motion
+/// independent of the path (no drift over cycles) and the matrix constant, so it is factorized once. The flux
+/// is only the two-point part of (2.57). It gives an M-matrix, so no point overshoots its neighbors, which
+/// suits a mesh better than second order.
 ///
-/// Where all that moves moves like one rigid body the displacement is a sum of dim + 1 fields a component,
-/// solved for once, when the first such motion is met.
+/// If all moving points move as one rigid body, the displacement is a sum of dim + 1 fields per component.
+/// These are solved for once, at the first such motion.
 class Laplacian final : public MotionMethod {
  public:
-  /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh
-  /// or a slip patch is not normal to an axis.
+  /// `volumes`: V of (4.12) per local cell; empty for those of the mesh. Throws Error if no patch holds the
+  /// mesh or a slip patch is not normal to an axis.
   Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
             std::span<const double> volumes = {});
 
   std::vector<double> solve(std::span<const double> prescribed) override;
-  /// Local points on patches whose displacement is given.
+  /// Local points on patches with given displacement.
   const std::vector<Index>& interface_points() const { return interface_points_; }
-  /// dim per local cell: the initial guess of the next solve, for checkpoints.
+  /// dim values per local cell: initial guess of the next solve, for checkpoints.
   std::vector<double>& cell_displacement() { return cell_displacement_; }
   const std::vector<double>& cell_displacement() const { return cell_displacement_; }
   linalg::SolveStatistics last() const override { return last_; }
@@ -68,13 +68,13 @@ class Laplacian final : public MotionMethod {
 
  private:
   enum class PointKind : char { interior, fixed, interface };
-  struct Equation;  // matrix and solver of one set of held patches
+  struct Equation;  // matrix and solver for one set of held patches
   void set_kinds(const Parameters& parameters);
   void share_kinds();
   void set_weights();
   void set_coefficients(const std::vector<double>& stiffness);
   double boundary_value(Index face, int component, std::span<const double> prescribed) const;
-  /// One component in the cells / at the points / both, for prescribed values that an AffineFit explains.
+  /// Compute one component in cells, at points, or both for values with an AffineFit.
   void solve_cells(int component, std::span<const double> prescribed, std::vector<double>& cells);
   void interpolate(int component, std::span<const double> prescribed, const std::vector<double>& cells,
                    std::vector<double>& points) const;
@@ -92,19 +92,19 @@ class Laplacian final : public MotionMethod {
   std::vector<Index> interface_points_;
   std::vector<double> coefficient_;  // per flux face: E |S| / (d.n)
   mesh::Csr around_;                 // per local point: local cells around it
-  std::vector<double> weight_;       // with around_.index
+  std::vector<double> weight_;       // per entry of around_.index
   std::array<std::shared_ptr<Equation>, 3> equation_;
   std::vector<double> cell_displacement_;  // dim per local cell; also the next initial guess
   struct Shape {
     std::vector<double> cells, points;  // per local cell and point
   };
   std::array<std::unique_ptr<AffineFit>, 3> fit_;  // of the moved points, per component
-  std::array<std::vector<Shape>, 3> shapes_;       // per component, empty: not needed so far
+  std::array<std::vector<Shape>, 3> shapes_;       // per component, empty if not needed so far
   linalg::SolveStatistics last_;
 };
 
-// The other methods. `volumes`: V of (4.12) per local cell, empty for those of the mesh. All throw Error if no patch holds the
-// mesh, or if a body has no room to rotate. Collective.
+// The other methods. `volumes`: V of (4.12) per local cell, empty for those of the mesh. Throw Error if no
+// patch holds the mesh, or if a body has no room to rotate. Collective.
 std::unique_ptr<MotionMethod> make_pseudo_solid(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                                 const Parameters& parameters,
                                                 std::span<const double> volumes = {});

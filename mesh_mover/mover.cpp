@@ -19,7 +19,7 @@ namespace couplet::mesh_mover {
 
 namespace {
 
-// Largest relative motion of the two sides of periodic patches, as a share of their distance.
+// Largest relative motion of the two sides of periodic patches, over their distance.
 constexpr double most_torn = 1e-9;
 
 mesh::LoadedMesh load_checked(const Parameters& parameters, const app::ParticipantContext& context) {
@@ -98,7 +98,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       std::make_unique<io::Series>(context.output_folder / "quality.csv", columns, context.restart_time);
 }
 
-/// On the geometry as read, or on that of the last accepted step.
+/// Uses the geometry as read, or that of the last accepted step.
 void Mover::make_method() {
   const mesh::Geometry* at = &geometry_;
   if (incremental()) {
@@ -128,13 +128,13 @@ void Mover::make_method() {
 
 coupling::Interface Mover::initialise() {
   coupling::Interface interface = interface_.describe(geometry_);
-  // All ranks say so, whether or not they hold a part of the interface: rank 0 may hold none.
+  // Declared on all ranks, even on rank 0 without a part of the interface.
   if (!interface_patches(parameters_).empty())
     interface.takes = {{"displacement", "m", coupling::Interface::Place::vertices}};
   return interface;
 }
 
-/// A step that is tried again begins with the Laplacian, if the one before was: what folded the mesh may have been a guess of the coupling.
+/// Returns to the Laplacian of the step before in a repeated step: a poor guess may have folded the mesh.
 void Mover::begin_step(const coupling::Step& step) {
   step_ = step;
   if (!laplacian_) return;
@@ -142,7 +142,7 @@ void Mover::begin_step(const coupling::Step& step) {
   parameters_.method = Method::automatic;
 }
 
-/// dim values per local point, of points on patches that move; relative to the mesh of the method.
+/// dim values per local point, for points of moving patches, relative to the mesh of the method.
 std::vector<double> Mover::prescribed(const coupling::Exchange& in) const {
   const int dim = mesh_.dim;
   std::vector<double> values(displacement_.size(), 0.0);
@@ -181,7 +181,7 @@ void Mover::refuse_torn() const {
         name_, step_.time, gap);
 }
 
-/// Says what is wrong with the mesh of displacement_; empty if nothing is. Collective.
+/// Describes a problem of the mesh of displacement_; empty if there is none. Collective.
 std::string Mover::place_and_judge() {
   placed_ = false;
   curved_.put_back(displacement_);
@@ -190,7 +190,7 @@ std::string Mover::place_and_judge() {
   return guard_.refusal(moved_);
 }
 
-/// displacement_ and moved_.
+/// Sets displacement_ and moved_.
 void Mover::move(const coupling::Exchange& in) {
   const std::vector<double> wanted = prescribed(in);
   displacement_ = method_->solve(wanted);
@@ -244,8 +244,8 @@ void Mover::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   file.write(mesh::Entries::points, "displacement", accepted_);
   file.write_scalar("barrier-in-force", parameters_.method == Method::barrier && !laplacian_ ? 1 : 0);
-  if (!incremental())
-    (laplacian_ ? laplacian_ : method_)->save(file);  // else it starts from nothing in each step
+  // The incremental form has no state between steps.
+  if (!incremental()) (laplacian_ ? laplacian_ : method_)->save(file);
 }
 
 void Mover::load(io::CheckpointReader& file) {
@@ -253,7 +253,7 @@ void Mover::load(io::CheckpointReader& file) {
   file.read(mesh::Entries::points, "displacement", accepted_);
   displacement_ = accepted_;
   laplacian_.reset();
-  // A later end looks ahead to more motions: then the barrier from here on, from the mesh as read.
+  // A later end time includes more motions: then the barrier is used from here on, from the mesh as read.
   const bool by_barrier = file.read_scalar("barrier-in-force") > 0,
              begins = chooses_ && ahead_ && !by_barrier;
   const Method wanted = by_barrier || ahead_ ? Method::barrier : Method::automatic;
@@ -296,7 +296,7 @@ void Mover::write_output(double time, int) {
 
 namespace {
 
-// Times of a run at which the prescribed motions are tried: one for five steps, so that looking ahead costs a fifth of moving.
+// Times at which prescribed motions are tested: one per five steps, which costs a fifth of the mesh motion.
 constexpr int most_looks = 40;
 constexpr double looks_per_step = 0.2;
 
@@ -306,7 +306,7 @@ void Mover::tell_choice() const {
   if (parallel::comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason_);
 }
 
-/// Looks ahead: the Laplacian moves the mesh to some times of the run.
+/// Tests the Laplacian at some times of the run.
 void Mover::choose_method(const app::SimulationParameters& simulation) {
   if (!chooses_) {
     if (parameters_.method == Method::automatic && parallel::comm_rank(mesh_.comm) == 0)

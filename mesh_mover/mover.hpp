@@ -20,10 +20,10 @@
 
 namespace couplet::mesh_mover {
 
-/// The mesh mover as a participant: takes "displacement" at the interface vertices, moves other patches as the
-/// case prescribes, and sends the displacement of every point to the fluid, rank to rank. Alone it writes the
-/// moved mesh. In the total form the motion depends on the given displacement alone, so there is no state but
-/// the last accepted motion (a warm start); in the incremental form each step starts from the accepted mesh.
+/// Mesh mover as a participant. Takes "displacement" at the interface vertices, moves other patches as the
+/// case prescribes, and sends the displacement of all points to the fluid, rank to rank. In a run of its own
+/// it writes the moved mesh. The total form has no state except the last accepted motion (a warm start); in
+/// the incremental form each step starts from the accepted mesh.
 class Mover final : public coupling::Participant {
  public:
   Mover(const Parameters& parameters, const app::ParticipantContext& context);
@@ -36,15 +36,15 @@ class Mover final : public coupling::Participant {
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  /// Smallest scaled Jacobian of the run; none before it was looked at.
+  /// Smallest scaled Jacobian of the run; empty before the first check.
   const std::optional<double>& least_jacobian() const { return least_jacobian_; }
 
   const mesh::Mesh& mesh() const { return mesh_; }
   /// Geometry of the mesh as read.
   const mesh::Geometry& geometry() const { return geometry_; }
-  /// dim values per local point, of the last solve [m].
+  /// dim values per local point from the last solve [m].
   const std::vector<double>& displacement() const { return displacement_; }
-  /// Measures of the mesh of the last solve. Collective.
+  /// Quality measures of the mesh of the last solve. Collective.
   MeshState state();
 
  private:
@@ -57,7 +57,7 @@ class Mover final : public coupling::Participant {
   std::string place_and_judge();
   std::vector<double> prescribed(const coupling::Exchange& in) const;
   void refuse_torn() const;
-  /// The geometry for displacement_, made once a motion. Collective.
+  /// Computes the geometry for displacement_, once per motion. Collective.
   void place();
 
   std::string name_;
@@ -65,24 +65,24 @@ class Mover final : public coupling::Participant {
   const mesh::Mesh mesh_;
   const mesh::Geometry geometry_;
   mesh::PeriodicPoints periodic_;
-  std::unique_ptr<mesh::Geometry> base_;  // incremental: that of the last step
+  std::unique_ptr<mesh::Geometry> base_;  // incremental: geometry of the last step
   Guard guard_;
   CurvedSlide curved_;
   MovingPatches moving_;
   std::unique_ptr<MotionMethod> method_;
   bool chooses_;                             // method: auto
   bool ahead_ = false;                       // a prescribed motion of the run needs the barrier
-  std::string reason_;                       // why the barrier
-  std::unique_ptr<MotionMethod> laplacian_;  // aside while the barrier moves a step that is not accepted yet
+  std::string reason_;                       // why it uses the barrier
+  std::unique_ptr<MotionMethod> laplacian_;  // kept while the barrier moves a step that is not accepted yet
   coupling::InterfaceMap interface_;
   std::unique_ptr<coupling::MeshMotionSink> sink_;
   coupling::Step step_;
   std::vector<double> displacement_, accepted_;
-  bool placed_ = false;  // the next one is that of displacement_
+  bool placed_ = false;  // moved_ corresponds to displacement_
   mesh::Geometry moved_;
   std::unique_ptr<io::Series> quality_;
   std::optional<double> least_jacobian_;     // of the run
-  std::unique_ptr<io::FieldWriter> fields_;  // alone only
+  std::unique_ptr<io::FieldWriter> fields_;  // only without a fluid
 };
 
 }  // namespace couplet::mesh_mover

@@ -13,16 +13,16 @@
 
 namespace couplet::mesh_mover {
 
-/// How the points of a patch move.
+/// Motion of the points of a patch.
 enum class BoundaryMotion {
-  interface,  ///< with the displacement the coupler gives
+  interface,  ///< with the displacement from the coupler
   moving,     ///< as the case prescribes
-  fixed,      ///< not at all
+  fixed,      ///< at rest
   slip,       ///< along the plane of the patch
-  free,       ///< with what is inside
-  periodic,   ///< as its partner, which is what lies beyond it
+  free,       ///< with the adjacent interior
+  periodic,   ///< like its partner, which continues the mesh beyond it
 };
-/// The displacement of these is given.
+/// True if the displacement is given.
 inline bool is_given(BoundaryMotion m) {
   return m == BoundaryMotion::interface || m == BoundaryMotion::moving;
 }
@@ -36,20 +36,20 @@ struct Boundary {
 enum class Method {
   laplacian,     ///< thesis (4.11)
   pseudo_solid,  ///< thesis (4.10)
-  rotations,     ///< Laplacian of the rotations of the surface and of what is left
-  barrier,       ///< least distortion, infinite for a flat cell
-  automatic,     ///< Laplacian, as long as it gives a valid mesh; barrier where it would not
+  rotations,     ///< Laplacian of the surface's rotations and of the remainder
+  barrier,       ///< smallest distortion, infinite for a flat cell
+  automatic,     ///< Laplacian while it gives a valid mesh, else barrier
 };
-/// Mesh that the displacement is relative to.
+/// Mesh to which the displacement refers.
 enum class Form {
   automatic,
   total,        ///< the reference mesh: no drift
-  incremental,  ///< the mesh of the last step: the thesis's
+  incremental,  ///< the mesh of the last step, as in the thesis
 };
-/// Mesh whose volumes (4.12) takes.
+/// Mesh that provides the volumes of (4.12).
 enum class StiffeningVolumes { reference, current };
 
-/// Limits of a moved mesh; 0 or infinity allows anything that is not inverted.
+/// Limits of a moved mesh; 0 or infinity allows any cell that is not inverted.
 struct GuardParameters {
   double smallest_scaled_jacobian = -1;
   std::optional<double> largest_edge_ratio, largest_angle, largest_area_change, largest_shape_change;
@@ -71,7 +71,7 @@ struct Parameters {
   StiffeningVolumes stiffening_volumes = StiffeningVolumes::reference;
   /// Pseudo-solid only.
   double poisson_ratio = 0;
-  /// Smallest volume a cell may keep, as a fraction of its reference volume.
+  /// Smallest allowed volume of a cell, relative to the reference.
   double smallest_volume_ratio = 0.0;
   GuardParameters guard;
   std::map<std::string, Boundary> boundaries;

@@ -63,10 +63,10 @@ std::vector<double> MovingPatches::velocities(double time, double dt) const {
 
 namespace {
 
-// Largest error of the fit, over the largest value. No point of the mesh moves by more than its boundary does, so
-// this is the largest error too.
+// Largest relative error of the fit. No point moves by more than its boundary, so it bounds the error
+// everywhere.
 constexpr double round_off = 1e-12;
-// Extent of the points in a direction, squared and relative to the largest, below which they have none.
+// Squared relative extent of the points below which a direction has none.
 constexpr double least_extent = 1e-10;
 
 }  // namespace
@@ -107,7 +107,7 @@ std::optional<AffineFit::Coefficients> AffineFit::operator()(std::span<const dou
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   const double a = sums[0] / n_;
   const Vec3 b = inverse_ * Vec3(sums[1], sums[2], sums[3]);
-  std::array<double, 3> largest{};  // of the values, of what is left, of what a alone leaves
+  std::array<double, 3> largest{};  // of the values, of the residual, of that with only a
   for (const Index v : points_) {
     largest[0] = std::max(largest[0], std::abs(value(v)));
     const double left = value(v) - a;
@@ -122,11 +122,11 @@ std::optional<AffineFit::Coefficients> AffineFit::operator()(std::span<const dou
 
 namespace {
 
-// 1 - |cosine| between a face and the patch's mean normal up to which it is flat.
+// Largest 1 - |cosine| between a face and the patch's mean normal for a flat patch.
 constexpr double flat = 1e-9;
 
-/// In planes of one direction; parts may face each other (the two sides of a slice), so that their face vectors add up to nothing.
-/// Collective.
+/// True if all faces are parallel. Parts may face each other (two sides of a slice), so that their face
+/// vectors cancel. Collective.
 bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
   Tensor3 sum = Tensor3::Zero();
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
@@ -134,8 +134,8 @@ bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh:
     sum += area * area.transpose() / area.norm();
   }
   MPI_Allreduce(MPI_IN_PLACE, sum.data(), 9, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  const Vec3 normal =
-      Eigen::SelfAdjointEigenSolver<Tensor3>(sum).eigenvectors().col(2);  // of the largest value
+  // Eigenvector of the largest eigenvalue.
+  const Vec3 normal = Eigen::SelfAdjointEigenSolver<Tensor3>(sum).eigenvectors().col(2);
   double off = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     off = std::max(off, 1 - std::abs(geometry.face_area[f].normalized().dot(normal)));

@@ -12,7 +12,7 @@
 
 namespace couplet::mesh_mover {
 
-/// Calls use(face) for the faces of a patch, copies of those of other ranks included.
+/// Calls use(face) for the faces of a patch, including ghost faces.
 template <class Use>
 void for_faces(const mesh::Patch& patch, const Use& use) {
   for (Index f = patch.first; f < patch.first + patch.count; ++f) use(f);
@@ -21,15 +21,15 @@ void for_faces(const mesh::Patch& patch, const Use& use) {
 /// Local points of these faces, ascending.
 std::vector<Index> points_of(const mesh::Mesh& mesh, const mesh::Patch& patch);
 
-/// Patches of type `moving`, which the case moves.
+/// Patches of type `moving`, with motion prescribed by the case.
 class MovingPatches {
  public:
   /// Keeps references.
   MovingPatches(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
   bool empty() const { return patches_.empty(); }
-  /// Into `values`, dim per local point: the displacement of their points from the mesh as read [m].
+  /// Sets the displacement of their points from the mesh as read [m] in `values`, dim per local point.
   void displace(double time, std::vector<double>& values) const;
-  /// dim values per local point, zero elsewhere; empty without such patches. Collective.
+  /// Velocities, dim values per local point, zero elsewhere; empty without such patches. Collective.
   std::vector<double> velocities(double time, double dt) const;
 
  private:
@@ -43,19 +43,19 @@ class MovingPatches {
   std::vector<Moving> patches_;
 };
 
-/// Values at some points of a mesh, a + b . (x - centre): the components of the displacement of a rigid body,
-/// whatever the size of its motion, are of this kind.
+/// Least-squares fit of point values by a + b . (x - centre), as for the displacement components of a rigid
+/// body, however large its motion.
 class AffineFit {
  public:
   static constexpr int most = 4;
   using Coefficients = std::array<double, most>;  // a, b_x, b_y, b_z
 
-  /// `points`: local points, ghosts too. Collective.
+  /// `points`: local points including ghosts. Collective.
   AffineFit(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> points);
-  /// Least squares of component `component` of `values` (dim per local point). Nothing if it leaves more than
-  /// round-off at any point. Collective.
+  /// Fits component `component` of `values` (dim per local point). Empty if the residual exceeds round-off at
+  /// some point. Collective.
   std::optional<Coefficients> operator()(std::span<const double> values, int component) const;
-  /// The function that has coefficient k alone, at a point.
+  /// Basis function of coefficient k at a point.
   double shape(int k, const Vec3& x) const { return k == 0 ? 1.0 : x[k - 1] - centre_[k - 1]; }
   int count() const { return mesh_.dim + 1; }
 
@@ -65,22 +65,22 @@ class AffineFit {
   std::vector<Index> points_;
   double n_ = 0;
   Vec3 centre_ = Vec3::Zero();
-  Tensor3 inverse_ = Tensor3::Zero();  // of sum (x - centre)(x - centre)^T where the points extend, else 0
+  Tensor3 inverse_ = Tensor3::Zero();  // of sum (x - centre)(x - centre)^T in directions of extent, else 0
 };
 
-/// Keeps the points of patches that slide and are not flat on them: a motion along the tangent leaves a curved
-/// patch by d^2 / (2 R). Each such point is taken back to the nearest place of the patch as the reference mesh has
-/// it (its segments or triangles). Points that another patch holds or moves are left alone.
+/// Keeps the points of curved sliding patches on them, because tangential motion leaves a curved patch by
+/// d^2/(2 R). Each such point is moved to the nearest place of the patch in the reference mesh (segments or
+/// triangles). Points that another patch holds or moves are not changed.
 class CurvedSlide {
  public:
   /// Collective.
   CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
   bool empty() const { return patches_.empty(); }
-  /// `displacement`: dim values per local point [m], ghosts current. Gives the same.
+  /// Corrects `displacement`: dim values per local point [m], ghosts current.
   void put_back(std::vector<double>& displacement) const;
 
  private:
-  struct Part {  // a segment or triangle within `radius` of `centre`
+  struct Part {  // segment or triangle within `radius` of `centre`
     Vec3 a, b, c, centre;
     double radius;
   };

@@ -36,12 +36,12 @@ std::vector<elastic::LameConstants> lame_of(const mesh::Mesh& mesh, const Parame
   return lame;
 }
 
-/// Mesh motion by the equilibrium of an elastic body without loads, thesis (4.10), (4.12): div sigma = 0,
-/// E = V^-chi, nu given, by the symmetric operator of common/elasticity (its energy has no negative modes on
-/// distorted cells); points by its own vertex values. Patches that slide may lie along any plane.
+/// Mesh motion by equilibrium of an elastic body without loads, thesis (4.10), (4.12): div sigma = 0, E =
+/// V^-chi, given nu. Uses the symmetric operator of common/elasticity, whose energy has no negative modes on
+/// distorted cells, and its vertex values. Sliding patches may have any plane.
 class PseudoSolid final : public MotionMethod {
  public:
-  /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh.
+  /// `volumes`: V of (4.12) per local cell; empty for the mesh's. Throws Error if no patch holds the mesh.
   PseudoSolid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
               std::span<const double> volumes)
       : mesh_(mesh),
@@ -61,7 +61,7 @@ class PseudoSolid final : public MotionMethod {
       for (const Index v : points_of(mesh, patch)) given_point_[v] = 1;
     }
     if (!held) throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
-    // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
+    // On a point of several patches, holding overrides motion, so that corners stay closed.
     for (const mesh::Patch& patch : mesh.patches)
       if (parameters.boundaries.at(patch.name).motion == BoundaryMotion::fixed)
         for (const Index v : points_of(mesh, patch)) given_point_[v] = 0;
@@ -107,8 +107,8 @@ class PseudoSolid final : public MotionMethod {
 
  private:
   void make_solver(const linalg::LinearOptions& options) {
-    const bool joined =
-        parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty());  // its points have nodes on other ranks
+    // Its points have nodes on other ranks.
+    const bool joined = parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty());
     if (options.method == linalg::LinearMethod::direct_symmetric && dim_ == 2 && !joined) {
       matrix_ = std::make_unique<linalg::SparseMatrix>(elastic::symmetric_matrix(mesh_, *rows_, {}));
       linalg::LinearOptions of_factors;
@@ -128,7 +128,7 @@ class PseudoSolid final : public MotionMethod {
           factors_->solve(r, z);
         });
   }
-  /// Displacement of what is held and moved, a known column each; the motion is taken from `prescribed`.
+  /// Displacement of held and moved columns; the motion is taken from `prescribed`.
   std::vector<double> known(std::span<const double> prescribed) const {
     std::vector<double> values(rows_->n_known() * dim_, 0.0);
     const std::vector<Index>& points = rows_->constraints().points();

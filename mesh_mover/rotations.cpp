@@ -15,11 +15,10 @@ namespace couplet::mesh_mover {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
-// r2 / r1 below which nothing can turn in between.
+// Ratio r2/r1 below which there is no room to rotate.
 constexpr double least_room = 1.05;
 
-/// Rotation vector of the rotation next to M; of all that mean it (the angle plus whole turns) the one next to
-/// `before`.
+/// Vector of the rotation nearest to M; of all equivalent ones (plus whole turns) the nearest to `before`.
 Vec3 rotation_vector(const Tensor3& m, const Vec3& before) {
   const Eigen::JacobiSVD<Tensor3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Tensor3 sign = Tensor3::Identity();
@@ -36,18 +35,17 @@ Vec3 rotation_vector(const Tensor3& m, const Vec3& before) {
   return angle * axis;
 }
 
-/// Mesh motion that turns the surroundings of a body with it. Each patch that moves is a body with the centre c
-/// (mean of its points) and the best fit R(theta) of its rotation [kabsch1976]; around it
+/// Mesh motion that rotates the surroundings of a body with it. Each moving patch is a body with the center c
+/// (mean of its points) and the best-fit rotation R(theta) [kabsch1976]. Around it
 ///   x' = c + R(s theta) (x - c) + d(x),   s = 1 for r <= r1,  ln(r2/r) / ln(r2/r1),  0 for r >= r2
-/// with r = |x - c|, r1 the radius of the body, r2 that to the nearest point that is held or of another body. A
-/// rotation by s(r) alone changes no volume, whatever its angle: the cells between the radii are sheared, evenly in
-/// this s. d, by the Laplacian of thesis (4.11), (4.12), is what is left of the motion: the translation and
-/// what bends.
+/// with r = |x - c|, r1 the radius of the body and r2 that of the nearest fixed or other point. A rotation by
+/// s(r) preserves volume for any angle and shears the cells between the radii evenly. The Laplacian of thesis
+/// (4.11), (4.12) adds d for the rest: translation and deformation.
 ///
-/// Angles beyond half a turn go on from those of the solve before.
+/// Angles beyond half a turn continue from the previous solve.
 class Rotations final : public MotionMethod {
  public:
-  /// Throws Error where a body has no room to turn.
+  /// Throws Error if a body has no room to rotate.
   Rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
             std::span<const double> volumes)
       : mesh_(mesh), geometry_(geometry), dim_(mesh.dim), rest_(mesh, geometry, parameters, volumes) {
@@ -159,7 +157,7 @@ class Rotations final : public MotionMethod {
     const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
     return {0, 0, angle + turn * std::round((body.theta.z() - angle) / turn)};
   }
-  /// Displacement by the rotations alone, dim values a local point.
+  /// Displacement by the rotations only, dim values per local point.
   std::vector<double> turned() const {
     std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
     for (const Body& body : bodies_) {

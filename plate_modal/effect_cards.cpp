@@ -17,7 +17,7 @@ std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool is_dynamic(const S& s) { return s.parameters.analysis == Parameters::Analysis::dynamic; }
 std::string dynamic_asked_by(const S& s) { return when(is_dynamic(s), "analysis: dynamic"); }
 
-/// Shortest contact over the whole of a plate and the steps in it; modes of a file tell it in a run.
+/// Shortest contact with a whole plate and the steps in it; modes from a file report it in a run.
 std::string contact_asked_by(const S& s) {
   const Parameters& p = s.parameters;
   if (!p.contact) return "";
@@ -31,7 +31,7 @@ std::string contact_asked_by(const S& s) {
                      shortest / s.time_step);
 }
 
-/// Effect that a run judges without having it.
+/// Card of an effect that a run judges but does not include.
 PlateCard left_out(const char* name, const char* key, const char* judged_by) {
   return {name, key, [](const S&) { return std::string(); }, {}, judged_by};
 }

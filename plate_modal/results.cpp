@@ -32,7 +32,7 @@ std::array<double, 3> nearest_in_triangle(const Vec3& a, const Vec3& b, const Ve
   return {va / sum, vb / sum, vc / sum};
 }
 
-/// The whole surface on rank 0 as a mesh to be written; the other ranks write nothing of it.
+/// The whole surface on rank 0 as a mesh for output; other ranks write none of it.
 mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& whole) {
   const modes::ModalModel none;
   const modes::ModalModel& model = parallel::comm_rank(comm) == 0 ? whole : none;
@@ -65,7 +65,7 @@ Vec3 place_in(const modes::ModalModel& model, const SurfacePlace& place) {
   return x;
 }
 
-/// Logs the size, which shows at once a mesh in other lengths.
+/// Logs the size, which reveals a mesh in another unit.
 void tell_size(const Structure& structure) {
   const modes::ModalModel& model = structure.model();
   const Vec3 side = modes::extent_of(model);

@@ -11,17 +11,17 @@
 
 namespace couplet::plate {
 
-/// A place of the surface: the corners of the face it lies on and their weights.
+/// Place on the surface: the corners of its face and their weights.
 struct SurfacePlace {
   std::vector<Index> vertices;
   std::vector<double> weights;
-  double distance = 0;  ///< from the place asked for [m]
+  double distance = 0;  ///< from the requested place [m]
 };
-/// The nearest place of a surface, with linear weights in triangles (a quadrilateral is two of them).
+/// Nearest place of a surface, with linear weights in triangles (a quadrilateral is split into two).
 SurfacePlace nearest_place(const modes::ModalModel& model, const Vec3& point);
 
-/// The files of a structure: frequencies.csv, modal.csv, energies.csv, contact.csv, probes.csv, the moving
-/// surface and the shapes of its modes. Opened when first written to; nothing without an output folder.
+/// Writes the files of a structure: frequencies.csv, modal.csv, energies.csv, contact.csv, probes.csv, the
+/// moving surface and the mode shapes. Each is opened on first use; without an output folder there are none.
 class PlateResults final {
  public:
   explicit PlateResults(const Structure& structure);
@@ -41,8 +41,7 @@ class PlateResults final {
 
   const Structure& structure_;
   bool active_, root_;
-  mesh::Mesh
-      surface_;  // the whole surface on rank 0, the places of its points being the vertices of the model
+  mesh::Mesh surface_;  // the whole surface on rank 0; its points are the vertices of the model
   std::vector<SurfacePlace> probes_;
   std::optional<io::FieldWriter> fields_;
   std::optional<io::Series> modal_, energies_, contact_, probe_series_, static_;

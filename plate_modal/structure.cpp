@@ -16,7 +16,7 @@
 namespace couplet::plate {
 namespace {
 
-/// A direction says where to, not how far.
+/// Normalizes directions.
 Parameters with_unit_directions(Parameters p) {
   p.placement.x.stableNormalize();
   p.placement.y.stableNormalize();
@@ -27,8 +27,8 @@ Parameters with_unit_directions(Parameters p) {
   return p;
 }
 
-/// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
-/// in the new scene is where its balance starts from.
+/// A restart may remove or move the seat, or change gravity. The energy balance then starts from the energy
+/// in the new case.
 void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState& state) {
   Energies& kept = state.energies;
   const Energies now = oscillators.start(state.q, state.v).energies;
@@ -82,7 +82,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
 
 Structure::~Structure() = default;
 
-/// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
+/// Rejects an initial penetration of the seat, because its springs would store energy.
 void Structure::refuse_wound_springs() const {
   double size = 0;
   for (const Vec3& x : surface_.centres()) size = std::max(size, (x - surface_.centres().front()).norm());
@@ -95,7 +95,7 @@ void Structure::refuse_wound_springs() const {
       place.depth, place.centre.x(), place.centre.y(), place.centre.z());
 }
 
-/// The seat, and what a step should be for it.
+/// Creates the seat and recommends a step size for it.
 void Structure::make_contact() {
   const Parameters& p = parameters_;
   contact_ = std::make_unique<Contact>(surface_, *p.contact, p.placement.normal(),
@@ -147,7 +147,7 @@ coupling::Interface Structure::initialise() {
   return interface;
 }
 
-/// A scheme that has made more energy than the structure ever had moves something else than the structure.
+/// Throws if the scheme created more energy than the structure ever had.
 void Structure::refuse_made_energy() const {
   const double made = trial_.energies.mismatch(),
                had = std::max(trial_.energies.largest, trial_.energies.own());
@@ -161,7 +161,7 @@ void Structure::refuse_made_energy() const {
           : "a smaller 'simulation.time-step'");
 }
 
-/// Rank 0's forces on the faces, 3 each, on every rank; empty if nobody gives any.
+/// Distributes rank 0's forces on the faces, 3 each, to all ranks; empty if there are none.
 std::vector<double> Structure::received(const coupling::Exchange& in, const char* name) const {
   const auto given = in.find(name);
   std::vector<double> force = given == in.end() ? std::vector<double>{} : given->second;
@@ -179,7 +179,7 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   surface_.add_load(received(in, "viscous-force"), fluid);
   pressure_acts_ = false;
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
-    // A partner's load is its mean over the step: that of the middle. Schemes that solve later continue it from the middle of the last step.
+    // A partner's load is its mean over the step, valid at mid-step; schemes that solve later extrapolate it.
     const time::TimeScheme scheme = parameters_.time_scheme.type;
     const bool looks_back = time::uses_acceleration(scheme) || time::uses_old_level(scheme);
     const auto load = [&](double after, std::span<double> total) {
@@ -213,7 +213,7 @@ void Structure::add_pressure(double t, std::span<double> load) {
   pressure_acts_ = pressure_acts_ || std::ranges::any_of(load, [](double f) { return f != 0; });
 }
 
-/// q = Q / omega^2 of each mode; beside it K u = f on rank 0.
+/// q = Q/omega^2 of each mode; K u = f on rank 0.
 void Structure::solve_static(double t, std::span<const double> fluid) {
   std::vector<double> load(fluid.size(), 0);
   if (pressure_) add_pressure(t, load);
@@ -221,7 +221,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
     trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (surface_.omega()[m] * surface_.omega()[m]);
     trial_.v[m] = 0;
   }
-  // Equal loads give the same answer again.
+  // Equal loads give the same result.
   const bool first = !repeats_;
   repeats_ = trial_.q == solved_ && trial_.q == state_.q;
   if (repeats_) {

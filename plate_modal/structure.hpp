@@ -11,11 +11,11 @@ namespace couplet::plate {
 
 class PlateResults;
 
-/// A structure by superposition of its modes, as a participant: takes the forces on the faces of its surface,
-/// gives displacement and velocity of its vertices.
+/// Structure by modal superposition as a participant. Takes forces on the faces of its surface, gives
+/// displacement and velocity of its vertices.
 class Structure final : public coupling::Participant {
  public:
-  /// `raw`: mid-surface on rank 0 in place of the mesh that the parameters name. Collective.
+  /// `raw`: mid-surface on rank 0 instead of the mesh in the parameters. Collective.
   Structure(Parameters parameters, PlateContext context, const mesh::RawMesh* raw = nullptr);
   ~Structure() override;
 
@@ -40,7 +40,7 @@ class Structure final : public coupling::Participant {
   const modes::ModalModel& model() const { return surface_.model(); }
   const Contact* contact() const { return contact_.get(); }
   const std::optional<Deflection>& deflection() const { return deflection_; }  ///< static analysis
-  bool repeats() const { return repeats_; }  ///< a static analysis has found the answer of the step before
+  bool repeats() const { return repeats_; }  ///< the static solution of the previous step still holds
   const std::vector<double>& displacement() const { return displacement_; }  ///< [m], 3 a vertex
 
  private:
@@ -58,20 +58,20 @@ class Structure final : public coupling::Participant {
   PlateContext context_;
   Built built_;
   Surface surface_;
-  std::unique_ptr<Contact> contact_;  // none: no seat in this scene
+  std::unique_ptr<Contact> contact_;  // nullptr without a seat
   std::unique_ptr<Oscillators> oscillators_;
-  std::unique_ptr<PressureLoad> pressure_;  // none: no pressures of the case
+  std::unique_ptr<PressureLoad> pressure_;  // nullptr without prescribed pressures
   std::vector<double> gravity_;
   ModalState state_, trial_;
   // Displacements of the vertices [m], 3 each: at the accepted time, and in the last solve().
   std::vector<double> displacement_, trial_displacement_;
-  std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex
+  std::vector<double> direct_;  // static deflection of the plate itself, 3 per vertex
   std::optional<Deflection> deflection_;
-  std::vector<double> solved_;  // static analysis: the modes that direct_ and deflection_ belong to
+  std::vector<double> solved_;  // static analysis: modal coordinates of direct_ and deflection_
   bool repeats_ = false;
   coupling::Step step_;
-  std::vector<double> fluid_force_;  // pressure forces of the last solve(), 3 a face
-  bool pressure_acts_ = false;       // a prescribed pressure was not 0 somewhere in the last solve()
+  std::vector<double> fluid_force_;  // pressure forces of the last solve(), 3 per face
+  bool pressure_acts_ = false;       // a prescribed pressure was not zero in the last solve()
   std::unique_ptr<PlateResults> results_;
 };
 

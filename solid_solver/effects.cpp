@@ -93,7 +93,7 @@ std::span<const SolidCard> solid_effect_cards() { return cards; }
 
 namespace {
 
-/// A ramp of so many periods leaves 1 % of overshoot.
+/// Number of periods in a ramp that leaves 1 % of overshoot.
 constexpr double slow = 30;
 constexpr int samples = 400;
 
@@ -114,8 +114,8 @@ std::vector<config::ExpressionText> loads_of(const SolidParameters& p) {
   return loads;
 }
 
-/// Shortest time in which a load goes through its range [s]; infinity where nothing changes. A load that is there from the
-/// first moment on is no change: what waits for it is at rest under it.
+/// Shortest time in which a load passes through its range [s]; infinity if none changes. A load present from
+/// the start is no change, because the body starts at rest under it.
 double time_of_change(const std::vector<config::ExpressionText>& loads, const Vec3& at, double end) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& text : loads) {
@@ -176,8 +176,8 @@ std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& p, 
 }
 
 diagnostics::ExpectedCost expected_cost(const SolidParameters& p, const mesh::MeshFacts& mesh) {
-  // Measured in 3-D: 83 MB with 640 cells (factors, which grow as cells^(4/3)), 61 and 143 MB with 5120 and 40960
-  // (multigrid); in 2-D 54 and 156 MB with 1024 and 16384.
+  // Measured in 3-D: 83 MB with 640 cells (factors, which grow as cells^(4/3)), 61 and 143 MB with 5120 and
+  // 40960 (multigrid); in 2-D 54 and 156 MB with 1024 and 16384.
   const double cells = double(mesh.cells);
   const double flat = 6650 * cells,
                volume = cells <= 1500 ? 35e6 * std::pow(cells / 640, 4.0 / 3) : 2290 * cells;

@@ -11,10 +11,10 @@
 
 namespace {
 
-// Of a coupling over each step, each of which solves once.
+// Passes of a coupling per step, with one solve each.
 constexpr double passes = 3;
 
-/// About as many solves with one matrix as the run will make.
+/// Approximate number of solves with one matrix in the run.
 double solves_of(const couplet::app::ParticipantContext& context) {
   const double steps = std::max(1.0, std::round(context.simulation.end_time / context.simulation.time_step));
   return context.coupled ? passes * steps : steps;

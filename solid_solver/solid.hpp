@@ -10,7 +10,7 @@
 
 namespace couplet::solid {
 
-/// An elastic solid as a participant: its parts, and in which order they are asked.
+/// Elastic solid as a participant. Owns its parts and calls them in order.
 class Solid final : public coupling::Participant {
  public:
   /// Collective over mesh.comm.

@@ -18,9 +18,9 @@
 
 namespace couplet::solid {
 
-/// A solid that conducts heat and does not deform (`analysis: thermal`): no elastic operator is built.
-/// Writes the fields `temperature` and `cell-temperature`, probes.csv, and heat.csv with the heat through
-/// each patch.
+/// Solid that conducts heat and does not deform (`analysis: thermal`), without an elastic operator. Writes
+/// the fields `temperature` and `cell-temperature`, probes.csv, and heat.csv with the heat flow through each
+/// patch.
 class ThermalSolid final : public coupling::Participant {
  public:
   /// Collective over mesh.comm.

@@ -10,7 +10,7 @@ namespace {
 using P = ElementParameters;
 using Card = diagnostics::EffectCard<P>;
 
-/// Reason that a tank has the effect, if it is `on`. Other elements have one effect each.
+/// Reason why a tank has the effect, if it is `on`. Other elements have one effect each.
 std::string when(const P& p, bool on, const char* reason) {
   return p.type == ElementParameters::Type::tank && on ? reason : "";
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A participant that costs nothing but its data: n vertices on a sheet, three numbers each way, y_i = c_i - g_i x_i.
-// Usage: dummy one|two VERTICES [changing]   (with the word g is another one in each step, so that what an accelerator has
-// learnt helps little)   or   dummy plain VERTICES on two processes: the same bytes to and fro by MPI alone.
+// A participant without computations: n vertices on a sheet, three numbers in each direction, y_i = c_i - g_i
+// x_i. Usage: dummy one|two VERTICES [changing], where `changing` varies g in each step, to defeat an
+// accelerator; or dummy plain VERTICES on two processes, which sends the same bytes by MPI only.
 #include <chrono>
 #include <cmath>
 #include <cstdio>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One side of a wall of about VERTICES vertices on any number of processes: a wavy sheet of quadrilaterals, other ones on
-// each side, each process with its block. `fluid` gives forces at faces for displacements at vertices, `solid` the reverse.
-// Usage: sheet fluid|solid VERTICES   or   sheet plain VERTICES on an even number of processes: the same bytes straight from the
-// one half to the other and back. Prints when the first step began, counted from the start of the job, and the time of a step.
+// One side of a wall of about VERTICES vertices on any number of processes: a wavy sheet of quadrilaterals,
+// different on each side, one block per process. `fluid` gives forces at faces for displacements at vertices,
+// `solid` the reverse. Usage: sheet fluid|solid VERTICES, or sheet plain VERTICES on an even number of
+// processes, which sends the same bytes between the halves. Prints start of the first step and time per step.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -77,7 +77,7 @@ struct Sheet {
   }
 };
 
-/// What a pass takes to and fro, each process with one of the other half.
+/// Sends and receives the data of a pass; each process has a partner in the other half.
 int plain(std::int64_t n) {
   int rank = 0, ranks = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
   job.faces(sheet.centres, sheet.areas, sheet.first, sheet.corners);
   (fluid ? job.takes("displacement", "m", COUPLET_VERTICES) : job.takes("force", "N", COUPLET_FACES));
   (fluid ? job.gives("force", "N", COUPLET_FACES) : job.gives("displacement", "m", COUPLET_VERTICES));
-  // Linear in place, so that what comes can be checked: displacement (z, x, y) of the place, force its area times (1, 2, 3).
+  // Linear in position, for checking: displacement (z, x, y) of the position, force area times (1, 2, 3).
   std::vector<double> answer;
   const std::vector<double>& from = fluid ? sheet.areas : sheet.xyz;
   for (std::size_t i = 0; i < from.size(); i += 3)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// solvers matrix FOLDER HOW | solvers solid FOLDER HOW case.yaml [--set ...]: one system, one solver (system.hpp).
+// Usage: solvers matrix FOLDER HOW | solvers solid FOLDER HOW case.yaml [--set ...]. See system.hpp.
 #include <cstdio>
 #include <cstring>
 

@@ -13,7 +13,7 @@ namespace couplet::benchmark {
 using namespace linalg;
 namespace {
 
-// One solve takes less than what the clock of processor time tells apart.
+// Number of repetitions, because one solve is shorter than the resolution of the CPU clock.
 constexpr int repeated = 10;
 
 LinearMethod method_of(const std::string& name) {
@@ -37,7 +37,7 @@ Mat read_matrix(MPI_Comm comm, const std::string& path, PetscInt rows) {
   return a;
 }
 
-/// The rows as the program makes them: triplets whose places are fixed. `value`: the entries in this order.
+/// Rows as Couplet builds them: triplets at fixed positions. `value`: entries in this order.
 SparseMatrix program_matrix(MPI_Comm comm, Mat a, std::vector<double>& value) {
   PetscInt first = 0, end = 0;
   petsc_check(MatGetOwnershipRange(a, &first, &end));
@@ -60,7 +60,7 @@ SparseMatrix program_matrix(MPI_Comm comm, Mat a, std::vector<double>& value) {
   return matrix;
 }
 
-/// `now`, `made`: entries of the matrix that is solved and of the one that the preconditioner is made from.
+/// `now`, `made`: entries of the matrix to solve, and of that for the preconditioner.
 Result solve_by_program(const System& system, SparseMatrix& matrix, std::span<const double> now,
                         std::span<const double> made, LinearMethod method) {
   Result result;

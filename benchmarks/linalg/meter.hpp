@@ -13,19 +13,19 @@
 
 namespace couplet::benchmark {
 
-/// Processor time of all ranks together and the memory that is added from its making on.
+/// CPU time of all ranks together, and the memory added since construction.
 class Meter {
  public:
   explicit Meter(MPI_Comm comm) : comm_(comm) {
     malloc_trim(0);
-    std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins here
+    std::ofstream("/proc/self/clear_refs") << "5";  // reset the peak
     megabytes_ = of_process("VmRSS:");
     MPI_Barrier(comm);
     seconds_ = now();
   }
-  /// Of all ranks [s].
+  /// CPU time of all ranks [s].
   double seconds() const { return parallel::sum(comm_, now() - seconds_); }
-  /// Of all ranks [MB]: at the most, and what is left of it.
+  /// Largest additional memory of all ranks [MB].
   double peak() const { return parallel::sum(comm_, of_process("VmHWM:") - megabytes_); }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace couplet::benchmark {
 
-/// What ComponentMultigrid does, by a preconditioner of PETSc for each component (its options without a prefix). Collective.
+/// Replaces ComponentMultigrid by a PETSc preconditioner per component (options without prefix). Collective.
 elastic::ComponentCycle petsc_cycle(linalg::ComponentMultigrid::Rows rows,
                                     const linalg::ComponentMultigrid::Options& options);
 

@@ -15,7 +15,7 @@ using namespace linalg;
 namespace {
 
 constexpr int most_starts = 8;
-// Short solves are repeated [s]: one takes less than what the clock of processor time tells apart.
+// Short solves [s] are repeated, because one is shorter than the resolution of the CPU clock.
 constexpr int most_turns = 10;
 constexpr double short_enough = 0.1;
 
@@ -86,7 +86,7 @@ KSP make_solver(const System& system, Mat a, Mat p, const LinearMap& inverse, co
   return ksp;
 }
 
-/// Iterations. Begins again where the recurrence has left the true residual: `starts` of them, 0: as many as it takes.
+/// Iterations. Restarts while the recurrence deviates from the true residual, at most `starts` times if > 0.
 int solve_from_guess(const System& system, KSP ksp, ::Vec b, ::Vec x, int& starts) {
   int iterations = 0, done = 0;
   double left = INFINITY, before = INFINITY;

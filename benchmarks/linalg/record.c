@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loaded in front of PETSc (LD_PRELOAD) it takes the place of KSPSolve: the COUPLET_RECORD_SOLVE-th solve of a shipped program leaves its
-// matrix, right-hand side and first guess in COUPLET_RECORD_FOLDER (PETSc's binary files) with the residual norm at which it
-// stops, the last one before it that made a preconditioner the matrix that it was made from, and the end of the program how many
-// solves one preconditioner served and their iterations. The program itself is none the wiser.
+// Replaces KSPSolve if loaded before PETSc (LD_PRELOAD). The COUPLET_RECORD_SOLVE-th solve of a program
+// writes its matrix, right-hand side, guess and final residual norm to COUPLET_RECORD_FOLDER (PETSc binary
+// files). The last solve before it that built a preconditioner writes its matrix. At the end it writes the
+// solves per preconditioner and their iterations. The program is not affected.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <petscksp.h>

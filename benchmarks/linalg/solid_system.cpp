@@ -26,7 +26,7 @@ using namespace linalg;
 using namespace solid;
 namespace {
 
-// As in the mixed form: what its rows of volumes leave of forces, over b.
+// As in the mixed form: forces from volume residuals, relative to b.
 constexpr double forces_left = 1e-6;
 
 struct Files {
@@ -38,7 +38,7 @@ SolidProblem problem_of(const SolidBody& body) {
   return {body.mesh(), body.elastic(), {}, body.kernel(), 0, nullptr};
 }
 
-/// The step as the program makes it: what it was loaded with and what came out.
+/// Records the step as Couplet solves it: its load and result.
 void record(Solid& solid, const Files& files) {
   solid.initialise();
   solid.begin_step({0, 1, coupling::Scheme::standalone, 0});
@@ -51,7 +51,7 @@ void record(Solid& solid, const Files& files) {
     std::printf("RESULT {\"note\": \"%s\"}\n", solid.stepper().method()->name().c_str());
 }
 
-/// Rigid motions for aggregation, which moves nodes and knows their places.
+/// Rigid motions for aggregation, which renumbers nodes and uses their positions.
 void add_rigid_motions(const SolidBody& body, Mat p) {
   const mesh::Mesh& mesh = body.mesh();
   std::vector<double> places;
@@ -69,7 +69,7 @@ void add_rigid_motions(const SolidBody& body, Mat p) {
   petsc_check(VecDestroy(&v));
 }
 
-/// The assembled operator; it is the kernel's own unless faces share at edges: then PETSc preconditions with it.
+/// Assembled operator. It equals the kernel's unless faces share at edges; then it only preconditions PETSc.
 Result by_assembled(const System& system, const SolidBody& body, const std::string& options,
                     std::string& note) {
   const Meter assembling(system.comm);
@@ -87,8 +87,8 @@ Result by_assembled(const System& system, const SolidBody& body, const std::stri
   const double difference =
       std::sqrt(parallel::sum(system.comm, squares[0]) / parallel::sum(system.comm, squares[1]));
   const bool is_same = difference < 1e-7;
-  MatInfo
-      info;  // entries of 8 bytes with columns of 4; it knows no more of a matrix that was made of triplets
+  // Entries of 8 bytes with columns of 4; unknown for a matrix made of triplets.
+  MatInfo info;
   petsc_check(MatGetInfo(p, MAT_GLOBAL_SUM, &info));
   std::snprintf(text, sizeof text, "assembled in %.3g s, %.3g entries, %.0f MB%s", assembling.seconds(),
                 info.nz_used, 12 * info.nz_used / 1048576, is_same ? "" : ", not quite the operator");
@@ -114,7 +114,7 @@ Result by_program(const System& system, const SolidBody& body) {
   return result;
 }
 
-/// Operator and preconditioner of the program, the iteration of PETSc.
+/// Couplet's operator and preconditioner with PETSc's iteration.
 Result by_krylov(const System& system, const SolidBody& body, const std::string& options) {
   const Meter whole(system.comm);
   const auto method = make_solution_method(problem_of(body), body.parameters().method);
@@ -134,12 +134,12 @@ Result by_krylov(const System& system, const SolidBody& body, const std::string&
   };
   Result result = solve_by_petsc(same, nullptr, nullptr, inverse, options);
   result.setup += making;
-  result.megabytes = std::max(peak, whole.peak());  // that of the solve begins anew
+  result.megabytes = std::max(peak, whole.peak());  // the peak of the solve was reset
   result.x.resize(system.b.size());
   return result;
 }
 
-/// As NewtonKrylov, PETSc's preconditioner in the place of the multigrid cycle.
+/// Like NewtonKrylov, with PETSc's preconditioner instead of the multigrid cycle.
 Result by_cycle(const System& system, const SolidBody& body, const std::string& options) {
   Result result;
   const SolidProblem problem = problem_of(body);

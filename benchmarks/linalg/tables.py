@@ -12,12 +12,12 @@ WINS = 0.75  # time or memory over those of PETSc's best, which then takes a thi
 LEAST_MEGABYTES = 30  # below that what differs is PETSc's own objects, whatever the size of the system
 LEFT = 20  # residual over the wanted one: rounding of the slender beam's operator leaves 7 to all solvers
 PETSC = ("GAMG", "BoomerAMG", "MUMPS")
-# Hand-written solvers of common/linalg: the row of ours, what the rows of PETSc in its place have in their names, and the systems where the
-# programs use it.
+# Solvers of common/linalg: row of Couplet, part of the names of PETSc's rows instead of it, and the systems in
+# which the programs use it.
 HAND_WRITTEN = {
     "component_multigrid": ("our krylov CG, component_multigrid", lambda name: "component_multigrid" not in name, ("plate B", "tetrahedra", "slender")),
 }
-# What else lies in that folder: PETSc's and MUMPS's own behind one call, LAPACK, what is no linear solver.
+# Other files of that folder: interfaces to PETSc, MUMPS and LAPACK, and files without a linear solver.
 NOT_SOLVERS = ("acceleration", "cell_solver", "dense_eigenvalues", "krylov", "linear_solver", "matrix", "petsc", "residual_projection", "symmetric_factors")
 BEGIN, END = "<!-- tables -->", "<!-- end of tables -->"
 

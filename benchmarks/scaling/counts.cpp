@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Loaded in front of MPI (LD_PRELOAD) it counts what a program sends, by MPI's profiling interface (MPI 4.0, chapter 15): calls of
-// PETSc and hypre count as well as ours; those from Fortran (MUMPS) do not. MPI_Finalize writes COUPLET_COUNTS/<rank of the job>.json.
-// A collective on one rank costs nothing and does not count, neither does a message to oneself; polling is not timed.
+// SPDX-License-Identifier: Apache-2.0 Counts the messages of a program if loaded before MPI (LD_PRELOAD), by
+// MPI's profiling interface (MPI 4.0, chapter 15). Includes calls of PETSc and hypre, but not from Fortran
+// (MUMPS). MPI_Finalize writes COUPLET_COUNTS/<rank of the job>.json. Collectives on one rank, messages to
+// oneself and polling are ignored.
 #include <mpi.h>
 
 #include <cstdio>
@@ -129,7 +129,7 @@ void write() {
 
 using namespace couplet::scaling;
 
-// One line a call: what it is given, then what it names of that.
+// One line per call: its arguments, then those it uses by name.
 #define TYPES(...) (__VA_ARGS__)
 #define SENDS(NAME, GIVEN, ...)                \
   extern "C" int MPI_##NAME GIVEN {            \

@@ -19,7 +19,7 @@ void sum_over(MPI_Comm comm, std::span<double> values) {
 
 double dot(std::span<const double> a, std::span<const double> b) {
   assert(a.size() == b.size());
-  // Several sums side by side: one alone waits for each addition.
+  // Uses several partial sums, because a single one would wait for each addition.
   using Vector = Eigen::Map<const Eigen::VectorXd>;
   return Vector(a.data(), Eigen::Index(a.size())).dot(Vector(b.data(), Eigen::Index(b.size())));
 }
@@ -151,7 +151,7 @@ Iterate AitkenRelaxation::next(Iterate x, const Iterate& image) {
 }
 
 void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
-  // A step of two passes has its second factor only now.
+  // In a step of two passes, the second factor is only known now.
   if (second_pass_) {
     take_residual(x, image);
     learn();

@@ -18,17 +18,17 @@ class CheckpointWriter;
 
 namespace couplet::coupler {
 
-/// One vector of the fixed point x = H(x): this rank's part of the unknown, and what is no unknown of its own
-/// but undergoes the same linear combinations (the velocity that goes with a displacement).
+/// One vector of the fixed-point problem x = H(x): this rank's part of the unknown, and dependent data that
+/// undergo the same linear combinations, such as the velocity of a displacement.
 struct Iterate {
   std::vector<double> unknown;  ///< any unit
   std::vector<double> rider;    ///< any unit, any length; may be empty
 };
 
-/// The order of its values on file, the same on any ranks.
+/// Order of its values in a file, independent of the number of ranks.
 struct IterateOrder {
   parallel::GlobalOrder unknown, rider;
-  /// Rank by rank as they are. Collective.
+  /// Order by rank. Collective.
   static IterateOrder as_they_are(MPI_Comm comm, const Iterate& x) {
     return {parallel::GlobalOrder::as_they_are(comm, x.unknown.size()),
             parallel::GlobalOrder::as_they_are(comm, x.rider.size())};
@@ -41,56 +41,56 @@ void write_columns(io::CheckpointWriter& file, const parallel::GlobalOrder& orde
 std::vector<std::vector<double>> read_columns(io::CheckpointReader& file, const parallel::GlobalOrder& order,
                                               const std::string& name, std::size_t n);
 
-/// How the next guess of x = H(x) follows from the passes made so far: r = H(x) - x is to vanish. Vectors are
-/// flat and distributed, scalar products are taken over `comm` of the maker; all calls are collective over
-/// it.
+/// Computes the next guess of x = H(x) from previous passes, such that r = H(x) - x vanishes. Vectors are
+/// flat and distributed. Scalar products are over the communicator of make_accelerator(); all calls are
+/// collective over it.
 ///
-///   start_step()  next()  next() ... accept()      a step, however many passes it needs
-///   start_step()  next()  start_step()  ...        a step that was given up and is tried again
+///   start_step()  next()  next() ... accept()      a step with any number of passes
+///   start_step()  next()  start_step()  ...        a step that is abandoned and repeated
 class Accelerator {
  public:
   virtual ~Accelerator() = default;
-  /// A step begins; one that was not accepted is forgotten.
+  /// Begins a step and forgets one that was not accepted.
   virtual void start_step() = 0;
-  /// The next x after a pass from x to image = H(x). Give x away where it is not needed any more: a relaxation
-  /// works in its place.
+  /// Returns the next x after a pass from x to image = H(x). Move x in if it is no longer needed: a
+  /// relaxation works in place.
   virtual Iterate next(Iterate x, const Iterate& image) = 0;
-  /// The step has converged with this last pass, which `next` was not called for.
+  /// Ends a converged step with its last pass, for which `next` was not called.
   virtual void accept(const Iterate& x, const Iterate& image) = 0;
-  /// H is another map from now on, though the step goes on: no difference is taken across this.
+  /// Declares that H changes within the step. No difference is taken across this call.
   virtual void map_changed() = 0;
-  /// Share of r that led to the x of the pass under way: the factor of a relaxation, (dx . r) / (r . r) else.
-  /// In the first pass of a step, whose x is the guess, the factor that the first update would take.
+  /// Share of r that led to the current x: the factor of a relaxation, otherwise (dx . r)/(r . r). In the
+  /// first pass of a step, whose x is the guess, it is the factor of the first update.
   virtual double relaxation() const = 0;
-  /// Pairs of differences in use (0 for relaxations), and how often old ones were given up as misleading.
+  /// Pairs of differences in use (0 for relaxations), and the number of times old ones were discarded.
   virtual int columns() const { return 0; }
   virtual long resets() const { return 0; }
-  /// Between steps only. After load the run continues bit for bit on equal ranks. Collective.
+  /// Call only between steps. A restart is bitwise identical for the same number of ranks. Collective.
   virtual void save(io::CheckpointWriter& file, const IterateOrder& order) const = 0;
   virtual void load(io::CheckpointReader& file, const IterateOrder& order) = 0;
 };
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm);
 
-/// x += omega (image - x), of unknown and rider.
+/// x += omega (image - x), for unknown and rider.
 void relax(Iterate& x, double omega, const Iterate& image);
 /// Sums over all ranks of a few values at once, in place.
 void sum_over(MPI_Comm comm, std::span<double> values);
 double dot(std::span<const double> a, std::span<const double> b);  // of this rank
-/// Of this rank, in one sweep.
+/// Sums over this rank, computed in one sweep.
 struct ChangeSquares {
   double change = 0, size = 0;  ///< |a - b|^2, |a|^2
 };
 ChangeSquares squares_of_change(std::span<const double> a, std::span<const double> b);
-/// Calls work(first, count) for stretches of `rows` entries that stay in the cache: operations on the same arrays read
-/// them from memory once.
+/// Calls work(first, count) for blocks of `rows` entries that fit in the cache, so that operations on the
+/// same arrays read memory once.
 template <class Work>
 void for_blocks(std::size_t rows, Work work) {
   constexpr std::size_t block = 1024;
   for (std::size_t first = 0; first < rows; first += block) work(first, std::min(block, rows - first));
 }
 
-/// x += omega r with the same omega always.
+/// x += omega r with a constant omega.
 class ConstantRelaxation final : public Accelerator {
  public:
   explicit ConstantRelaxation(double omega) : omega_(omega) {}
@@ -108,14 +108,13 @@ class ConstantRelaxation final : public Accelerator {
 
 /// x += omega r with Aitken's factor, thesis (4.23) with its erratum [Kuettler, Wall 2008]:
 ///   omega^{k+1} = -omega^k r^k . (r^{k+1} - r^k) / |r^{k+1} - r^k|^2
-/// kept if the residual did not change at all, and in size never above ten times `maximum-relaxation` (its
-/// sign is free: a map of slope above 1 needs a negative one). The first factor of a step is what the second
-/// pass of the last step found out, i.e. the best factor for a first residual, between a thousandth and
-/// `maximum-relaxation`; the later ones belong to the modes that were left over and would start a step too
-/// small or too large. r holds the velocities that ride along, scaled to the size of the unknown by the first
-/// residual of the step: a structure whose velocity is not the same function of its displacement as the guess's
-/// (one that takes sub-steps) has errors that the displacement alone does not show, and a factor from these would
-/// feed them.
+/// It is kept if the residual did not change, and bounded by ten times `maximum-relaxation`. Its sign is
+/// free: a map with slope above 1 needs a negative one. The first factor of a step is that found by the
+/// second pass of the last step, the best one for a first residual, between 0.001 and `maximum-relaxation`.
+/// Later factors belong to the remaining modes and would be too small or too large. r includes the dependent
+/// velocities, scaled to the unknown by the first residual of the step. Otherwise a structure whose velocity
+/// is another function of its displacement than the guess's (one with sub-steps) has errors invisible in the
+/// displacement, which a factor from it alone would amplify.
 class AitkenRelaxation final : public Accelerator {
  public:
   AitkenRelaxation(const AccelerationParameters& parameters, MPI_Comm comm);
@@ -134,14 +133,14 @@ class AitkenRelaxation final : public Accelerator {
 
   AccelerationParameters parameters_;
   MPI_Comm comm_;
-  double omega_, first_;                          // in use; for the first update of the next step
-  double rider_weight_ = 0;                       // of this step, from its first residual
-  bool second_pass_ = false;                      // of this step comes next
-  bool knows_pass_ = false;                       // of this step: last_residual_ is its residual
-  std::vector<double> residual_, last_residual_;  // buffers that stay from pass to pass
+  double omega_, first_;                          // current factor; for the first update of the next step
+  double rider_weight_ = 0;                       // for this step, from its first residual
+  bool second_pass_ = false;                      // the next pass is the second of this step
+  bool knows_pass_ = false;                       // last_residual_ is from this step
+  std::vector<double> residual_, last_residual_;  // buffers kept between passes
 };
 
-/// The factor itself, over the values of this rank.
+/// Aitken's factor from the values of this rank.
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
                      MPI_Comm comm = MPI_COMM_SELF);
 

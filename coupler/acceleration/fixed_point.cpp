@@ -24,7 +24,7 @@ std::string absolute_too(const Residual& residual, const ConvergenceParameters& 
 Residual worst(const std::vector<Residual>& residuals) {
   Residual all;
   for (const Residual& r : residuals) {
-    // Not a number stays not a number.
+    // Keeps NaN.
     if (!(r.relative <= all.relative)) all.relative = r.relative;
     if (!(r.absolute <= all.absolute)) all.absolute = r.absolute;
   }

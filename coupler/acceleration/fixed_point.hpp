@@ -12,27 +12,27 @@
 namespace couplet::coupler {
 
 bool converged(const Residual& residual, const ConvergenceParameters& parameters);
-/// For a sentence that has named the relative residual; empty where that alone decides.
+/// Suffix for a sentence with the relative residual; empty if only that one decides.
 std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters);
-/// The largest of each kind.
+/// Largest residual of each kind.
 Residual worst(const std::vector<Residual>& residuals);
 
-/// One pass through all participants: x to H(x). Throws SolveFailure if one of them fails.
+/// One pass through all participants, from x to H(x). Throws SolveFailure if one of them fails.
 using FixedPointMap = std::function<Iterate(const Iterate&)>;
 /// Residuals of H(x) - x, one for each unknown.
 using ResidualMeasure = std::function<std::vector<Residual>(const Iterate& x, const Iterate& image)>;
-/// After each pass: its number from 1, its residual, and the share of the residual before that led to its x.
+/// Called after each pass: number from 1, residual, and share of the previous residual in its x.
 using IterationObserver = std::function<void(int, const Residual&, double)>;
 
 struct FixedPointResult {
-  Iterate x, image;  ///< of the last pass: x and H(x)
+  Iterate x, image;  ///< x and H(x) of the last pass
   Residual residual;
   int iterations = 0;
-  bool converged = true;  ///< false: accepted as it is
+  bool converged = true;  ///< false: accepted without convergence
 };
 
-/// x = H(x) by passes and accelerated updates from the guess x, until the residual of every unknown is below
-/// its bound. Throws SolveFailure if it does not converge within the allowed iterations or a residual is not
+/// Solves x = H(x) by accelerated passes from the guess x, until the residual of every unknown is below its
+/// bound. Throws SolveFailure if it does not converge within the allowed iterations or a residual is not
 /// finite.
 FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const ResidualMeasure& measure,
                                    const ConvergenceParameters& parameters, Accelerator& accelerator,

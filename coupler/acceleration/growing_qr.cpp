@@ -11,13 +11,13 @@
 namespace couplet::coupler {
 namespace {
 
-/// Rows `row` and `row` + 1 of R and the columns of Q that belong to them turn.
+/// Rotates rows `row` and `row` + 1 of R and the corresponding columns of Q.
 struct Rotation {
   int row;
   double c, s;
 };
 
-/// R_{i+1,column} becomes zero; Q must turn along.
+/// Eliminates R_{i+1,column}; Q must be rotated accordingly.
 void rotate(Eigen::MatrixXd& r, int i, int column, std::vector<Rotation>& turns) {
   const double a = r(i, column), b = r(i + 1, column);
   if (b == 0) return;
@@ -69,7 +69,7 @@ void GrowingQr::subtract(const Eigen::VectorXd& t, std::span<double> r) const {
 
 void GrowingQr::push_front(std::vector<double> v) {
   const int m = columns();
-  // First sweep: t = Q^T v. Its last entry, |v|^2, tells what is rounding.
+  // First sweep: t = Q^T v. Its last entry |v|^2 is the scale of round-off.
   Eigen::VectorXd t = Eigen::VectorXd::Zero(m + 1), again = t;
   for_blocks(v.size(), [&](std::size_t first, std::size_t count) {
     const std::span<const double> here(v.data() + first, count);
@@ -77,7 +77,7 @@ void GrowingQr::push_front(std::vector<double> v) {
     t[m] += dot(here, here);
   });
   sum_over(comm_, {t.data(), std::size_t(m) + 1});
-  // Second sweep, of v - Q t; again |.|^2 last.
+  // Second sweep for v - Q t, with its squared norm last.
   for_blocks(v.size(), [&](std::size_t first, std::size_t count) {
     double* here = v.data() + first;
     for (int j = 0; j < m; ++j) take_away(t[j], q_[std::size_t(j)].data() + first, here, count);
@@ -85,8 +85,8 @@ void GrowingQr::push_front(std::vector<double> v) {
     again[m] += dot({here, count}, {here, count});
   });
   sum_over(comm_, {again.data(), std::size_t(m) + 1});
-  // What is left is |v - Q t - Q t'|^2 = |v - Q t|^2 - |t'|^2, t' being small. What rounding leaves of a dependent
-  // column has no direction: it becomes a zero column of Q.
+  // The remainder is |v - Q t - Q t'|^2 = |v - Q t|^2 - |t'|^2 with small t'. Round-off of a dependent column
+  // has no direction, so it becomes a zero column of Q.
   const double rest = std::sqrt(std::max(0., again[m] - again.head(m).squaredNorm()));
   const bool dependent = rest <= 1e-14 * std::sqrt(t[m]);
 

@@ -15,27 +15,27 @@ class CheckpointWriter;
 
 namespace couplet::coupler {
 
-/// A checkpoint holds no more of them.
+/// Maximum number of columns in a checkpoint.
 inline constexpr std::size_t most_columns = 10000;
 
-/// A = Q R of a tall matrix whose rows are distributed and whose columns come and go: new ones join at the
-/// front, any may leave. Gram-Schmidt twice for a new column, Givens rotations for the rest [Golub, Van Loan
-/// 2013, 6.5]: 10 m flops a row for each change of m columns, and two sums over the ranks.
+/// QR decomposition of a tall matrix with distributed rows whose columns change: new ones are added at the
+/// front, any may be removed. Uses Gram-Schmidt twice for a new column and Givens rotations for the rest
+/// [Golub, Van Loan 2013, 6.5]. A change of m columns costs 10 m flops per row and two sums over the ranks.
 class GrowingQr {
  public:
   explicit GrowingQr(MPI_Comm comm) : comm_(comm) {}
   int columns() const { return static_cast<int>(q_.size()); }
-  /// A becomes [v A]. A column that depends on the others (or is zero) leaves a diagonal of zero in R: drop()
-  /// must be called before the next use.
+  /// Changes A to [v A]. A linearly dependent (or zero) column gives a zero diagonal in R; call drop() before
+  /// the next use.
   void push_front(std::vector<double> v);
   void erase(int column);
   void clear();
-  /// Erases, front to back, each column of which less than `limit` is left beside those before it:
-  /// |R_jj| < limit |a_j| ("QR2"). Returns their positions in the order in which they left.
+  /// Erases, front to back, each column with |R_jj| < limit |a_j|, nearly dependent on those before it
+  /// ("QR2"). Returns their positions in the order of removal.
   std::vector<int> drop(double limit);
-  /// c that makes |r + A c| smallest.
+  /// Returns c that minimizes |r + A c|.
   Eigen::VectorXd minimise(std::span<const double> r) const;
-  /// Q^T r, over all ranks; r -= Q t.
+  /// along() returns Q^T r over all ranks; subtract() computes r -= Q t.
   Eigen::VectorXd along(std::span<const double> r) const;
   void subtract(const Eigen::VectorXd& t, std::span<double> r) const;
   Eigen::VectorXd back_substitute(const Eigen::VectorXd& t) const;

@@ -19,7 +19,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
   return result;
 }
 
-/// y += sum of c_j x_j, by rows that stay in the cache.
+/// y += sum of c_j x_j, in blocks of rows that stay in the cache.
 template <class Column>
 void add_to(std::vector<double>& y, const Eigen::VectorXd& c, Column column) {
   constexpr std::size_t block = 1024;
@@ -74,7 +74,7 @@ QuasiNewton::QuasiNewton(const AccelerationParameters& parameters, MPI_Comm comm
     : parameters_(parameters), comm_(comm), share_(parameters.initial_relaxation) {}
 
 void QuasiNewton::start_step() {
-  // A step that was given up may have been led astray by its history, and its own pairs belong to another dt.
+  // An abandoned step may be due to its history, and its own pairs have another dt.
   if (open_) forget_all();
   open_ = true;
   share_ = parameters_.initial_relaxation;
@@ -127,7 +127,7 @@ void QuasiNewton::accept(const Iterate& x, const Iterate& image) {
 }
 
 bool QuasiNewton::is_finite(const Iterate& x) const {
-  // Zero times what is not finite is not a number, and so is its sum with anything. Four sums side by side.
+  // Zero times NaN or infinity is NaN, and so is any sum with it. Uses four partial sums.
   double sums[4] = {}, wrong = 0;
   for (std::size_t i = 0; i + 4 <= x.unknown.size(); i += 4)
     for (std::size_t k = 0; k < 4; ++k) sums[k] += 0 * x.unknown[i + k];
@@ -152,7 +152,7 @@ void LeastSquaresNewton::forget_earlier_steps() {
 
 void LeastSquaresNewton::begin_step() {
   step_ += 1;
-  // The columns of the step under way do not count.
+  // Columns of the current step are not counted.
   while (!step_of_.empty() && step_ - step_of_.back() > parameters().reused_steps) drop_oldest();
 }
 
@@ -198,7 +198,7 @@ void MultiVectorNewton::add(Pair pair) {
 }
 
 void MultiVectorNewton::correct(Iterate& next) const {
-  // What the columns of one step leave of the residual goes on to the step before.
+  // The residual left by the columns of one step is passed to the previous step.
   std::vector<double> rest = residual();
   for (const SecantPairs& step : steps_) {
     const Eigen::VectorXd t = step.qr().along(rest);

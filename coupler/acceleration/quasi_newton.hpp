@@ -9,17 +9,17 @@
 
 namespace couplet::coupler {
 
-/// Differences of residuals, V = QR, and those of the images (with their riders), W, newest first.
+/// Differences of residuals, V = QR, and of images (with their riders), W, newest first.
 class SecantPairs {
  public:
   explicit SecantPairs(MPI_Comm comm) : qr_(comm) {}
   int columns() const { return qr_.columns(); }
   void push_front(std::vector<double> residual, Iterate image);
   void erase(int column);
-  /// Positions of the columns that left because they depend on newer ones (see GrowingQr::drop).
+  /// Returns positions of columns removed because they depend on newer ones (see GrowingQr::drop).
   std::vector<int> drop(double limit);
   const GrowingQr& qr() const { return qr_; }
-  /// to += W c.
+  /// Adds W c to `to`.
   void add(const Eigen::VectorXd& c, Iterate& to) const;
   void save(io::CheckpointWriter& file, const std::string& name, const IterateOrder& order) const;
   void load(io::CheckpointReader& file, const std::string& name, const IterateOrder& order);
@@ -29,12 +29,10 @@ class SecantPairs {
   std::deque<Iterate> images_;
 };
 
-/// What both quasi-Newton methods do alike: differences between one pass and the next, the first update of a run, and the
-/// guard against a bad update.
-///
-/// The guard: an update that used earlier steps' pairs and made the residual ten times larger than at the pass before
-/// shows that these pairs describe another map; all of them are given up, those of this step stay. An update that is not
-/// finite is replaced by a relaxation and all pairs are given up.
+/// Common part of the quasi-Newton methods: differences between passes, the first update of a run, and the
+/// guard against a bad update. If an update that used pairs of earlier steps made the residual ten times
+/// larger, those pairs describe another map and are discarded; those of this step stay. An update that is not
+/// finite is replaced by a relaxation, and all pairs are discarded.
 class QuasiNewton : public Accelerator {
  public:
   QuasiNewton(const AccelerationParameters& parameters, MPI_Comm comm);
@@ -55,33 +53,33 @@ class QuasiNewton : public Accelerator {
   /// Residual of the last pass.
   const std::vector<double>& residual() const { return last_->residual; }
 
-  /// A step begins: pairs that are too old leave.
+  /// Begins a step and removes pairs that are too old.
   virtual void begin_step() = 0;
   virtual void add(Pair pair) = 0;
-  /// next -= J r, where next is H(x) and there are pairs.
+  /// Computes next -= J r, where next is H(x) and there are pairs.
   virtual void correct(Iterate& next) const = 0;
   virtual bool uses_earlier_steps() const = 0;
   virtual void forget_earlier_steps() = 0;
   virtual void forget_all() = 0;
 
  private:
-  /// Takes the difference to the pass before, if there was one in this step and the two differ.
+  /// Adds the difference to the previous pass of this step, if there is one and the two differ.
   void learn(const Iterate& x, const Iterate& image);
   bool is_finite(const Iterate& x) const;
 
   AccelerationParameters parameters_;
   MPI_Comm comm_;
-  std::optional<Pair> last_;  // pass of this step
+  std::optional<Pair> last_;  // last pass of this step
   double share_;              // of the residual in the last update
-  bool open_ = false;         // the step has not been accepted
+  bool open_ = false;         // the step is not accepted yet
   long resets_ = 0;
 };
 
-/// Quasi-Newton with the inverse Jacobian from a least-squares problem over this and earlier steps (IQN-ILS)
-/// [Degroote, Bathe, Vierendeels 2009; filter: Haelterman et al. 2016]:
-///   x^{k+1} = H(x^k) + W c,  c = argmin |r^k + V c|,
-/// the columns of V, W being the differences of r and of H(x) between two passes of one step. In the
-/// direction of r that no column spans it is the plain iteration. Without any column: x += omega r.
+/// Quasi-Newton method with the inverse Jacobian from a least-squares problem over this and earlier steps
+/// (IQN-ILS) [Degroote, Bathe, Vierendeels 2009; filter: Haelterman et al. 2016]:
+///   x^{k+1} = H(x^k) + W c,  c = argmin |r^k + V c|.
+/// The columns of V and W are differences of r and H(x) between two passes of one step. Components of r
+/// outside the columns use the plain iteration. Without columns: x += omega r.
 class LeastSquaresNewton final : public QuasiNewton {
  public:
   LeastSquaresNewton(const AccelerationParameters& parameters, MPI_Comm comm)
@@ -100,15 +98,15 @@ class LeastSquaresNewton final : public QuasiNewton {
   void drop_oldest();
 
   SecantPairs pairs_;
-  std::deque<double> step_of_;  // of each column: number of its step
+  std::deque<double> step_of_;  // number of the step, per column
   double step_ = 0;
 };
 
-/// Multi-vector quasi-Newton (IQN-MVJ) [Bogaers et al. 2014], matrix-free: the inverse Jacobian of the last
-/// steps is corrected by this step's differences, which it has to meet,
+/// Multi-vector quasi-Newton method (IQN-MVJ) [Bogaers et al. 2014], matrix-free. The differences of this
+/// step correct the inverse Jacobian of earlier steps:
 ///   J = W V^+ + J_old (I - V V^+),  x^{k+1} = H(x^k) - J r^k,
-/// applied as a product over the kept steps, newest first. Each step's QR stays as it was made: an update
-/// costs 4 m flops a row for m columns where the least-squares method needs 14 m.
+/// applied as a product over the kept steps, newest first. The QR of each step stays unchanged: an update
+/// costs 4 m flops per row for m columns, compared with 14 m for least squares.
 class MultiVectorNewton final : public QuasiNewton {
  public:
   MultiVectorNewton(const AccelerationParameters& parameters, MPI_Comm comm)
@@ -125,7 +123,7 @@ class MultiVectorNewton final : public QuasiNewton {
   void forget_earlier_steps() override { steps_.resize(1, SecantPairs(comm())); }
   void forget_all() override { steps_.assign(1, SecantPairs(comm())); }
 
-  std::deque<SecantPairs> steps_;  // newest first; the step under way is the first
+  std::deque<SecantPairs> steps_;  // newest first, beginning with the current step
 };
 
 }  // namespace couplet::coupler

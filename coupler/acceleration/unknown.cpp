@@ -29,10 +29,10 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
   for (const auto& link : links.all()) {
     if (place_in_group(link.giver) == std::ssize(group)) continue;  // not a member
     const auto taker = place_in_group(link.taker);
-    // A mover takes before everyone.
+    // A mover takes its data first.
     if (taker == std::ssize(group) || side_by_side || place_in_group(link.giver) >= taker) add(link);
   }
-  // The guess of a displacement, for the mover alone, needs its velocity, too.
+  // The mover's guess of a displacement also requires its velocity.
   const std::vector<Part> taken = parts_;
   for (const Part& p : taken)
     for (const auto& link : links.all())
@@ -51,7 +51,7 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
   for (Part& d : parts_)
     for (const Part& p : parts_)
       if (p.rides && p.giver == d.giver && d.datum.name == "displacement") d.velocity = p.first;
-  // Data of one kind need no scale.
+  // A single type of data needs no scale.
   const auto lead = std::ranges::find(parts_, false, &Part::rides);
   scaled_ =
       std::ranges::all_of(parts_, [&](const Part& p) { return p.rides || p.datum.unit == lead->datum.unit; });
@@ -182,7 +182,7 @@ std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) c
     if (p.rides) continue;
     const double r = sums[k], h = sums[k + 1], places = sums[k + 2];
     k += 3;
-    // Nothing moves: converged; anything else against nothing: not.
+    // Converged if nothing moves, but not if a nonzero residual meets zero.
     const double relative = h > 0 ? std::sqrt(r / h) : (r > 0 ? std::numeric_limits<double>::infinity() : r);
     list.push_back({relative, places > 0 ? std::sqrt(r / places) / p.weight : 0});
   }
@@ -244,7 +244,7 @@ Iterate predict(const Unknown& unknown, const History& history, double dt, int o
   return guess;
 }
 
-// Values within the step as a part of the unknown.
+// Values within the step as part of the unknown.
 
 bool Unknown::asked_within() const { return std::ranges::any_of(parts(), &Part::asked_within); }
 
@@ -302,8 +302,8 @@ Iterate Unknown::ends(Iterate x) const {
   return x;
 }
 
-/// On the cubic through the four times next to it that a participant gave instead, in a later pass of the step (Lagrange; fewer
-/// times: of a lower degree).
+/// Values at other times that a participant gave in a later pass of the step, by the cubic through the four
+/// nearest times (Lagrange; fewer times lower the degree).
 std::vector<double> Unknown::between_times(const Part& part, const coupling::Exchange& given) const {
   const Part& end = parts_[*part.within];
   std::vector<std::pair<double, std::span<const double>>> known;

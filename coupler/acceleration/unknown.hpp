@@ -15,16 +15,15 @@ namespace couplet::coupler {
 
 struct Residual {
   double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
-  double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
+  double absolute = 0;  ///< root mean square of r over the places [unit of the datum]
 };
 
-/// What a group iterates on: the data that somebody takes before its giver has given it in the same pass (its own
-/// data always). In
-/// the order of the list (Gauss-Seidel) these are the data given to earlier members, side by side (Jacobi)
-/// all of the group's. A velocity that goes with a displacement of the same giver is no unknown of its own:
-/// it rides on the displacement's combinations. Several data are scaled to like size, once. Of data whose values
-/// within the step somebody asks for (WithinStep) these are unknowns, too, at the times that the first pass of a step
-/// shows; they stand behind all others.
+/// Unknown of a group's iteration: data taken before their giver computes them in the same pass, including
+/// data taken from oneself. In sequence (Gauss-Seidel) these are data given to earlier members, in parallel
+/// (Jacobi) all data of the group. A velocity with a displacement of the same giver is a rider: it undergoes
+/// the same combinations. Several data are scaled once to similar size. If values within the step are
+/// requested (WithinStep), these are unknowns too, at the times found in the first pass of a step. They
+/// follow all others.
 class Unknown {
  public:
   struct Part {
@@ -35,52 +34,53 @@ class Unknown {
     bool rides = false;
     std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
     double weight = 1;
-    bool asked_within = false;            ///< somebody takes its values within the step
-    std::optional<std::size_t> within{};  ///< of a value within the step: the part of its end
-    double share = 1;                     ///< of the step
+    bool asked_within = false;            ///< its values within the step are taken
+    std::optional<std::size_t> within{};  ///< of a value within the step: its part at the end
+    double share = 1;                     ///< fraction of the step
   };
   /// `group`: indices into `sides`.
   Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
           const std::vector<std::size_t>& group, bool side_by_side);
 
-  /// At the end of the step.
+  /// Parts at the end of the step.
   std::span<const Part> parts() const { return {parts_.data(), n_parts_}; }
-  /// Values of this rank at the end of the step.
+  /// Number of values of this rank at the end of the step.
   std::size_t n_unknown() const { return n_unknown_; }
   std::size_t n_rider() const { return n_rider_; }
 
-  /// Whether somebody asks for values within the step.
+  /// True if some participant requests values within the step.
   bool asked_within() const;
-  /// Whether there are such.
+  /// True if there are values within the step.
   bool has_within() const { return parts_.size() > n_parts_; }
-  /// Takes the times within the step from what all have given; whether they are others than before.
+  /// Sets the times within the step from the given data. Returns true if they changed.
   bool adopt_times(const std::vector<coupling::Exchange>& given);
-  /// The guess of a step, of ends alone: constant within it.
+  /// Guess of a step from values at its end: constant within the step.
   Iterate begin_step(Iterate guess);
   Iterate held(Iterate ends) const;
-  /// Without the values within the step.
+  /// Values at the end of the step.
   Iterate ends(Iterate x) const;
-  /// Whether all of it has been given.
+  /// True if all data of the unknown have been given.
   bool complete(const std::vector<coupling::Exchange>& given) const;
-  /// From what all have given, scaled; to it. Data of the unknown alone.
+  /// Converts between given data and scaled iterates, only for data of the unknown.
   Iterate gather(const std::vector<coupling::Exchange>& given) const;
   void scatter(const Iterate& x, std::vector<coupling::Exchange>& given) const;
-  /// Zero displacements and their velocities; nothing of other data, which have no natural start. Whether
-  /// that is all of the unknown.
+  /// Sets displacements and their velocities to zero; other data have no natural start. Returns true if that
+  /// is the whole unknown.
   bool start_at_rest(std::vector<coupling::Exchange>& given) const;
-  /// The scales from the first values that all have given; collective.
+  /// Determines the scales from the first values given. Collective.
   void scale(const std::vector<coupling::Exchange>& given);
   bool scaled() const { return scaled_; }
-  /// The scales, and the times within the step.
+  /// Scales and times within the step.
   std::vector<double> weights() const;
   void restore_weights(const std::vector<double>& weights);
 
-  /// By the numbers of the places, at the end of the step or with the values within it, too. Collective.
+  /// Order by place numbers, optionally with the values within the step. Collective.
   IterateOrder order(bool within) const;
 
-  /// Residual of each unknown (riders left out), over all ranks; with its values within the step, if x has them. Collective.
+  /// Residual of each unknown (without riders) over all ranks, including values within the step if x has
+  /// them. Collective.
   std::vector<Residual> measure(const Iterate& x, const Iterate& image) const;
-  /// Values of the unknown that are displacements [m], this rank's.
+  /// Displacements in the unknown [m], this rank's part.
   std::vector<double> motion(const Iterate& x) const;
 
  private:
@@ -90,24 +90,24 @@ class Unknown {
   MPI_Comm comm_;
   const std::vector<Side>* sides_;
   std::vector<Part> parts_;
-  std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // of ends
+  std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // at the end of the step
   bool scaled_ = false;
-  Iterate start_;  // ends at the start of the step; empty where nobody asks for values within it
+  Iterate start_;  // values at the start; empty if none within the step are requested
 };
 
-/// What the predictor remembers of accepted steps.
+/// Accepted steps kept for the predictor.
 struct History {
-  Iterate now, old, older;          ///< at t^n, t^{n-1}, t^{n-2}; empty before there were such
+  Iterate now, old, older;          ///< at t^n, t^{n-1}, t^{n-2}; empty if missing
   double old_dt = 0, older_dt = 0;  ///< t^n - t^{n-1}, t^{n-1} - t^{n-2}
-  /// Keeps what a predictor of this order needs.
+  /// Adds an accepted step; keeps what a predictor of this order requires.
   void accepted(Iterate x, double dt, int order);
 };
 
-/// First guess for t^{n+1}, r = dt / old_dt (1 for constant steps). A displacement with its velocity:
+/// First guess for t^{n+1}, r = dt/old_dt (1 for constant steps). A displacement with its velocity:
 ///   order 0  eta* = eta^n                                               v* = v^n
 ///   order 1  eta* = eta^n + dt v^n                                      v* = v^n
 ///   order 2  eta* = eta^n + dt ((1 + r/2) v^n - r/2 v^{n-1})            v* = v^n + r (v^n - v^{n-1})
-/// All else: the polynomial of this order through the last values. Fewer levels lower the order.
+/// Other data: polynomial of this order through the last values. With fewer levels the order is lower.
 Iterate predict(const Unknown& unknown, const History& history, double dt, int order);
 
 }  // namespace couplet::coupler

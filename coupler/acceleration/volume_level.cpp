@@ -15,16 +15,16 @@ namespace {
 
 constexpr const char* inflow_name = "inflow";
 constexpr const char* load_name = "pressure-force";
-// Of all that flows through the wall: below it is round-off; up to here a structure's own solver may leave.
+// Limits relative to the flow through the wall: round-off, and residual allowed to a structure's solver.
 constexpr double exact = 1e-11, good_enough = 1e-6;
-// What the fluid's load would move in a step counts as flow with this share: where nothing flows the level holds a
-// load at rest (gravity), and the defect is measured by that, not by the round-off of a wall that stands.
+// Weight of the motion by the fluid's load in a step as a flow. Without flow, the level balances a load at
+// rest (gravity), which then is the scale of the defect instead of round-off.
 constexpr double resting = 1e-2;
 constexpr int most_tries = 12;
-// Share of a swing that a step takes away (0.15 has the least spectral radius of the recursion, 0.612), and how much
-// of all that flows may swing: that moves the level by less than a coupling tolerance of 1e-6 does.
+// Damping of an oscillation per step (0.15 has the smallest spectral radius, 0.612), and the relative size
+// that is ignored: it moves the level by less than a coupling tolerance of 1e-6 does.
 constexpr double damping = 0.15, calm = 1e-5;
-// Of the largest flow that is left as a measure after each step: flows pass through zero.
+// Decay of the largest flow per step as a scale, because flows pass through zero.
 constexpr double fading = 0.98;
 
 }  // namespace
@@ -76,7 +76,7 @@ void VolumeLevel::start_step(double dt) {
   }
 }
 
-/// On the areas between those at the begin and at the end of the step: then the level's work is that on the volume.
+/// Applies the level to the mean area of the step, so that its work is that on the volume.
 void VolumeLevel::loaded(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given) {
   const auto found = std::ranges::find(cavities_, i, &Cavity::side);
   if (found == cavities_.end()) return;
@@ -99,7 +99,7 @@ void VolumeLevel::put(const Cavity& cavity, coupling::Exchange& given) const {
       load[f * std::size_t(dim_) + std::size_t(c)] += cavity.level * cavity.areas[f][c];
 }
 
-/// At the end and at the begin of the step [m^3/s].
+/// Inflow at the end and at the start of the step [m^3/s].
 std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity,
                                           const std::vector<coupling::Exchange>& known) const {
   std::vector<double> sums(2, 0.);
@@ -148,7 +148,7 @@ double VolumeLevel::pressure(const Cavity& c, const std::vector<double>& load) c
   return sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : 0;
 }
 
-/// The structure's answer to a further pressure in each cavity, of the size of the load.
+/// Response of the structure to an additional pressure in each cavity, of the size of the load.
 void VolumeLevel::probe(std::vector<coupling::Exchange>& known, const std::function<void()>& answer,
                         const Eigen::VectorXd& now) {
   slope_.resize(now.size(), now.size());
@@ -201,7 +201,7 @@ void VolumeLevel::find(std::vector<coupling::Exchange>& known, const std::functi
     const Defect next = answer_to(known, answer);
     const double left = share(next);
     if (!std::isfinite(left)) break;
-    // What a structure's own solver leaves tells nothing about the slope.
+    // The residual of a structure's own solver gives no information about the slope.
     if (left > good_enough && change.squaredNorm() > 0)
       slope_ += next.value * change.transpose() / change.squaredNorm();
     if (left <= exact || (left <= good_enough && left > best / 2)) return;
@@ -219,7 +219,7 @@ void VolumeLevel::accept(const std::vector<coupling::Exchange>& given) {
     const Flow now = flow(c, given);
     c.change += now.swept;
     c.inflow += dt_ / 2 * (now.begin + now.end);
-    // The wall stood before the first step.
+    // The wall was at rest before the first step.
     c.swing = {now.mismatch, c.begun ? c.swing[0] : -now.begin};
     c.flow = std::max(now.size, fading * c.flow);
     c.begun = true;

@@ -17,7 +17,7 @@ constexpr int judged_steps = 10;        ///< before which the velocity is not ju
 constexpr double doubtful = 0.3;        ///< deviation of the velocity, over the rate
 constexpr double least_motion = 1e-12;  ///< over the interface's extent; below it nothing moves
 
-/// Tells whether any rank's values differ in any bit.
+/// True if any rank's values differ bitwise.
 bool differ(MPI_Comm comm, const coupling::Exchange& a, const coupling::Exchange& b) {
   return parallel::max(comm, a == b ? 0. : 1.) > 0;
 }
@@ -28,8 +28,8 @@ double extent_of(MPI_Comm comm, const std::vector<Vec3>& points) {
   return parallel::max(comm, most);
 }
 
-/// Two faults of participants that no residual shows by its cause: an answer that does not follow the input (a solver
-/// whose first guess meets its own tolerance), and a velocity that is not the rate of the displacement beside it.
+/// Detects two faults of participants that residuals do not explain: a response that ignores the input (a
+/// solver whose guess meets its own tolerance), and a velocity that is not the rate of the displacement.
 class DataOfParticipants final : public CouplingDiagnostic {
  public:
   explicit DataOfParticipants(const CouplingView& view) : view_(view) {
@@ -57,7 +57,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
     one.taken = taken, one.given = given;
   }
 
-  /// Names who gave the same answer, to the last bit, in at least half of the late passes while the input changed.
+  /// Names participants with identical responses to changed input in at least half of the recent passes.
   std::string remark() const override {
     std::string text;
     for (const Answers& one : answers_)

@@ -10,10 +10,10 @@
 namespace couplet::coupler {
 namespace {
 
-// No mesh follows a wall that far; a program that gives millimetres for metres is a thousand times off.
+// No mesh follows a wall that far; millimeters instead of meters give a factor of a thousand.
 constexpr double farthest = 30;
 
-/// Displacements that are much larger than the interface itself: a program gives them in another unit.
+/// Detects displacements much larger than the interface, probably in another unit.
 class DisplacementScale final : public CouplingDiagnostic {
  public:
   explicit DisplacementScale(const CouplingView& view) : view_(view) {

@@ -11,19 +11,19 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Participants solve to about 1e-8 of their values: less than that would be a ratio of their noise.
+// Participants solve to about 1e-8 of their values; smaller changes are noise.
 double ratio(const Residual& first, const Residual& second) {
   if (!(first.relative > 1e-6) || !std::isfinite(second.absolute)) return unknown;
   return second.absolute / first.absolute;
 }
 
-/// The explicit scheme leaves the answer of the load out. Two further passes in a few steps tell how much of a change of
-/// the motion comes back through the load in the next pass, |H(H(x)) - H(x)| / |H(x) - x|. With an added mass alone that is
-/// added mass over structural mass (Causin, Gerbeau and Nobile 2005).
+/// Explicit coupling neglects the response of the load. Two additional passes in some steps measure which
+/// share of a change in motion returns through the load, |H(H(x)) - H(x)| / |H(x) - x|. With pure added mass
+/// it is added mass over structural mass (Causin, Gerbeau and Nobile 2005).
 ///
-/// One pass per step holds while the guess that the load is of is not thrown over. A guess with velocity v^n returns
-/// r = added mass / mass of the last change, lambda = -r; one of 2 v^n - v^{n-1} (predictor of order 2) gives
-/// lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
+/// One pass per step is stable while the guess for the load is. A guess with velocity v^n returns r = added
+/// mass / mass of the last change, lambda = -r; one with 2 v^n - v^{n-1} (predictor of order 2) gives
+/// lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: the limit is half.
 class AddedMass final : public CouplingDiagnostic {
  public:
   explicit AddedMass(const CouplingView& view)
@@ -31,7 +31,7 @@ class AddedMass final : public CouplingDiagnostic {
   void returned(GlobalIndex step, const Iterate& x, const Iterate& image, const Iterate& again) override {
     const double r =
         ratio(worst(view_.unknown.measure(x, image)), worst(view_.unknown.measure(image, again)));
-    // At a start the ratio is that of an impulse: it may explain a failure, but is no evidence about the run.
+    // At the start the ratio is that of an impulse: it may explain a failure but does not describe the run.
     double& seen = step == 1 ? at_start_ : returned_;
     seen = std::fmax(seen, r);
   }
@@ -79,14 +79,14 @@ std::shared_ptr<CouplingDiagnostic> added_mass(const CouplingView& view) {
 
 namespace {
 
-// Participants solve to about 1e-8 of their values: an answer to less than this part of the velocity is noise.
+// Participants solve to about 1e-8 of their values; a response below this part of the velocity is noise.
 constexpr double noise = 1e-6;
 
-/// Bounds what explicit coupling leaves in the motion. The load of a step answers a predicted velocity w, the structure
-/// then moves with v. Of d = v - w the part c comes back through the load in the same step. Where no step's error cancels
-/// another's, that leaves c sum |d| in the velocity, and this over the frequency w^2 = sum dt v.v / sum dt u.u (or times
-/// the duration, if that is less) in the displacement. Added masses alone leave much less: their errors of single steps
-/// cancel.
+/// Bounds the error of explicit coupling in the motion. The load of a step uses a predicted velocity w, then
+/// the structure moves with v. A share c of d = v - w returns through the load in the same step. If errors of
+/// steps do not cancel, the velocity error is c sum |d|. The displacement error is this over the frequency,
+/// w^2 = sum dt v.v / sum dt u.u, or times the duration if smaller. Pure added mass has a much smaller error,
+/// because it cancels between steps.
 class ExplicitLag final : public CouplingDiagnostic {
  public:
   explicit ExplicitLag(const CouplingView& view) : view_(view) {}
@@ -144,7 +144,7 @@ class ExplicitLag final : public CouplingDiagnostic {
   bool is_known_ = false;
 };
 
-/// Takes the place of ExplicitLag where an unknown is no motion alone.
+/// Replaces ExplicitLag if an unknown is not purely a motion.
 class UnknownLag final : public CouplingDiagnostic {
  public:
   void conclude(diagnostics::Report& report) override {
@@ -160,7 +160,7 @@ std::shared_ptr<CouplingDiagnostic> explicit_lag(const CouplingView& view) {
   const Schedule& schedule = view.pass.schedule();
   if (schedule.iterates) return nullptr;
   const auto parts = view.unknown.parts();
-  // Sub-steps see a line through what was given; the level of closed fluids answers by itself.
+  // Sub-steps use linear input in time; the level of closed fluids responds by itself.
   const bool possible = schedule.sub_steps.empty() && !view.pass.has_closed_fluid() && !parts.empty() &&
                         std::ranges::all_of(parts, [](const auto& p) { return p.rides || p.velocity; });
   if (!possible) return std::make_shared<UnknownLag>();

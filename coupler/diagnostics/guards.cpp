@@ -110,7 +110,7 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
   const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
   speed_.push_back(norm(comm_, velocity));
   if (speed_.size() > 4) speed_.pop_front();
-  // It turns round: most of the shape is the last one's with the other sign.
+  // The motion reverses: most of its shape equals the last one with opposite sign.
   const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;
   if (turned) {
     if (turns_ == 0) sizes_.assign(1, old_size);
@@ -125,7 +125,7 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
   velocity_ = std::move(velocity);
   jump_ = std::move(jump);
   if (turns_ < 4) return {};
-  // Pairs of neighbours: the growth need not be even.
+  // Pairs of adjacent values, because the growth may be uneven.
   const std::size_t n = sizes_.size();
   const double then = sizes_[0] + sizes_[1], now = sizes_[n - 2] + sizes_[n - 1];
   const double speed = *std::ranges::max_element(speed_);
@@ -188,8 +188,8 @@ std::optional<std::string> WorkGuard::accepted(double fluid, double structure, c
   Window& last = windows_.back();
   last.given += fluid, last.taken += structure, last.size += larger, ++last.steps;
   if (windows_.size() < 3 || last.steps < window) return {};
-  // More than half of what goes to and fro is made by the scheme, it is no small part of the whole run's, and
-  // it grows: a guess that jitters parts the work, too, but stays as it is.
+  // The scheme creates more than half of the exchanged work, which is no small part of the whole run and
+  // grows. A jittering guess also separates the works, but without growth.
   const bool grows = last.apart() > 2 * windows_[1].apart() && windows_[1].apart() > 2 * windows_[0].apart();
   if (!grows || !(last.apart() > 0.5 * last.size) || !(last.apart() > 0.1 * exchanged_)) return {};
   return fmt::format(
@@ -203,7 +203,7 @@ WorkGuard::Verdict WorkGuard::verdict(bool by_nearest, bool lagging) const {
   const double apart = std::abs(fluid_ - structure_), net = std::min(std::abs(fluid_), std::abs(structure_)),
                energy = energy_ > 0 ? energy_ : stored_, against = std::max(net, energy);
   Verdict v;
-  // Nothing but noise has gone over where all of it is apart by rounding alone.
+  // Only noise has been exchanged if the difference is at round-off.
   v.part = apart <= 1e-12 * exchanged_ ? 0 : apart / std::max(against, 1e-12 * exchanged_);
   v.sound = v.part < sound_part;
   v.useless = !lagging && apart / exchanged_ >= useless_part && steps_ >= judged_steps;

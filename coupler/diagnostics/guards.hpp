@@ -18,19 +18,18 @@ class Archive;
 
 namespace couplet::coupler {
 
-/// Watches the residuals of one step: a coupling that runs away is named within a few passes instead of when
-/// the allowed passes are used up.
+/// Watches the residuals of one step, to detect divergence within a few passes.
 class IterationGuard {
  public:
   void start_step() { *this = {}; }
-  /// After each pass: |r| (any norm, the same in all passes) and the factor that led to its x. Throws
-  /// SchemeFailure where constant relaxation meets too much added mass (each mode's error has the factor
-  /// 1 - omega (1 + r), Causin, Gerbeau and Nobile 2005: no smaller step helps), SolveFailure where an
-  /// accelerated residual has grown over `patience` passes or by `too_far` in all.
+  /// Call after each pass with |r| (any fixed norm) and the factor of its x. Throws SchemeFailure if constant
+  /// relaxation diverges due to added mass; each mode's error has the factor 1 - omega (1 + r) [Causin,
+  /// Gerbeau and Nobile 2005], so smaller steps do not help. Throws SolveFailure if an accelerated residual
+  /// grows over `patience` passes or by `too_far` in total.
   void pass(double residual, double omega, bool constant);
 
-  /// After a pass that a participant could not answer: a reason if the residual was growing before, else nothing. A motion
-  /// that runs away folds a mesh long before `patience` passes are over. `relaxation`: the constant one; 0: adapted.
+  /// Call after a pass that a participant could not answer. Returns a reason if the residual was growing: a
+  /// diverging motion folds a mesh before `patience` passes are over. `relaxation`: the constant one, or 0.
   std::optional<std::string> suspects(double relaxation) const;
 
   static constexpr int patience = 5;
@@ -38,32 +37,31 @@ class IterationGuard {
 
  private:
   bool grows() const;
-  double factor() const;  // a pass
+  double factor() const;  // per pass
 
   double first_ = 0, last_ = 0;
   int passes_ = 0, growing_ = 0;
   double at_turn_ = 0;  // residual at which the growth began
 };
 
-/// Watches the accepted motion for the two-step oscillation of loosely coupled schemes: jumps of the
-/// velocity, d_n = (x^{n+1} - x^n) / dt_n - (x^n - x^{n-1}) / dt_{n-1}, that turn round in every step, are as
-/// large as the velocity itself and grow; steps of other lengths do not hide it. The added mass taken
-/// explicitly has the factor -r a step (r: added mass over the structure's), whatever the step; the
-/// semi-implicit scheme does the same with what viscosity adds (it takes the wall shear at the guessed
-/// velocity).
+/// Detects the two-step oscillation of loosely coupled schemes in the accepted motion. The velocity jumps d_n
+/// = (x^{n+1} - x^n)/dt_n - (x^n - x^{n-1})/dt_{n-1} then alternate, grow, and are as large as the velocity.
+/// Variable steps do not hide it. Explicit added mass has the factor -r per step (r: added mass over the
+/// structure's) for any step size. The semi-implicit scheme does the same with viscous added mass, because
+/// its wall shear uses the guessed velocity.
 class OscillationGuard {
  public:
-  /// `comm`: over whose ranks the motion is cut.
+  /// `comm`: ranks over which the motion is distributed.
   explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF) : comm_(comm) {}
-  /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
-  /// nothing.
+  /// Adds the motion x of an accepted step of length dt, this rank's part. Returns a reason if it oscillates.
   std::optional<std::string> accepted(const std::vector<double>& x, double dt, coupling::Scheme scheme);
-  /// After a step that failed: a reason if the accepted steps before it had begun to swing, else nothing.
+  /// Call after a failed step. Returns a reason if the accepted steps before it had begun to oscillate.
   std::optional<std::string> suspects(coupling::Scheme scheme) const;
-  /// Steps in a row in which it has turned round.
+  /// Number of consecutive steps in which it has reversed.
   int turns() const { return turns_; }
 
-  /// For checkpoints: what is the same on all ranks, and `count` values of the motion from `first` on, in their order.
+  /// Data for checkpoints: values equal on all ranks, and `count` values of the motion from `first` on, in
+  /// order.
   void visit_numbers(io::Archive& archive);
   void visit_fields(io::Archive& archive, const parallel::GlobalOrder& order, const std::string& name,
                     std::size_t first, std::size_t count, std::size_t width);
@@ -71,50 +69,52 @@ class OscillationGuard {
  private:
   MPI_Comm comm_;
   std::vector<double> x_, velocity_, jump_;
-  int turns_ = 0, levels_ = 0;  // levels: accepted states that are known
-  std::vector<double> sizes_;   // of the differences since the turning began
+  int turns_ = 0, levels_ = 0;  // levels: number of known accepted states
+  std::vector<double> sizes_;   // of the differences since the oscillation began
   std::deque<double> speed_;    // of the last steps
 };
 
-/// Watches the work on both sides of the interface. What the fluid gives and the structure takes are the same
-/// but for the error of the coupling; work that parts more and more is made by the scheme.
+/// Compares the work on both sides of the interface. It differs only by the coupling error, so a growing
+/// difference is produced by the scheme.
 class WorkGuard {
  public:
-  /// Work of a step on both sides [J]. A reason if the two have parted, else nothing.
-  /// When a step cannot be solved: whether the work so far says that the explicit scheme itself made the motion.
+  /// accepted() adds the work of a step on both sides [J] and returns a reason if they diverge. suspects()
+  /// returns a reason if a step fails and the work so far shows that the explicit scheme made the motion.
   std::optional<std::string> suspects(coupling::Scheme scheme) const;
   std::optional<std::string> accepted(double fluid, double structure, coupling::Scheme scheme);
-  /// For the end of the run: a sentence with numbers, and whether the balance is sound.
+  /// Result at the end of the run: a sentence with numbers, and whether the balance is sound.
   struct Verdict {
     bool sound = true;
     std::string text;
-    double part = 0;  ///< apart, of the net work or the energy
+    double part = 0;  ///< difference relative to the net work or energy
     bool useless = false;
   };
-  /// What is apart is compared with the smaller of the net works, or with the largest energy of the structure where that is
-  /// more: work that went there and back again hides nothing. `by_nearest`: motion and load went by the nearest.
-  /// `lagging`: one pass per step, where the wall that the fluid sees is extrapolated and its velocity jitters about the
-  /// structure's: loads alternate from step to step, and the works part, while the motion may be right to parts in a
-  /// thousand. That proves no uselessness (growth is the business of accepted()).
+  /// Compares the difference with the smaller net work, or with the structure's largest energy if that is
+  /// larger, because work that is returned hides nothing. `by_nearest`: nearest mapping of motion and load.
+  /// `lagging`: one pass per step. The fluid then sees an extrapolated wall whose velocity jitters, so loads
+  /// alternate and the works differ even if the motion is accurate to parts in a thousand. Such a result is
+  /// not called useless; accepted() checks growth.
   Verdict verdict(bool by_nearest = false, bool lagging = false) const;
-  /// Energy of the structures after a step [J]; NaN: not known. Until one is, the largest net work taken stands for it.
+  /// Adds the structures' energy after a step [J]; NaN if unknown. Until then the largest net work taken is
+  /// used.
   void energy(double value) { energy_ = value > energy_ ? value : energy_; }
 
-  /// For checkpoints.
+  /// Data for checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(fluid_, structure_, exchanged_, steps_, energy_, stored_, windows_);
   }
 
-  /// Of net work or energy, that apart: sound below the one; of all work exchanged: the answer useless from the other on (of
-  /// so many steps at least: the start of a motion parts the work of the first ones).
+  /// Limits of the difference: sound below the first, relative to net work or energy; useless above the
+  /// second, relative to all work exchanged. The latter needs this many steps, because the first steps of a
+  /// motion differ more.
   static constexpr double sound_part = 0.05, useless_part = 0.5;
   static constexpr long judged_steps = 20;
-  static constexpr int window = 12;  ///< steps; it fires after three of them at the earliest
+  static constexpr int window = 12;  ///< steps; it reports after three of them at the earliest
 
  private:
   double fluid_ = 0, structure_ = 0, exchanged_ = 0;  // sums over the run; exchanged: of the larger |work|
-  double energy_ = 0, stored_ = 0;  // the largest: of the structures, net work that they had taken
+  double energy_ = 0, stored_ = 0;  // largest energy of the structures; largest net work taken
   long steps_ = 0;
   struct Window {
     double given = 0, taken = 0, size = 0;

@@ -10,7 +10,7 @@ namespace {
 
 using OnDivergence = CouplingParameters::OnDivergence;
 
-/// The interface swings from step to step and more and more (see OscillationGuard).
+/// Detects a growing oscillation of the interface from step to step (see OscillationGuard).
 class InterfaceOscillation final : public CouplingDiagnostic {
  public:
   explicit InterfaceOscillation(const CouplingView& view) : view_(view), guard_(view.comm) {}
@@ -24,7 +24,7 @@ class InterfaceOscillation final : public CouplingDiagnostic {
           {.id = "interface-oscillation", .severity = base::Severity::wrong, .sentence = *reason});
   }
   std::optional<app::StepFailure> suspects() const override {
-    // Halving does not save a step that swings already.
+    // Halving does not help a step that already oscillates.
     if (const auto swings = guard_.suspects(view_.scheme.now()); swings && stops())
       return app::StepFailure(*swings, false);
     return {};
@@ -61,7 +61,7 @@ namespace {
 
 using OnDivergence = CouplingParameters::OnDivergence;
 
-/// Work given and work taken at the interface (see WorkGuard).
+/// Compares the work given and taken at the interface (see WorkGuard).
 class InterfaceWork final : public CouplingDiagnostic {
  public:
   explicit InterfaceWork(const CouplingView& view) : view_(view) {}
@@ -101,7 +101,7 @@ class InterfaceWork final : public CouplingDiagnostic {
 
  private:
   bool stops() const { return view_.parameters.on_divergence == OnDivergence::stop; }
-  /// Work in the accepted state of all that take a force [J]; NaN where one does not tell.
+  /// Energy in the accepted state of all participants that take forces [J]; NaN if one does not report it.
   double energy_of_structures() const {
     double total = 0;
     for (std::size_t i = 0; i < view_.pass.sides().size(); ++i) {

@@ -9,7 +9,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// Ends an iteration that runs away within a few passes (see IterationGuard).
+/// Stops a diverging iteration within a few passes (see IterationGuard).
 class IterationGrowth final : public CouplingDiagnostic {
  public:
   explicit IterationGrowth(const CouplingView& view) : view_(view) {}
@@ -42,10 +42,10 @@ std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {
 
 namespace {
 
-// Share of the motion: a step that leaves more is no solution of the coupled problem.
+// Relative residual above which a step does not solve the coupled problem.
 constexpr double useless_residual = 0.5;
 
-/// Steps that `at-max-iterations: accept` takes although they have not converged.
+/// Reports steps accepted without convergence (`at-max-iterations: accept`).
 class UnconvergedStep final : public CouplingDiagnostic {
  public:
   explicit UnconvergedStep(const CouplingView& view) : view_(view) {}
@@ -78,14 +78,14 @@ std::shared_ptr<CouplingDiagnostic> unconverged_step(const CouplingView& view) {
 
 namespace {
 
-// A residual that hardly falls says nothing except that the error is large.
+// Contraction above which the residual only shows that the error is large.
 constexpr double slowest = 0.99;
-// Where one pass was enough.
+// Contraction assumed if one pass was enough.
 constexpr double unseen = 0.5;
 
-/// What the iteration between participants leaves in the unknown below its tolerance: of a step whose residual fell
-/// by the factor c in its last pass, |x - x*| <= c / (1 - c) |H(x) - x|; over all steps see StepErrors. Residuals
-/// are over the size of the unknown.
+/// Error of the iteration between participants below its tolerance. If the last pass reduced the residual by
+/// a factor c,
+/// |x - x*| <= c/(1 - c) |H(x) - x|; for all steps see StepErrors. Residuals are relative to the unknown.
 class CouplingError final : public CouplingDiagnostic {
  public:
   explicit CouplingError(const CouplingView& view) : view_(view) {}
@@ -109,7 +109,7 @@ class CouplingError final : public CouplingDiagnostic {
 
  private:
   const CouplingView& view_;
-  double residual_ = 0, before_ = 0;  // of the last two passes of the step under way; 0: none
+  double residual_ = 0, before_ = 0;  // of the last two passes of this step; 0 if none
   time::StepErrors errors_;
 };
 

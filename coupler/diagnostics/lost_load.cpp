@@ -12,8 +12,7 @@ namespace {
 
 constexpr double limit = 0.02;
 
-/// Forces at faces that a side gives and nobody takes, over those that somebody takes: root mean squares over faces and
-/// steps.
+/// Forces at faces that no participant receives, relative to received ones: RMS over faces and steps.
 class LostLoad final : public CouplingDiagnostic {
  public:
   explicit LostLoad(const CouplingView& view) : view_(view) {
@@ -27,7 +26,7 @@ class LostLoad final : public CouplingDiagnostic {
         });
         forces.push_back({i, datum.name, taken});
       }
-      // Where nothing is taken the coupling does not act by forces at all.
+      // If none are received, the coupling does not act by forces.
       if (std::ranges::any_of(forces, &Force::taken) && !std::ranges::all_of(forces, &Force::taken))
         forces_.insert(forces_.end(), forces.begin(), forces.end());
     }

@@ -17,8 +17,8 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-/// Structures that are loaded and do not move at all: their interface is held, or the load does not arrive. However stiff a
-/// structure is, a load moves it by more than nothing.
+/// Detects loaded structures that do not move at all, because their interface is held or the load does not
+/// arrive. Even a stiff structure moves measurably.
 class StructureAtRest final : public CouplingDiagnostic {
  public:
   explicit StructureAtRest(const CouplingView& view) : view_(view) {

@@ -15,7 +15,7 @@
 
 namespace couplet::coupler {
 
-/// View of a run that the coupler shows: its parts, as they are after the step just solved or accepted.
+/// State of a coupled run after the last solved or accepted step, as diagnostics see it.
 struct CouplingView {
   MPI_Comm comm;
   const CouplingParameters& parameters;
@@ -23,12 +23,12 @@ struct CouplingView {
   const Unknown& unknown;
   const Record& record;
   const SchemeChoice& scheme;
-  const FixedPointResult& last;  ///< of the step just solved
-  const History& history;        ///< up to the step before
+  const FixedPointResult& last;  ///< of the last solved step
+  const History& history;        ///< up to the previous step
   const double& dt;              ///< of the last step [s]
 };
 
-/// A diagnostic that also looks into the passes of a step. What it learns there is of that step alone, unless the step is
+/// Diagnostic that also observes the passes of a step. What it learns there is discarded unless the step is
 /// accepted.
 class CouplingDiagnostic : public diagnostics::Diagnostic {
  public:
@@ -36,22 +36,22 @@ class CouplingDiagnostic : public diagnostics::Diagnostic {
   /// Participant `side` has answered in a pass.
   virtual void answered(std::size_t /*side*/, const coupling::Exchange& /*taken*/,
                         const coupling::Exchange& /*given*/) {}
-  /// A pass of an iteration is over; `omega` led to its x. Throws SolveFailure where the iteration runs away.
+  /// A pass of an iteration has ended; `omega` led to its x. Throws SolveFailure if the iteration diverges.
   virtual void passed(const Residual& /*residual*/, double /*omega*/) {}
-  /// Passes of explicit coupling, in a few steps: the pass from x gave `image`, another one from there `again`.
+  /// Passes of explicit coupling, in a few steps: x to `image`, and from there to `again`.
   virtual void returned(GlobalIndex /*step*/, const Iterate& /*x*/, const Iterate& /*image*/,
                         const Iterate& /*again*/) {}
-  /// After a step that failed: why it did, if this diagnostic knows.
+  /// Cause of a failed step, if this diagnostic knows it.
   virtual std::optional<app::StepFailure> suspects() const { return {}; }
-  /// Said after the reason of a failed step whose cause nobody knows; empty: nothing.
+  /// Remark after the reason of a failed step of unknown cause; may be empty.
   virtual std::string remark() const { return {}; }
-  /// Why the run must not go on after the last accepted step; empty if it may.
+  /// Reason to stop after the last accepted step; empty to continue.
   virtual std::string stop() const { return {}; }
 };
 
 using CouplingDiagnostics = std::vector<std::shared_ptr<CouplingDiagnostic>>;
 
-/// All diagnostics of a coupling, in the order in which they are asked for the cause of a failure. `all` gets them, too.
+/// Creates all diagnostics of a coupling in the order of their causes, and adds them to `all`.
 CouplingDiagnostics coupling_diagnostics(const CouplingView& view, diagnostics::Diagnostics& all);
 
 }  // namespace couplet::coupler

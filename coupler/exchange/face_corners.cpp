@@ -10,7 +10,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// Area of the polygon (2-D: the edge, 1 m deep) with corners `first` to `last` - 1, in their order.
+/// Area of the polygon (2-D: of the edge, 1 m deep) with corners `first` to `last` - 1, in order.
 Vec3 area_of(const std::vector<Vec3>& x, Index first, Index last, int dim) {
   const auto at = [&](Index k) -> const Vec3& { return x[std::size_t(k)]; };
   if (dim == 2) {
@@ -57,7 +57,7 @@ std::vector<Vec3> FaceCorners::areas(const std::vector<double>& displacement) co
     for (int c = 0; c < dim_; ++c) x[k][c] += moved[k * std::size_t(dim_) + std::size_t(c)];
   std::vector<Vec3> list;
   for (std::size_t f = 0; f < areas_.size(); ++f) {
-    // The order of the corners may go around the face either way.
+    // The corners may be in either order around the face.
     const bool turned = area_of(points_, begin(f), end(f), dim_).dot(areas_[f]) < 0;
     const Vec3 area = area_of(x, begin(f), end(f), dim_);
     list.push_back(turned ? Vec3(-area) : area);
@@ -89,7 +89,7 @@ CavityWall::Flux CavityWall::flux(const std::vector<double>& velocity, const std
   return flux;
 }
 
-/// Simpson's rule: S is a parabola of the way.
+/// Simpson's rule, because S is quadratic along the path.
 double CavityWall::swept(const std::vector<double>& from, const std::vector<double>& to) const {
   std::vector<double> way(n_values_, 0.), middle = way;
   for (std::size_t i = 0; i < way.size(); ++i) {

@@ -102,7 +102,7 @@ void ForeignStructure::send(const coupling::Command& command) {
   channel_->send(own);
 }
 
-/// The derivative at t^{n+1} of the parabola through the last three displacements; of the line through two in the first step.
+/// Derivative at t^{n+1} of the parabola through the last three displacements, or of the line through two.
 std::vector<double> ForeignStructure::velocity() const {
   const bool parabola = !older_.empty() && old_dt_ > 0;
   const double r = parabola ? dt_ / old_dt_ : 0, newest = (1 + 2 * r) / (1 + r) / dt_, last = -(1 + r) / dt_,

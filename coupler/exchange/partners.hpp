@@ -10,18 +10,18 @@
 
 namespace couplet::coupler {
 
-/// A participant as the coupler talks to it.
+/// Participant from the coupler's point of view.
 struct Partner {
   std::unique_ptr<coupling::Channel> channel;
   int sub_steps = 1;   ///< within a coupling step
-  double seconds = 0;  ///< it has spent in the step under way
+  double seconds = 0;  ///< spent in the current step
   double seconds_since_accepted = 0;
   coupling::StepReport report;  ///< of the last accepted step
   double advised_dt = 0;
-  coupling::Surfaces surfaces;  ///< of its vertices
-  std::string introduction;     ///< what its program was configured by; empty: it says nothing
-  coupling::Exchange
-      initial;  ///< values before the first step that it gave at its start; none: it gave no values
+  coupling::Surfaces surfaces;  ///< surfaces of its vertices
+  std::string introduction;     ///< configuration of its program; empty if it declares none
+  /// Values that it gave at its start; empty if there are none.
+  coupling::Exchange initial;
 
   const std::string& name() const { return channel->name(); }
   void send(coupling::Command&& command) { send(command); }
@@ -29,21 +29,20 @@ struct Partner {
     command.step.sub_steps = sub_steps;
     channel->send(command);
   }
-  /// Throws SolveFailure (SchemeFailure if a smaller step would not help) naming the participant if the reply
-  /// is a failure.
+  /// Throws SolveFailure with the participant's name for a failed reply; SchemeFailure if a smaller step does
+  /// not help.
   coupling::Reply receive();
 };
 
-/// The command to everyone at once, then all replies; failures are collected and thrown together as one
-/// SolveFailure.
+/// Sends a command to all, then waits for all replies. Collects failures in one SolveFailure.
 void ask_all(const std::vector<Partner*>& partners, const coupling::Command& command);
-/// The interface of each, in their order; their initial values go to the partners.
+/// Returns the interface of each, in order; stores initial values in the partners.
 std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners);
-/// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
-/// end; empty: it did not.
+/// Finalizes the partners one after the other, so that their output does not mix. Returns their error
+/// estimates. `problem`: why the run stopped early; else empty.
 std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
                                                    const std::string& problem);
-/// The smallest step that somebody advises [s].
+/// Smallest advised step [s].
 double advised_dt(const std::vector<Partner*>& partners);
 
 }  // namespace couplet::coupler

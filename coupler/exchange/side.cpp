@@ -15,7 +15,7 @@ namespace {
 const Neighbour none{std::numeric_limits<double>::infinity(), -1, std::numeric_limits<GlobalIndex>::max(), 0,
                      Vec3::Zero()};
 
-/// Of two the nearer one; of equals (to rounding) the one of the smaller id.
+/// Compares by distance; ties (to rounding) by the smaller id.
 bool better(const Neighbour& a, const Neighbour& b) {
   const double equal = 1e-9 * std::max(a.distance, b.distance);
   if (std::isfinite(equal) && std::abs(a.distance - b.distance) <= equal) return a.id < b.id;
@@ -66,7 +66,7 @@ PointSet whole_set(PointSet set) {
 
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among) {
   if (parallel::comm_size(comm) == 1) return nearest_here(points, among);
-  // A point is asked about where a box is nearer than the furthest corner of every box.
+  // Asks for a point in boxes nearer than the farthest corner of every box.
   const std::vector<PointBox> all = parallel::all_gather(comm, std::vector<PointBox>{PointBox(among.points)});
   std::vector<std::vector<Vec3>> ask(all.size());
   std::vector<std::vector<std::size_t>> asked(all.size());

@@ -14,57 +14,57 @@
 
 namespace couplet::coupler {
 
-/// The datum of this name; nullptr if the list has none.
+/// Datum of this name; nullptr if the list has none.
 const coupling::Interface::Datum* find_datum(const std::vector<coupling::Interface::Datum>& list,
                                              const std::string& name);
 /// Values by name; empty if there are none.
 const std::vector<double>& values_of(const coupling::Exchange& data, const std::string& name);
 
-/// The smallest box around some points.
+/// Bounding box of points.
 struct PointBox {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   bool empty = true;
   PointBox() = default;
   explicit PointBox(const std::vector<Vec3>& points);
-  /// Distance [m] of a point of the box to `p`, at least and at most.
+  /// Bounds of the distance [m] between points of the box and `p`.
   double nearest(const Vec3& p) const { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); }
   double furthest(const Vec3& p) const { return (p - low).cwiseAbs().cwiseMax((p - high).cwiseAbs()).norm(); }
 };
 
-/// Some places of one side of the interface: this rank's part of a list that is cut over the coupler's ranks.
+/// Places of one side of the interface: this rank's part of a list distributed over the coupler's ranks.
 struct PointSet {
-  std::string what;  ///< for messages: "vertices of 'fluid'"
+  std::string what;  ///< for messages, for example "vertices of 'fluid'"
   std::vector<Vec3> points;
-  std::vector<double> sizes{};  ///< of faces [m^2] (2-D: [m]), for shares; empty: all alike
-  const coupling::Interface* surface =
-      nullptr;  ///< that these are vertices or faces of, this rank's part; for projection
+  std::vector<double> sizes{};  ///< of faces [m^2] (2-D: [m]), for shares; empty if equal
+  /// Surface of these vertices or faces, this rank's part; for projection.
+  const coupling::Interface* surface = nullptr;
   std::vector<GlobalIndex> positions{};  ///< of these points in the whole list
-  std::vector<GlobalIndex> ids{};        ///< the same on any number of ranks: decide between equals
+  std::vector<GlobalIndex> ids{};        ///< equal on any number of ranks; break ties
   coupling::Starts starts{};             ///< of the whole list
   coupling::Interface::Place place = coupling::Interface::Place::vertices;
-  bool own_surface =
-      false;  ///< a surface of their own among those of `surface`: what goes by faces does not see it
+  /// They form a surface of their own within `surface`, which maps by faces do not see.
+  bool own_surface = false;
 };
-/// Fills in positions, ids and starts of a list that lives on one rank.
+/// Sets positions, ids and starts of a list that is on one rank.
 PointSet whole_set(PointSet set);
 
 struct Neighbour {
-  double distance;       ///< [m]; infinity: there is none
+  double distance;       ///< [m]; infinity if there is none
   GlobalIndex position;  ///< in the whole list
   GlobalIndex id;
-  double size;  ///< of the neighbour, if its set has sizes
+  double size;  ///< of the neighbor, if its set has sizes
   Vec3 point;
 };
 
-/// For each point of `points` on this rank the nearest of `among` on any rank; of equals the one of the
-/// smallest id. No rank sees more of `among` than its own part. Collective.
+/// For each point of `points` on this rank, the nearest of `among` on any rank; ties go to the smallest id.
+/// Each rank stores only its part of `among`. Collective.
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
 
-/// How many of `found` on all ranks have the same neighbour, at most. `starts`: of the list that was searched. Collective.
+/// Largest number of `found` on all ranks with the same neighbor. `starts`: of the list searched. Collective.
 int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts);
 
-/// Every item on the rank that has it, owner(item); there those of rank 0 first, of each rank in the order in which it had
-/// them. Nothing is sent where all are there. Items are copied as bytes. Collective.
+/// Sends each item to the rank owner(item). Items are ordered by source rank and then as they were. Nothing
+/// is sent if all are there already. Items are copied as bytes. Collective.
 template <class Item, class Owner>
 std::vector<Item> to_owners(MPI_Comm comm, std::vector<Item> items, const Owner& owner) {
   const int rank = parallel::comm_rank(comm);
@@ -75,25 +75,25 @@ std::vector<Item> to_owners(MPI_Comm comm, std::vector<Item> items, const Owner&
   return parallel::exchange(comm, out).items;
 }
 
-/// One participant as the coupler knows it after `initialise`: this rank's part of its places, and how they
-/// are cut over the coupler's ranks.
+/// Participant after `initialise`: this rank's part of its places, and their distribution over the coupler's
+/// ranks.
 struct Side {
   std::string name;
   coupling::Interface interface;
   coupling::Starts vertices, faces;
   coupling::Surfaces surfaces;
 
-  /// Collective; fills in ids where there are none.
+  /// Sets ids if there are none. Collective.
   Side(MPI_Comm comm, std::string name, coupling::Interface interface);
   std::size_t entries(coupling::Interface::Place place) const {
     return place == coupling::Interface::Place::vertices ? interface.vertices.size()
                                                          : interface.face_centres.size();
   }
-  /// The order of this rank's places by their numbers. Collective.
+  /// Order of this rank's places by their numbers. Collective.
   parallel::GlobalOrder order(MPI_Comm comm, coupling::Interface::Place place) const;
   /// All places of a kind.
   PointSet places(coupling::Interface::Place place) const;
-  /// Those where a datum is given, or taken.
+  /// Places where a datum is given or taken.
   PointSet places_given(const coupling::Interface::Datum& datum) const {
     return places_of(datum, surfaces.gives);
   }

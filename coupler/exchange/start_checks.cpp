@@ -23,7 +23,7 @@ std::vector<std::string> parts(const std::string& text, char separator) {
   return list;
 }
 
-/// `record`: implicit or explicit, serial or parallel, the participants of a serial one.
+/// `record`: implicit or explicit, serial or parallel, and the participants of a serial scheme.
 void check_scheme(const CouplingParameters& p, const std::string& who,
                   const std::vector<std::string>& record) {
   const auto& list = p.exchange->participants;
@@ -108,8 +108,8 @@ void check_roles(const CouplingParameters& p, const std::vector<Side>& sides) {
     if (!problem.empty())
       throw Error("'{}' cannot be the {} (`coupling.{}`): {}.", side->name, role, role, problem);
   };
-  if (p.fluid && !p.fluid->foreign())
-    check("fluid", p.fluid);  // another program's data were looked at one by one
+  // Data of other programs were checked individually.
+  if (p.fluid && !p.fluid->foreign()) check("fluid", p.fluid);
   check("structure", p.structure);
   check("mesh", p.mesh);
 }

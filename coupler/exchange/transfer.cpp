@@ -11,7 +11,7 @@ namespace couplet::coupler {
 
 namespace {
 
-/// Of entries sorted by target and source, equal ones added up.
+/// Sums equal entries, which are sorted by target and source.
 void add_up(std::vector<Transfer::Entry>& entries) {
   std::size_t kept = 0;
   for (const auto& e : entries)
@@ -22,7 +22,7 @@ void add_up(std::vector<Transfer::Entry>& entries) {
   entries.resize(kept);
 }
 
-/// Entries of targets from `first` on, by target and source: by counting, since the targets of a rank are a stretch.
+/// Sorts entries of targets from `first` on by counting, because a rank's targets are contiguous.
 void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>& entries) {
   if (std::ranges::is_sorted(entries, by_row)) return;
   std::vector<std::size_t> at(std::size_t(end - first) + 1, 0);
@@ -31,7 +31,7 @@ void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>&
   std::vector<Transfer::Entry> sorted(entries.size());
   for (const auto& e : entries) sorted[at[std::size_t(e.target - first)]++] = e;
   entries = std::move(sorted);
-  // Now at[t] is where row t ends.
+  // at[t] is now the end of row t.
   for (std::size_t t = 0, begin = 0; t + 1 < at.size(); begin = at[t++]) {
     const auto row = std::ranges::subrange(entries.begin() + std::ptrdiff_t(begin),
                                            entries.begin() + std::ptrdiff_t(at[t]));
@@ -78,7 +78,7 @@ Transfer::Transfer(MPI_Comm comm, const coupling::Starts& targets, const couplin
   for (std::size_t t = 0; same_ && t < n_targets; ++t)
     same_ = first_[t + 1] == t + 1 && std::size_t(column_[t]) == t && weight_[t] == 1;
   if (alone_) return;
-  // Foreign positions are ascending, so they come rank by rank.
+  // Positions on other ranks are ascending, so they are grouped by rank.
   std::vector<std::vector<GlobalIndex>> wanted(std::size_t(parallel::comm_size(comm)));
   for (const GlobalIndex s : foreign) wanted[std::size_t(coupling::owner_of(sources, s))].push_back(s);
   for (const auto& list : wanted) take_.push_back(int(list.size()));
@@ -113,7 +113,7 @@ std::vector<double> Transfer::fetch(std::span<const double> values, int componen
 
 namespace {
 
-/// The product for N components, known when this is compiled or (0) not.
+/// Product for N components, known at compile time, or 0.
 template <std::size_t N>
 void multiply(const std::vector<std::size_t>& first, const std::vector<Index>& column,
               const std::vector<double>& weight, const double* from, std::size_t components, double* to) {
@@ -146,7 +146,7 @@ namespace {
 using Entry = Transfer::Entry;
 using Entries = std::vector<Entry>;
 
-/// Sums by source of one row of the product: an open table of places and values.
+/// Sums one row of the product by source, in an open-addressing hash table.
 class RowSums {
  public:
   void add(GlobalIndex source, double value) {
@@ -155,7 +155,7 @@ class RowSums {
     if (keys_[slot] == nothing) keys_[slot] = source, values_[slot] = 0, used_.push_back(source);
     values_[slot] += value;
   }
-  /// Ascending by source; then the table is empty.
+  /// Returns the sums by ascending source and clears the table.
   void take(GlobalIndex target, Entries& to) {
     std::ranges::sort(used_);
     for (const GlobalIndex source : used_) to.push_back({target, source, values_[slot_of(source)]});
@@ -165,7 +165,7 @@ class RowSums {
 
  private:
   static constexpr GlobalIndex nothing = -1;
-  /// Its own, or the empty one where it belongs.
+  /// Slot of the source, or the empty one for it.
   std::size_t slot_of(GlobalIndex source) const {
     const std::size_t mask = keys_.size() - 1;
     std::size_t slot = std::size_t(std::uint64_t(source) * 0x9E3779B97F4A7C15u >> 32) & mask;
@@ -186,10 +186,10 @@ class RowSums {
   std::vector<double> values_ = std::vector<double>(128);
 };
 
-/// The rows of a map at some places: those of this rank, and copies of others' that it needs.
+/// Rows of a map at some places: those of this rank, and copies from other ranks.
 class MapRows {
  public:
-  /// `own`: by owner and in order; `needed`: places of others, ascending.
+  /// `own`: by owner, in order. `needed`: positions on other ranks, ascending.
   MapRows(MPI_Comm comm, const coupling::Starts& starts, const Entries& own,
           const std::vector<GlobalIndex>& needed)
       : first_(starts[std::size_t(parallel::comm_rank(comm))]),

@@ -17,7 +17,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// Where a side does not list the corners of its faces: local interpolants through the centres of the structure's.
+/// Map for a side without listed corners: local interpolants through the structure's face centers.
 std::vector<Transfer::Entry> without_corners(MPI_Comm comm, const Surroundings& structure,
                                              const Surroundings& surface, int dim) {
   const std::size_t k = dim == 2 ? 5 : 10;
@@ -62,7 +62,7 @@ using Polygon = std::vector<Vec2>;
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// A face laid flat: its plane, and simplices (edges or triangles) with the corner functions at their ends.
+/// Face projected to its plane: simplices (edges or triangles) with the corner functions at their ends.
 struct Flat {
   Vec3 origin, normal, x, y;
   Index n;  // corners
@@ -110,7 +110,7 @@ Flat::Flat(const coupling::Interface& s, Index face)
   }
 }
 
-/// Leaves of `subject` what is to the left of the line from a to b (Sutherland and Hodgman 1974).
+/// Clips `subject` to the left of the line from a to b (Sutherland and Hodgman 1974).
 void keep_left(const Vec2& a, const Vec2& b, Polygon& subject, Polygon& spare) {
   spare.clear();
   for (std::size_t i = 0; i < subject.size(); ++i) {
@@ -122,7 +122,7 @@ void keep_left(const Vec2& a, const Vec2& b, Polygon& subject, Polygon& spare) {
   std::swap(subject, spare);
 }
 
-/// Adds the integrals of products over the part of a triangle that lies within a polygon.
+/// Adds the integrals of products over the part of a triangle within a polygon.
 void add_common(const Flat::Simplex& t, const Polygon& polygon, Polygon& common, Polygon& spare,
                 Eigen::MatrixXd& products) {
   common = polygon;
@@ -152,7 +152,7 @@ void add_common(const Flat::Simplex& t, const Polygon& polygon, Polygon& common,
           within(i, j) * t.functions[std::size_t(i)] * t.functions[std::size_t(j)].transpose();
 }
 
-/// Integrals of products over the part of `f` that a face covers.
+/// Integrals of products over the part of `f` covered by a face.
 Eigen::MatrixXd common_part(const Flat& f, const coupling::Interface& other, Index face,
                             std::array<Polygon, 3>& spare) {
   Eigen::MatrixXd products = f.zero();
@@ -179,14 +179,14 @@ Eigen::MatrixXd common_part(const Flat& f, const coupling::Interface& other, Ind
   return products;
 }
 
-/// Distance [m] of two faces that see each other: of one's centre from the other's plane.
+/// Distance [m] between opposite faces: of one's center from the other's plane.
 double between(const coupling::Interface& a, Index f, const coupling::Interface& b, Index s) {
   const Vec3 way = b.face_centres[s] - a.face_centres[f];
   return std::min(std::abs(way.dot(a.face_areas[f].normalized())),
                   std::abs(way.dot(b.face_areas[s].normalized())));
 }
 
-/// Gives the places of `f` that no polygon covers to the faces nearest to them.
+/// Assigns the parts of `f` outside all polygons to the nearest faces.
 void fill(const Flat& f, const coupling::Interface& other, const std::vector<Index>& near, double missing,
           std::vector<Cover>& found) {
   struct Sample {

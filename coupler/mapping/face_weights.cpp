@@ -62,7 +62,7 @@ Slope Slopes::least_squares(Index face, const std::vector<Index>& neighbours, bo
     const Vec3 d = surface_.face_centres[neighbours[std::size_t(i)]] - surface_.face_centres[face];
     way.col(i) = d - normal * normal.dot(d);
   }
-  // Weights 1 / distance^2: near and far neighbours of graded meshes count alike.
+  // Weights 1/distance^2 balance near and far neighbors in graded meshes.
   Eigen::RowVectorXd weight(n);
   for (Eigen::Index i = 0; i < n; ++i) weight[i] = 1 / std::max(way.col(i).squaredNorm(), 1e-300);
   const Eigen::Matrix3Xd weighted = way.array().rowwise() * weight.array();
@@ -122,8 +122,8 @@ const Slope& Slopes::at(Index face) {
 
 namespace {
 
-/// Of a polygon: the integrals of its corners' functions, linear over the triangles about the mean of the corners,
-/// over its area.
+/// Corner weights of a polygon: integrals of corner functions, linear over the triangles about the mean
+/// corner, over its area.
 std::vector<double> fan_weights(const std::vector<Vec3>& at) {
   const std::size_t n = at.size();
   Vec3 centre = Vec3::Zero();
@@ -141,8 +141,8 @@ std::vector<double> fan_weights(const std::vector<Vec3>& at) {
   return weights;
 }
 
-/// The least change of the weights that brings the mean of the corners to `centre`, as far as these span it; Most: of corners, known
-/// when this is compiled, so that nothing is allocated, or Eigen::Dynamic.
+/// Smallest change of the weights that moves the mean of the corners to `centre`, in the directions that
+/// these span. `Most`: number of corners at compile time, to avoid allocation, or Eigen::Dynamic.
 template <int Most>
 void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& weights) {
   const auto n = Eigen::Index(at.size());
@@ -159,7 +159,7 @@ void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& 
   factors.setThreshold(1e-9);
   factors.compute(spread);
   const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1> change = factors.solve(off);
-  if (change.cwiseAbs().maxCoeff() > 1) return;  // no centre of this face
+  if (change.cwiseAbs().maxCoeff() > 1) return;  // not a center of this face
   for (Eigen::Index i = 0; i < n; ++i) weights[std::size_t(i)] += change[i];
 }
 
@@ -245,7 +245,7 @@ void FaceIntegrals::find(const coupling::Interface& surface, Index face, bool du
   const std::vector<Cover> covered = covers(surface, face, structure_, candidates(centre, extent));
   const auto vertex = corners(surface, face);
   const auto n = Eigen::Index(vertex.size());
-  // Without weight at first: what a curved surface needs beside the dual functions is spread over more faces.
+  // Adds sources without weight, because corrections for a curved surface are spread over more faces.
   if (surface.dim == 3 && dual)
     for (const Index s : tree_.within(centre, 2 * extent))
       if (surface.face_areas[face].dot(structure_.face_areas[s]) < 0)

@@ -18,23 +18,23 @@ class PointTree;
 
 namespace couplet::coupler {
 
-/// The slope of a field along a surface at one of its faces, from values at faces: sum of weights.col(i) times the
-/// value at around[i], exact for linear fields as far as these faces span the surface there.
+/// Slope of a field along a surface at one of its faces: sum of weights.col(i) times the value at around[i].
+/// Exact for linear fields if these faces span the surface there.
 struct Slope {
   std::vector<Index> around;
   Eigen::Matrix3Xd weights;
 };
 
-/// Slopes at the faces of a surface, each found when it is first wanted. Neighbours look the same way, so that no
-/// slope goes around a corner or through a plate. `projection`: least squares through the faces that share an edge
-/// (2-D: a vertex) with it, or, where these do not span the surface, a vertex, at last also around a corner; rbf, and without corners: the local
-/// interpolant through the nearest 5 (2-D) or 10 faces, its rise over the face itself.
+/// Slopes at the faces of a surface, each computed on first use. Only neighbors of similar orientation are
+/// used, so that no slope crosses a corner or a plate. `projection`: least squares over faces that share an
+/// edge (2-D: a vertex), if necessary a vertex, finally also around a corner. rbf, and without corners: local
+/// interpolant through the nearest 5 (2-D) or 10 faces, and its rise over the face.
 class Slopes {
  public:
   Slopes(const coupling::Interface& surface, MappingParameters::Type type);
   ~Slopes();
   const Slope& at(Index face);
-  /// So many of the faces nearest to a face count for its radial slope.
+  /// Number of nearest faces considered for a radial slope.
   static std::size_t looks_at(int dim) { return dim == 2 ? 20 : 40; }
 
  private:
@@ -52,41 +52,41 @@ class Slopes {
 /// Corners of a face, as positions in the surface's own list of vertices.
 std::span<const Index> corners(const coupling::Interface& surface, Index face);
 
-/// Distance of a face's farthest corner from its centre [m].
+/// Largest distance of a face's corners from its center [m].
 double reach(const coupling::Interface& surface, Index face);
 
-/// Weights of a face's corners for the mean of a field over the face. They sum to 1 and carry linear fields to
-/// the centre that the participant gives: edges and triangles 1/n, faces of more corners by the areas of the
-/// triangles about the mean of their corners, with the least change that meets the centre.
+/// Weights of a face's corners for the mean of a field over the face. They sum to 1 and give linear fields at
+/// the participant's center. Edges and triangles use 1/n, other faces the areas of triangles about the mean
+/// of their corners, with the smallest correction that matches the center.
 std::vector<double> corner_weights(const coupling::Interface& surface, Index face);
 
-/// From values at the vertices to the means over the faces, over the ranks; `part`: this rank's part, corners by
-/// position in the list of all vertices. Where the participant does not list corners: local interpolants. Collective.
+/// Map from vertex values to means over faces, across ranks. `part`: this rank's part, with corners by
+/// position in the global list of vertices. Uses local interpolants if corners are not listed. Collective.
 std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const coupling::Interface& part);
 
-/// Weights of one source in a row, as the dual functions give them and what they have more than the corner functions
-/// themselves: that part sums to nothing over the corners of each face.
+/// Weights of one source in a row: those of the dual functions, and their excess over the corner functions,
+/// which sums to zero over the corners of each face.
 struct Weights {
   double dual, more;
 };
 
-/// Integrals over one face of a surface of its corner functions and their duals times the structure's field.
+/// Integrals over a face of its corner functions and their duals times the structure's field.
 class FaceIntegrals {
  public:
   FaceIntegrals(const coupling::Interface& structure, MappingParameters::Type type);
-  /// Where the mean over a face of the structure is the value of a linear field.
+  /// Position at which the mean over a face of the structure equals the value of a linear field.
   const Vec3& mean(Index s) const { return means_[std::size_t(s)]; }
 
-  /// What a face gives to the row of one of its corners.
+  /// Contribution of a face to the row of one of its corners.
   struct Part {
     Index corner, source;  ///< a face of the structure
     Weights weights;
   };
-  /// Without `dual` the corner functions themselves.
+  /// Without `dual`, uses the corner functions themselves.
   void find(const coupling::Interface& surface, Index face, bool dual, std::vector<Part>& parts);
 
  private:
-  /// Faces of the structure that may cover one with this centre and reach, ascending.
+  /// Faces of the structure that may cover one with this center and reach, in ascending order.
   std::vector<Index> candidates(const Vec3& centre, double reach) const;
 
   const coupling::Interface& structure_;

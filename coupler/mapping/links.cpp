@@ -24,10 +24,10 @@ struct Source {
   const Datum* datum;
 };
 
-/// What a participant remembers of its last pass through the coupler's hands, as a part of the unknown.
+/// True for data that a participant stores with the coupler between passes, as a part of the unknown.
 bool is_own(const Datum& datum) { return datum.name.starts_with("own-"); }
 
-/// The participants other than `taker` that give `wanted`; of its own data itself.
+/// Participants other than `taker` that give `wanted`; for own data the taker itself.
 std::vector<Source> sources_of(const Datum& wanted, std::size_t taker, const std::vector<Side>& sides) {
   std::vector<Source> found;
   std::vector<std::string> all;
@@ -65,7 +65,7 @@ PointSet part_of(const PointSet& set, const std::vector<std::size_t>& choice, st
   return part;
 }
 
-/// For each place of `set` the one of `others` that is nearest. Two that are equally near share the place:
+/// Nearest of `others` for each place of `set`. If two are equally near, `problem` describes it.
 /// that is `problem`'s text.
 std::vector<std::size_t> nearest_of(MPI_Comm comm, const PointSet& set, const std::vector<PointSet>& others,
                                     const std::string& problem) {
@@ -84,7 +84,7 @@ std::vector<std::size_t> nearest_of(MPI_Comm comm, const PointSet& set, const st
   }
   bool unclear = false;
   for (std::size_t i = 0; i < set.points.size(); ++i) unclear = unclear || !(second[i] > 1.5 * least[i]);
-  // One corner that two bodies share is no reason; all places being so is.
+  // A single corner shared by two bodies is accepted, but not if all places are.
   const GlobalIndex doubtful = parallel::sum(comm, GlobalIndex(unclear));
   if (doubtful > 0) throw Error("{}", problem);
   return choice;
@@ -97,7 +97,7 @@ std::vector<std::size_t> takers_of(const Datum& datum, const std::vector<Side>& 
   return list;
 }
 
-/// Of the places of giver `g` those that taker `t` is nearest to: an amount goes to one taker.
+/// Places of giver `g` whose nearest taker is `t`, because an amount goes to one taker.
 PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std::size_t g, std::size_t t,
                   const std::vector<std::size_t>& takers, const std::vector<Side>& sides) {
   std::vector<PointSet> theirs;
@@ -121,7 +121,7 @@ double sum_of(MPI_Comm comm, const std::vector<double>& values, int components, 
   return parallel::sum(comm, total);
 }
 
-/// Whether two data may go by one map: both loads, both motion, both other amounts or both neither.
+/// True if two data can use one map: both loads, motions, other amounts, or none of these.
 bool of_one_kind(const Datum& a, const Datum& b) {
   const auto kind = [](const Datum& d) {
     return d.unit == "m" || d.unit == "m/s" ? 'm' : d.unit == "N" ? 'N' : coupling::is_amount(d) ? 'a' : ' ';
@@ -129,7 +129,7 @@ bool of_one_kind(const Datum& a, const Datum& b) {
   return kind(a) == kind(b) && a.components == b.components;
 }
 
-/// Whether a side moves by what it takes: a force goes in, a displacement comes out.
+/// True if a side moves in response to its input: it takes a force and gives a displacement.
 bool is_structure(const coupling::Interface& i) {
   return std::ranges::any_of(i.takes,
                              [&](const Datum& d) { return d.unit == "N" && d.size(i.dim) == i.dim; }) &&
@@ -137,13 +137,13 @@ bool is_structure(const coupling::Interface& i) {
                              [&](const Datum& d) { return d.unit == "m" && d.size(i.dim) == i.dim; });
 }
 
-/// Maps by which motion and load of one wall go, one for each structure and each surface that it moves.
+/// Maps for motion and load of one wall, one per structure and surface that it moves.
 class WallMaps {
  public:
   WallMaps(MPI_Comm comm, const std::vector<Side>& sides, MappingParameters::Type type)
       : comm_(comm), sides_(sides), type_(type) {}
 
-  /// The map of a datum, if it is motion or load of a wall and maps are of second order.
+  /// Map of a datum that is motion or load of a wall, if maps are of second order.
   std::shared_ptr<const Mapping> of(std::size_t giver, std::size_t taker, const Datum& given,
                                     const PointSet& from, const PointSet& to) {
     const bool load = given.unit == "N", motion = given.unit == "m" || given.unit == "m/s";
@@ -167,7 +167,7 @@ class WallMaps {
   std::map<std::pair<std::size_t, std::size_t>, ConjugateMap> maps_;
 };
 
-/// What to report where two participants give the same datum at one place.
+/// Problem if two participants give the same datum at one place.
 std::string given_twice(const std::vector<std::string>& names, const std::string& taker, const Datum& wanted,
                         const std::vector<Source>& sources) {
   if (sources.size() < 2) return "";
@@ -251,7 +251,7 @@ coupling::Exchange Links::input(std::size_t taker, const std::vector<coupling::E
     const auto found = given[link.giver].find(link.datum.name);
     if (found == given[link.giver].end()) continue;
     std::vector<double> values = carried(link, found->first, found->second);
-    // Places that have another giver got nothing.
+    // Places with another giver received nothing.
     std::vector<double>& all = data[link.datum.name];
     if (all.empty())
       all = std::move(values);

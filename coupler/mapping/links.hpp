@@ -10,41 +10,40 @@
 
 namespace couplet::coupler {
 
-/// Who gives what to whom among any number of participants: each datum that one takes comes from another that
-/// gives a datum of the same name. Where several give it (two structures in one fluid), every place takes it
-/// from the one that is nearest, and where several take an amount (N, W), every place gives it to the
-/// nearest: the surfaces must be apart. Amounts are shared out with their sum kept, all else is carried
-/// consistently. A datum whose name begins with "own-" a participant takes from itself: what it gave in the last
-/// pass, accelerated with the rest of the unknown.
+/// Connections between any number of participants. A datum comes from another participant that gives one of
+/// the same name. If several give it (two structures in one fluid), each place takes the nearest; if several
+/// take an amount (N, W), each place gives it to the nearest. Their surfaces must not touch. Amounts keep
+/// their sum; other data are mapped consistently. A datum named "own-..." is taken from the participant
+/// itself: its value from the last pass, accelerated with the rest of the unknown.
 class Links {
  public:
-  /// Throws Error if a datum is taken and given by nobody or by several in the same place, or if units or
-  /// numbers of components differ. Collective.
+  /// Throws Error if a datum has no giver or several in the same place, or if units or numbers of components
+  /// differ. Collective.
   Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParameters& mapping);
 
   struct Link {
     std::size_t giver, taker;
     coupling::Interface::Datum datum;  ///< as given
     int components;
-    coupling::Interface::Place to;           ///< where it is taken
-    std::shared_ptr<const Mapping> mapping;  ///< shared by all data that go the same way
-    bool whole = true;                       ///< between all places of both; false: some have other partners
-    bool within = false;  ///< its values within the step go over, too: wanted, and of one giver
+    coupling::Interface::Place to;           ///< place where it is taken
+    std::shared_ptr<const Mapping> mapping;  ///< shared by all data between the same places
+    bool whole = true;    ///< between all places of both; false if some have other partners
+    bool within = false;  ///< its values within the step are mapped, too: requested, and from one giver
   };
   const std::vector<Link>& all() const { return links_; }
 
-  /// What participant `taker` takes of what all have `given` so far; data that have not been given yet are
-  /// left out. Values within the step go to those that asked for them. Collective.
+  /// Input of participant `taker` from all data `given` so far; missing ones are omitted. Values within the
+  /// step go to those that requested them. Collective.
   coupling::Exchange input(std::size_t taker, const std::vector<coupling::Exchange>& given) const;
 
-  /// An amount on its way: sums over the places of giver and taker.
+  /// Transferred amount: sums over the places of giver and taker.
   struct Amount {
-    std::string column;  ///< "tank gives force x [N]"
+    std::string column;  ///< for example "tank gives force x [N]"
     double value = 0;
   };
   std::vector<Amount> amounts(const std::vector<coupling::Exchange>& given) const;
 
-  /// One sentence a link, and data that nobody takes.
+  /// One sentence per link, and data that nobody takes.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -52,7 +51,8 @@ class Links {
                               const std::vector<double>& values) const;
   MPI_Comm comm_;
   std::vector<std::string> names_;
-  std::vector<std::vector<std::size_t>> entries_;  // by participant: vertices, faces of this rank
+  // By participant: numbers of this rank's vertices and faces.
+  std::vector<std::vector<std::size_t>> entries_;
   std::vector<Link> links_;
   std::vector<std::string> notes_;
 };

@@ -30,7 +30,7 @@ GlobalIndex count(MPI_Comm comm, const PointSet& set) {
   return parallel::sum(comm, GlobalIndex(set.points.size()));
 }
 
-/// Points of `set` that are further than `tolerance` from every point of `other`, up to five of them by
+/// Points of `set` farther than `tolerance` from all points of `other`; the first five with position.
 /// place.
 std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<Neighbour>& to_other,
                          const PointSet& other, double tolerance) {
@@ -75,9 +75,8 @@ void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
       to.what, tolerance, from.what);
 }
 
-/// Shares of the targets that a source is nearest to, by their size; a source that is nearest to no target
-/// gives all to its own nearest one. So a finer target takes smooth loads and a coarser one takes all of
-/// them.
+/// Distributes each source to the targets whose nearest source it is, by their size; a source without any
+/// goes to its own nearest target. A finer target then receives smooth loads, and a coarser one all of them.
 std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const PointSet& to,
                                     const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back) {
   std::vector<std::vector<Transfer::Entry>> by_source(std::size_t(parallel::comm_size(comm)));
@@ -98,7 +97,7 @@ std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const P
   return entries;
 }
 
-/// Displacements and the like by projection onto the other surface's faces.
+/// Maps displacements and similar data by projection onto the other surface's faces.
 std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, const PointSet& to) {
   std::vector<Transfer::Entry> entries;
   const Surroundings source(comm, *from.surface);
@@ -120,7 +119,7 @@ std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, cons
   return entries;
 }
 
-/// Projection and radial functions. No rank sees more of the other surface than what lies about its own part.
+/// Projection and radial functions. Each rank stores only the part of the other surface near its own.
 std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
                                           const PointSet& to, MappingParameters::Type type) {
   const bool projection = type == MappingParameters::Type::projection;
@@ -144,7 +143,7 @@ std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, con
   return entries;
 }
 
-/// Without the rows and columns of places that are not in the sets.
+/// Removes rows and columns of places that are not in the sets.
 std::vector<Transfer::Entry> between(MPI_Comm comm, const PointSet& from, const PointSet& to,
                                      std::vector<Transfer::Entry> entries) {
   const auto kept = [](const PointSet& set) {

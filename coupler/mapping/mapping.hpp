@@ -10,36 +10,35 @@
 
 namespace couplet::coupler {
 
-/// How values go from one set of points to another, as a sparse matrix over the coupler's ranks, built once
-/// on the reference configuration. By type of `coupling.mapping`:
+/// Maps values between two sets of points by a sparse matrix over the coupler's ranks, built once on the
+/// reference configuration. Types of `coupling.mapping`:
 ///   matched     matching vertices and faces, weight 1
 ///   nearest     as below
-///   projection  at vertices: the value at the nearest point of the other surface; at faces: local
-///               interpolants through few neighbours
-///   rbf         local interpolants by compact radial functions through more neighbours
-/// Both of the latter carry linear fields exactly; amounts go by the transpose of the map of means from the
-/// targets' faces to the sources', so that their sum and their moment are kept. Motion and load of one wall go by
-/// ConjugateMap. All calls are collective.
+///   projection  at vertices the value at the nearest point of the other surface; at faces local
+///               interpolants through few neighbors
+///   rbf         local interpolants by compact radial functions through more neighbors
+/// projection and rbf are exact for linear fields. Amounts use the transpose of the map of means from the
+/// targets' faces to the sources', so they keep sum and moment. Motion and load of one wall use ConjugateMap.
+/// All calls are collective.
 class Mapping {
  public:
   enum class Kind {
-    consistent,    ///< nearest: every target takes the value of its nearest source: displacements, velocities
+    consistent,    ///< nearest: each target takes the value of its nearest source (displacements, velocities)
     conservative,  ///< nearest: every source is shared out, by size, among the targets nearest to it (or goes
                    ///< to its own nearest target if it is nearest to none): forces; the sum is kept
   };
-  /// matched: throws Error naming points without a twin, with place and distance; nearest: any distance is
-  /// good.
+  /// matched: throws Error with points that have no match, place and distance. nearest: accepts any distance.
   Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
           const MappingParameters& parameters);
 
-  /// By entries made elsewhere, of which those between other places are left out.
+  /// Uses given entries; those between other places are omitted.
   Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to, std::vector<Transfer::Entry> entries);
 
-  /// On one rank.
+  /// Mapping on one rank.
   Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters)
       : Mapping(MPI_COMM_SELF, kind, whole_set(from), whole_set(to), parameters) {}
 
-  /// Values at this rank's part of the whole source list to its part of the whole target list.
+  /// Maps values at this rank's part of the sources to its part of the targets.
   std::vector<double> apply(const std::vector<double>& values, int components) const {
     return transfer_.apply(values, components);
   }
@@ -47,7 +46,7 @@ class Mapping {
   std::size_t n_to() const { return n_to_; }
   double max_distance() const { return max_distance_; }
   double mean_distance() const { return mean_distance_; }
-  /// "168 vertices of 'solid' to 168 vertices of 'fluid', distance at most 0 m, mean 0 m"
+  /// For example "168 vertices of 'solid' to 168 vertices of 'fluid', distance at most 0 m, mean 0 m".
   std::string summary() const { return summary_; }
 
  private:

@@ -57,8 +57,8 @@ double wendland(double r) {
   return r < 1 ? s * s * (4 * r + 1) : 0;
 }
 
-/// Coordinates about the sources' centre, in units of their reach, along the directions that the polynomial
-/// takes: sources first, x last.
+/// Coordinates relative to the sources' center in units of their reach, along the polynomial's directions:
+/// sources first, x last.
 Eigen::MatrixXd coordinates(const std::vector<Vec3>& points, std::span<const Index> sources, const Vec3& x) {
   const auto n = Eigen::Index(sources.size());
   Eigen::MatrixXd at(n + 1, 3);
@@ -74,8 +74,7 @@ Eigen::MatrixXd coordinates(const std::vector<Vec3>& points, std::span<const Ind
   std::vector<Eigen::Index> kept;
   for (Eigen::Index d = 2; d >= 0; --d) {
     const double low = along.col(d).head(n).minCoeff(), high = along.col(d).head(n).maxCoeff();
-    // A spread of a thousandth is a direction of its own (a curved surface) only for an x between the
-    // sources.
+    // A spread of a thousandth counts as a direction (a curved surface) only for an x between the sources.
     const bool thin = high - low < 0.3;
     const double slack = (thin ? 0.5 : 10) * (high - low), here = along(n, d);
     if (high - low > 1e-6 && here > low - slack && here < high + slack) kept.push_back(d);
@@ -111,7 +110,7 @@ std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<con
   b[n] = 1;
   b.tail(at.cols()) = at.row(n).transpose();
   Eigen::VectorXd w = a.partialPivLu().solve(b);
-  // Sources on top of each other or too few of them for the polynomial: the smallest weights that do.
+  // For coincident or too few sources for the polynomial: the smallest weights that fit.
   if (!w.allFinite() || (a * w - b).norm() > 1e-11 * b.norm())
     w = a.completeOrthogonalDecomposition().solve(b);
   return {w.data(), w.data() + n};
@@ -119,7 +118,7 @@ std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<con
 
 namespace {
 
-/// The nearest place of a face, as weights of its corners.
+/// Nearest place on a face, as weights of its corners.
 struct OnFace {
   std::vector<double> weights;
   double distance = std::numeric_limits<double>::max();

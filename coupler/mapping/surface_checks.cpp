@@ -33,8 +33,8 @@ struct Box {
   }
 };
 
-/// Extent of each face of this rank [m]: between corners where these are known (a face may be long and thin),
-/// else the edge of a square of its area; in 2-D areas are lengths. Collective.
+/// Extent of each face of this rank [m]: largest distance of known corners (a face may be long and thin),
+/// otherwise the edge of a square of its area; in 2-D areas are lengths. Collective.
 std::vector<double> extents(MPI_Comm comm, const Side& side) {
   const coupling::Interface& i = side.interface;
   const FaceCorners corners(comm, side);
@@ -64,14 +64,14 @@ double mean(MPI_Comm comm, const std::vector<double>& values) {
   return parallel::sum(comm, total) / std::max(1., parallel::sum(comm, double(values.size())));
 }
 
-/// The first text of any rank, on all.
+/// First nonempty text of any rank, on all ranks.
 std::string first_text(MPI_Comm comm, const std::string& text) {
   if (parallel::comm_size(comm) == 1 || !parallel::any(comm, !text.empty())) return text;
   const std::vector<char> all = parallel::all_gather(comm, std::vector<char>(text.begin(), text.end()));
   return {all.begin(), all.end()};
 }
 
-/// Both boxes must be the same within a tenth of the smaller and two faces of the coarser side.
+/// Boxes must agree within a tenth of the smaller and two faces of the coarser side.
 std::string other_extent(const Box& a, const std::string& from, const Box& b, const std::string& to,
                          double face) {
   const double least = std::min(a.extent(), b.extent());
@@ -88,14 +88,14 @@ std::string other_extent(const Box& a, const std::string& from, const Box& b, co
           : "");
 }
 
-/// Whether each of these points has another within a tenth of the faces there.
+/// True if each of these points has another within a tenth of the face size.
 bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<double>& size) {
   bool far = false;
   for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * size[i];
   return !parallel::any(comm, far);
 }
 
-/// Why the nearest vertex is no map between these two: motion in stairs, loads that do another work.
+/// Why the nearest vertex is no suitable map: motion in steps, and loads with a different work.
 std::string not_nested(const std::string& from, const std::string& to) {
   return fmt::format(
       "The faces of '{}' and '{}' do not nest: vertices of either side lie between those of the other. With "
@@ -109,7 +109,7 @@ std::string not_nested(const std::string& from, const std::string& to) {
 
 PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
   PlaceReport report;
-  // Lumped participants (points with areas) have no extent that could be compared.
+  // Lumped participants (points with areas) have no extent to compare.
   if (from.faces.back() < 2 || to.faces.back() < 2 || from.vertices.back() < 2 || to.vertices.back() < 2)
     return report;
   const PointSet source = from.places(Place::vertices), target = to.places(Place::vertices);
@@ -119,8 +119,8 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
                                 std::max(mean(comm, source_size), mean(comm, target_size)));
   if (!report.problem.empty()) return report;
   const std::vector<Neighbour> found = nearest(comm, target.points, source);
-  const std::vector<double> there =
-      local_size(comm, target.points, from);  // of the source's faces at the targets
+  // Sizes of the source's faces at the targets.
+  const std::vector<double> there = local_size(comm, target.points, from);
   for (std::size_t i = 0; i < target.points.size() && report.problem.empty(); ++i) {
     const double size = std::max(there[i], target_size[i]);
     if (found[i].distance <= 2 * size) continue;
@@ -150,7 +150,7 @@ void require_finite(MPI_Comm comm, const coupling::Exchange& data, const couplin
     const auto found = data.find(datum.name);
     if (found == data.end() || !problem.empty()) continue;
     const auto& values = found->second;
-    // Zero times a value is zero or not a number: four sums side by side in place of a question a value.
+    // Zero times a value is zero or NaN; four partial sums avoid a branch per value.
     double sums[4] = {};
     for (std::size_t i = 0; i + 4 <= values.size(); i += 4)
       for (std::size_t c = 0; c < 4; ++c) sums[c] += 0 * values[i + c];
@@ -200,8 +200,8 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
   for (const auto& link : links.all()) {
     if (link.datum.name != "displacement") continue;
     const Side &from = sides[link.giver], &to = sides[link.taker];
-    // With several bodies each has a part of the fluid's surface only, with several fluids each a part of the
-    // body's; the matched map has its own check.
+    // Each of several bodies has only a part of the fluid's surface, each of several fluids a part of the
+    // body's. The matched map has its own check.
     if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1 || fluids[link.giver] > 1)
       continue;
     if (!judged.insert({link.giver, link.taker}).second) continue;
@@ -233,15 +233,15 @@ void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts
 
 std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
 
-/// Whoever takes a motion and gives no load (a heater on one side of a flap) covers as much of the surface as it likes.
+/// A participant that takes a motion but gives no load (a heater on a flap) may cover part of a surface.
 bool gives_load(const Side& side) {
   return std::ranges::any_of(side.interface.gives, [](const coupling::Interface::Datum& d) {
     return d.unit == "N" || d.unit == "Pa";
   });
 }
 
-/// Participants that exchange load and motion, directly or through others, as positions in `sides`: those that give the
-/// motion and those that take it. The mesh mover is none of them.
+/// Participants that exchange load and motion, directly or indirectly, as positions in `sides`: givers and
+/// takers of the motion, without the mesh mover.
 struct Group {
   std::set<std::size_t> givers, takers;
 };
@@ -268,7 +268,7 @@ std::vector<const Side*> chosen(const std::vector<Side>& sides, const std::set<s
   return list;
 }
 
-/// Lumped participants, points with areas, have no size that could be compared.
+/// Lumped participants (points with areas) have no size to compare.
 bool has_size(const std::vector<const Side*>& sides) {
   return std::ranges::all_of(sides,
                              [](const Side* s) { return s->faces.back() >= 2 && s->vertices.back() >= 2; });
@@ -338,8 +338,8 @@ double faceting(const SurfaceFacts& a, const SurfaceFacts& b) {
   return 0.01 + share * share;
 }
 
-/// Largest difference of the mean distances from the centroid [m]. The centres of one row of faces all lie on a line, those of two rows
-/// do not: a direction in which a surface is but few faces wide is left to the box.
+/// Largest difference of the mean distances from the centroid [m]. Directions in which a surface is only a
+/// few faces wide are left to the box, because the centers of one row of faces are collinear.
 double spread_apart(const SurfaceFacts& a, const SurfaceFacts& b) {
   const Vec3 width = (a.high - a.low).cwiseMin(b.high - b.low);
   double apart = 0;

@@ -12,36 +12,35 @@
 
 namespace couplet::coupler {
 
-/// Throws SolveFailure on all ranks, naming datum, entry and place, if one of the values is not finite.
-/// Collective.
+/// Throws SolveFailure on all ranks, with datum, entry and place, for a value that is not finite. Collective.
 void require_finite(MPI_Comm comm, const coupling::Exchange& data, const coupling::Interface& interface,
                     const std::vector<coupling::Interface::Datum>& of, const std::string& who);
 
-/// Findings about two coupled surfaces that need not match, as far as their places show.
+/// Findings about two coupled surfaces of any meshes, from their places.
 struct PlaceReport {
-  std::string problem;             ///< empty: none
-  std::vector<std::string> notes;  ///< what the user should know
+  std::string problem;             ///< empty if there is none
+  std::vector<std::string> notes;  ///< information for the user
   bool nests = true;               ///< vertices of one side are vertices of the other
 };
-/// `from` gives motion to `to`: distances are judged against the local face size of both sides, the extents
-/// against each other; several vertices that follow one (a staircase) are said. Collective.
+/// `from` gives motion to `to`. Compares distances with the local face size of both sides, and the extents
+/// with each other. Reports several vertices that follow one (a staircase). Collective.
 PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to);
 
-/// Throws Error where a fluid that foresees its walls' answer (it takes its own data back) is asked before them: `group`
+/// Throws Error if a fluid that predicts its walls' response (it takes its own data) precedes them. `group`:
 /// in the order of a pass.
 void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
                     const std::vector<std::size_t>& group);
 
-/// judge_places() before the first step, for every giver of motion and its taker; throws Error.
+/// Calls judge_places() before the first step for each giver of motion and its taker. Throws Error.
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping);
 
-/// Size and place of a surface, in the reference configuration: of one participant or of several together.
+/// Size and position of a surface of one or more participants in the reference configuration.
 struct SurfaceFacts {
   std::string names;
   GlobalIndex faces = 0;
   double area = 0;               ///< [m^2]; 2-D: length [m]
-  double face = 0;               ///< extent of a face, their mean [m]
+  double face = 0;               ///< mean extent of the faces [m]
   Vec3 centroid = Vec3::Zero();  ///< [m]
   Vec3 spread = Vec3::Zero();    ///< first moments: means of |x - x_c|, |y - y_c|, |z - z_c| [m]
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the vertices [m]
@@ -50,16 +49,17 @@ struct SurfaceFacts {
 /// Collective.
 SurfaceFacts surface_facts(MPI_Comm comm, const std::vector<const Side*>& sides);
 
-/// By how much two surfaces that are the same may differ as meshes: 1 % and what faceting does to a curved surface,
-/// (face / extent)^2 of the coarser side (a circle of n chords: 10 / n^2, of which its length needs 1.6 / n^2).
+/// Tolerance for the difference of meshes of the same surface: 1 % plus the faceting of a curved surface,
+/// (face/extent)^2 of the coarser side. (A circle of n chords gives 10/n^2, of which its length needs
+/// 1.6/n^2.)
 double faceting(const SurfaceFacts& a, const SurfaceFacts& b);
 
-/// The first way in which they differ by more than `limit` of their size, with numbers: area, centroid, first moments,
-/// bounding box. Empty: they are the same surface.
+/// First quantity that differs by more than `limit` relative to the size: area, centroid, first moments,
+/// bounding box. Empty if the surfaces are the same.
 std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double limit);
 
-/// Before the first step: surfaces that move together are flagged where they differ; a mesh mover that does not move all
-/// of its fluid's interface is refused by Error. Collective.
+/// Checks before the first step: reports differences between surfaces that move together. Throws Error if a
+/// mesh mover does not move the whole interface of its fluid. Collective.
 void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                       const Schedule& schedule);
 

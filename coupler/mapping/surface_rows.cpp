@@ -15,7 +15,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// A part of a row: so much of the value at a face of the structure, whose mean is taken about `place`.
+/// Part of a row: weight of the value at a face of the structure, with its mean at `place`.
 struct Share {
   GlobalIndex row, source;
   Weights weight;
@@ -28,7 +28,7 @@ std::vector<GlobalIndex> sorted(std::vector<GlobalIndex> list) {
   return list;
 }
 
-/// The faces of the structure that may cover those of `mine`, and around them those that their slopes look at.
+/// Faces of the structure that may cover those of `mine`, and the neighbors needed for their slopes.
 SurfacePart around(MPI_Comm comm, const Surroundings& structure, const coupling::Interface& mine,
                    double widest, MappingParameters::Type type) {
   if (parallel::comm_size(comm) == 1) return structure.with(structure.faces().positions);
@@ -46,8 +46,8 @@ SurfacePart around(MPI_Comm comm, const Surroundings& structure, const coupling:
   return structure.with(sorted(faces));
 }
 
-/// Brings a row (weights at places, their sum 1) to carry linear fields to x: the least change of the weights, in
-/// the directions in which the places spread far enough for it.
+/// Corrects a row (weights at places, with sum 1) to be exact for linear fields at x, by the smallest change
+/// in directions of sufficient extent.
 void make_linear(const Vec3& x, const std::vector<Vec3>& places, std::vector<double>& weights) {
   const double n = double(places.size());
   Vec3 off = x, mean = Vec3::Zero();
@@ -66,9 +66,9 @@ void make_linear(const Vec3& x, const std::vector<Vec3>& places, std::vector<dou
   for (std::size_t i = 0; i < places.size(); ++i) weights[i] += change.dot(places[i] - mean);
 }
 
-/// A row of sum 1 that carries linear fields to x. Where a curved surface stands off the other's chords, the dual
-/// functions miss the place of their vertex: first so much of `more` is added as brings them nearest to it, which is
-/// the same at all vertices of a uniform mesh and so leaves a uniform traction uniform; then the least change.
+/// Row with sum 1 that is exact for linear fields at x. On a curved surface, the dual functions miss the
+/// position of their vertex. A share of `more` first moves them nearest to it. This share is the same at all
+/// vertices of a uniform mesh, so a uniform traction remains uniform. Then the smallest change follows.
 void finish_row(int dim, const Vec3& x, const std::vector<Vec3>& places, std::vector<Weights>& row,
                 std::vector<double>& weights) {
   double total = 0, longest = 0;
@@ -84,15 +84,15 @@ void finish_row(int dim, const Vec3& x, const std::vector<Vec3>& places, std::ve
                           : 0;
   weights.clear();
   for (const Weights& w : row) weights.push_back(w.dual + part * w.more);
-  // Once more for what rounding leaves of the first.
+  // Repeated to remove round-off of the first pass.
   for (int pass = 0; pass < 2; ++pass) make_linear(x, places, weights);
 }
 
-/// One row at a time, its arrays kept for the next.
+/// Work arrays for one row at a time.
 class RowBuffers {
  public:
   void clear() { sources_.clear(), places_.clear(), row_.clear(); }
-  /// Equal sources follow each other.
+  /// Equal sources must be consecutive.
   void add(GlobalIndex source, const Vec3& place, const Weights& weight) {
     if (sources_.empty() || source != sources_.back())
       sources_.push_back(source), places_.push_back(place), row_.push_back({0, 0});
@@ -111,7 +111,7 @@ class RowBuffers {
   std::vector<double> weights_;
 };
 
-/// Rows from shares sorted by row; `first`: position of the first.
+/// Builds rows from sorted shares. `first`: position of the first row.
 void finish(int dim, const std::vector<Share>& shares, GlobalIndex first, const std::vector<Vec3>& points,
             std::vector<Transfer::Entry>& entries) {
   RowBuffers buffers;
@@ -124,7 +124,7 @@ void finish(int dim, const std::vector<Share>& shares, GlobalIndex first, const 
   }
 }
 
-/// Each share on the rank that has its row.
+/// Sends each share to the rank of its row.
 std::vector<Share> shares_by_owner(MPI_Comm comm, const coupling::Starts& rows, std::vector<Share> shares) {
   std::vector<Share> mine =
       to_owners(comm, std::move(shares), [&](const Share& s) { return coupling::owner_of(rows, s.row); });
@@ -134,12 +134,11 @@ std::vector<Share> shares_by_owner(MPI_Comm comm, const coupling::Starts& rows, 
   return mine;
 }
 
-/// Rows of a map while the faces are gone through one after the other: a row is finished with the last face that gives to it,
-/// so that few are open at a time where neighbours follow each other. Rows that faces of other ranks give to, too, are left
-/// as shares.
+/// Rows of a map assembled face by face. A row is finished with its last face, so few are open at a time if
+/// neighbors follow each other. Rows with contributions of faces on other ranks remain as shares.
 class OpenRows {
  public:
-  /// `faces_of`: how many faces give to each row; `whole`: whether these are all; `place`: of the row, by number in `rows`.
+  /// `faces_of`: number of faces per row. `whole`: true if these are all. `rows`: positions of the rows.
   OpenRows(std::vector<Index> faces_of, std::vector<char> whole, const std::vector<GlobalIndex>& rows)
       : left_(std::move(faces_of)), whole_(std::move(whole)), rows_(rows), open_(left_.size()) {}
 
@@ -149,7 +148,7 @@ class OpenRows {
     if (known == list.end()) known = list.insert(list.end(), {source, {0, 0}});
     known->second.dual += weight.dual, known->second.more += weight.more;
   }
-  /// One of its faces is done. Calls finished(row, parts by source) for a whole one that was the last of.
+  /// Completes one of its faces. Calls finished(row, parts by source) for a row that was completed by it.
   template <class Finished>
   void done(std::size_t row, const SurfacePart& structure, const FaceIntegrals& integrals,
             const Finished& finished) {
@@ -172,7 +171,7 @@ class OpenRows {
   std::vector<std::vector<Part>> open_;
 };
 
-/// Of the vertices of `part` whether they are this rank's and no corner of another rank's face. Collective.
+/// Vertices of `part` that belong to this rank and to no face of another rank. Collective.
 std::vector<char> alone_at(MPI_Comm comm, const std::vector<GlobalIndex>& vertices, const PointSet& own) {
   const auto rank = std::size_t(parallel::comm_rank(comm));
   const GlobalIndex first = own.starts[rank], end = own.starts[rank + 1];
@@ -188,14 +187,14 @@ std::vector<char> alone_at(MPI_Comm comm, const std::vector<GlobalIndex>& vertic
   return alone;
 }
 
-/// Rows that the faces of `mine` give to: at their corners or of their own.
+/// Rows with contributions from faces of `mine`, at their corners or centers.
 struct Targets {
   const PointSet& points;  ///< of this rank
   bool at_vertices;
   GlobalIndex first;
 };
 
-/// Finished rows go to `entries`, the rest is returned.
+/// Finished rows go to `entries`, the others are returned.
 std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const SurfacePart& mine,
                              MappingParameters::Type type, const Targets& targets,
                              std::vector<Transfer::Entry>& entries) {
@@ -216,8 +215,8 @@ std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const 
     buffers.finish(structure.surface.dim, list[row],
                    targets.points.points[std::size_t(list[row] - targets.first)], entries);
   };
-  entries.reserve(20 *
-                  targets.points.points.size());  // as of a surface beside one with faces of the same size
+  // As for adjacent surfaces with faces of the same size.
+  entries.reserve(20 * targets.points.points.size());
   std::vector<FaceIntegrals::Part> parts;
   for (Index f = 0; f < Index(mine.faces.size()); ++f) {
     const auto vertex = corners(mine.surface, f);
@@ -247,7 +246,7 @@ std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& stru
   const std::vector<Share> known = shares_by_owner(comm, points.starts, std::move(shares));
   finish(structure.dim, known, targets.first, points.points, entries);
   for (const Share& s : known) has[std::size_t(s.row - targets.first)] = 1;
-  // A vertex of no face.
+  // Vertices without a face.
   std::vector<Vec3> lone;
   std::vector<GlobalIndex> positions;
   for (std::size_t i = 0; i < has.size(); ++i)

@@ -11,15 +11,15 @@
 
 namespace couplet::coupler {
 
-/// From values at the faces of `structure` to those at the vertices of `surface`: at each vertex the mean of the
-/// structure's field, linear over each of its faces, weighted by the function that is biorthogonal to the corner
-/// functions of `surface` on each of its faces (dual Lagrange multipliers, Wohlmuth 2000). Linear fields are exact,
-/// and the transpose makes a uniform traction of a uniform one. Both: this rank's parts, with corners. Collective.
+/// Map from faces of `structure` to vertices of `surface`. Each vertex takes the mean of the structure's
+/// field, linear over each face, weighted by the function biorthogonal to the corner functions on each face
+/// (dual Lagrange multipliers, Wohlmuth 2000). Exact for linear fields; the transpose maps a uniform traction
+/// to a uniform one. Both: this rank's parts, with corners. Collective.
 std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const coupling::Interface& structure,
                                                const coupling::Interface& surface,
                                                MappingParameters::Type type);
 
-/// The same to the means over the faces of `surface`: for amounts that no motion goes with.
+/// Map to the means over the faces of `surface`, for amounts without a corresponding motion.
 std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const coupling::Interface& structure,
                                             const coupling::Interface& surface, MappingParameters::Type type);
 

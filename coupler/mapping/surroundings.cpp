@@ -21,7 +21,7 @@ struct Count {
   std::size_t points;
 };
 
-/// An upper bound on the distance of the k-th nearest from boxes alone; infinity: there are fewer points.
+/// Upper bound of the distance of the k-th nearest point from boxes; infinity if there are fewer points.
 double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t k) {
   std::vector<std::pair<double, std::size_t>> far;
   for (const Count& c : all)
@@ -33,8 +33,8 @@ double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t 
   return infinite;
 }
 
-/// For each centre a distance within which there are k points: the least of the ranks whose boxes are nearest, or, where these
-/// have fewer, from the boxes.
+/// Distance for each center that encloses k points: the smallest bound of the ranks with the nearest boxes,
+/// or if they have fewer points, from the boxes.
 std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std::size_t k,
                            const std::vector<Count>& all, const PointSet& among,
                            const base::PointTree* tree) {
@@ -44,7 +44,7 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
     double least = infinite;
     for (const Count& c : all)
       if (c.points > 0) least = std::min(least, c.box.nearest(centres[i]));
-    // Boxes of stretches of a list overlap: the first that holds a centre may have no point near it.
+    // Boxes of list segments overlap, so the first box with a center may have no point near it.
     for (std::size_t r = 0; r < all.size(); ++r)
       if (all[r].points > 0 && all[r].box.nearest(centres[i]) <= least)
         ask[r].push_back(centres[i]), asked[r].push_back(i);
@@ -68,7 +68,7 @@ std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std:
   return bound;
 }
 
-/// Values at these positions (ascending) from the ranks that have them; this rank's own without a message.
+/// Values at these positions (ascending) from their ranks; this rank's own without a message.
 template <class Value, class Get>
 std::vector<Value> fetch(MPI_Comm comm, const coupling::Starts& starts,
                          const std::vector<GlobalIndex>& positions, Get get) {
@@ -101,10 +101,10 @@ std::vector<Value> fetch(MPI_Comm comm, const coupling::Starts& starts,
   return all;
 }
 
-/// Numbers within an ascending list of positions that holds a stretch of this rank's and some others.
+/// Numbers within an ascending list of positions that contains a segment of this rank and some others.
 class Numbering {
  public:
-  /// Of all that occur in `positions`; this rank's stretch begins at `first`.
+  /// Numbers all values in `positions`; this rank's segment starts at `first`.
   Numbering(GlobalIndex first, std::size_t own, const std::vector<GlobalIndex>& positions)
       : first_(first), number_(own, -1) {
     std::vector<GlobalIndex> others;
@@ -245,7 +245,7 @@ std::vector<GlobalIndex> Surroundings::faces_around(const std::vector<GlobalInde
   struct Touch {
     GlobalIndex vertex, face;
   };
-  // A face may be another rank's than its vertices: each vertex' owner learns of its faces.
+  // A face may be on another rank than its vertices: each vertex's owner is told of its faces.
   const auto rank = std::size_t(parallel::comm_rank(comm_));
   std::vector<std::vector<Touch>> tell(std::size_t(parallel::comm_size(comm_)));
   for (std::size_t f = 0; f < part_.face_centres.size(); ++f)

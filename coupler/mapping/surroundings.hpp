@@ -9,38 +9,38 @@
 
 namespace couplet::coupler {
 
-/// Points of a list that is cut over the ranks, those alone that a rank asked for, by position.
+/// Points requested by a rank from a distributed list, by position.
 struct Nearby {
   std::vector<Vec3> points;
   std::vector<GlobalIndex> positions;  ///< ascending, each once
 };
 
-/// The points of `among` (any rank's) that are one of the `k` nearest of a centre on this rank, those that are
-/// equally far (to rounding) as its k-th, and with `reach` [m] all that are nearer than the k-th and twice this
-/// centre's reach: then the k nearest of every place within the reach are there. Each centre asks the ranks whose
-/// boxes are nearest for a bound, then those ranks whose boxes lie within it. Collective.
+/// Returns points of `among` (on any rank) that are among the `k` nearest of a center on this rank, or
+/// equally far (to rounding) as the k-th. With `reach` [m] it adds all points nearer than the k-th plus twice
+/// the center's reach, which includes the k nearest of every place within reach. Each center asks the ranks
+/// with the nearest boxes for a bound, then the ranks whose boxes are within it. Collective.
 Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
               std::size_t k, const PointSet& among);
 
-/// Some faces of a surface and the vertices that these need, with their positions in the whole lists; corners
-/// count vertices within the part.
+/// Faces of a surface and their vertices, with positions in the global lists; corners refer to vertices
+/// within the part.
 struct SurfacePart {
   coupling::Interface surface;
   std::vector<GlobalIndex> vertices, faces;  ///< ascending
 };
 
-/// The surface of `set` as far as this rank needs it, from the ranks that have its parts. All collective.
+/// Part of the surface of `set` that this rank needs, from the ranks that own it. Collective.
 class Surroundings {
  public:
-  /// `part`: this rank's part, corners by position in the list of vertices. It must outlive this.
+  /// `part`: this rank's part, with corners by position in the list of vertices. It must outlive this.
   Surroundings(MPI_Comm comm, const coupling::Interface& part);
-  bool has_corners() const { return has_corners_; }  ///< on all ranks; false where there are no faces
+  bool has_corners() const { return has_corners_; }  ///< on all ranks; false if there are no faces
   PointSet vertices() const;                         ///< this rank's
   PointSet faces() const;
-  double widest() const;  ///< the largest reach of a face on any rank [m]
-  /// These faces (positions, ascending) with the vertices that they need.
+  double widest() const;  ///< largest reach of a face on any rank [m]
+  /// These faces (positions, ascending) with their vertices.
   SurfacePart with(const std::vector<GlobalIndex>& faces) const;
-  /// The faces of which one of these vertices (positions, ascending) is a corner: positions, ascending.
+  /// Positions of faces that have one of these vertices (positions, ascending) as a corner, ascending.
   std::vector<GlobalIndex> faces_around(const std::vector<GlobalIndex>& vertices) const;
 
  private:

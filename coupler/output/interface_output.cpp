@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void array(std::ofstream& out, const std::string& name, const std::vector<double>& values, int components) {
-  // ParaView takes vectors of three components for arrows and warps.
+  // ParaView requires three components for arrows and warps.
   const int shown = components == 2 ? 3 : components;
   out << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n",
                      name, shown);
@@ -90,7 +90,7 @@ void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file,
   const coupling::Interface& i = surface.side->interface;
   const std::size_t faces = i.face_centres.size();
   const bool has_corners = !i.face_vertices.empty();
-  // Without known vertices a face is its centre.
+  // Without known vertices, a face is represented by its center.
   std::vector<double> points;
   std::vector<GlobalIndex> connectivity, offsets;
   for (const Vec3& x : has_corners ? surface.corners.points() : i.face_centres)

@@ -10,22 +10,22 @@
 
 namespace couplet::coupler {
 
-/// Of one output: <stem>.<rank>.vtp of as many ranks as the coupler had then.
+/// Files of one output: <stem>.<rank>.vtp for each rank of the coupler at that time.
 struct InterfaceFiles {
   double time = 0;
   std::string stem;
   int parts = 0;
 };
 
-/// What goes over the interfaces, for ParaView: <participant>.pvd with a VTK file for each output and rank of
-/// the coupler. Faces are polygons with the data at faces; data at vertices stand at their corners, each face
-/// its own. The surface is the reference configuration; displacements warp it.
+/// Writes interface data for ParaView: <participant>.pvd with a VTK file per output and rank of the coupler.
+/// Faces are polygons with the face data; vertex data are at corners, separately for each face. The surface
+/// is the reference configuration, for warping by displacements.
 class InterfaceOutput {
  public:
-  /// `restart_time`: NaN for a fresh start; else later outputs of an earlier run are forgotten. Collective.
+  /// `restart_time`: NaN for a fresh start; else later outputs of a previous run are removed. Collective.
   InterfaceOutput(MPI_Comm comm, std::filesystem::path folder, const std::vector<Side>& sides,
                   double restart_time);
-  /// What each has given and taken last. Collective.
+  /// Writes the data last given and taken. Collective.
   void write(double time, int number, const std::vector<coupling::Exchange>& given,
              const std::vector<coupling::Exchange>& taken);
 

@@ -10,23 +10,23 @@
 
 namespace couplet::coupler {
 
-/// Sums of the loads on one side of the interface.
+/// Resultants of the loads on one side of the interface.
 struct Balance {
   Vec3 force = Vec3::Zero();   ///< [N]
   Vec3 moment = Vec3::Zero();  ///< about the origin, on the reference configuration [N m]
   double work = 0;             ///< over the step [J]
 };
 
-/// Sums the forces (data in N at faces or vertices) of one side and the work they do along the way of the vertices, or
-/// of the faces, which is the mean of their vertices'.
+/// Sums the forces (data in N at faces or vertices) of one side and their work along the displacement of
+/// vertices, or of faces, which move by the mean of their vertices.
 class Balancing {
  public:
-  /// Throws Error if a face names a vertex that there is not. Collective.
+  /// Throws Error if a face refers to a missing vertex. Collective.
   Balancing(MPI_Comm comm, const Side& side);
-  /// False if the side does not say which vertices its faces have: there is no work of forces at faces then.
+  /// False if the side does not list the vertices of faces, so that forces at faces have no known work.
   bool knows_work() const { return knows_work_; }
-  /// `data`: this rank's values of `of`; `increment`: dim values at each of its vertices, the way of the step
-  /// [m]. The same on all ranks. Collective.
+  /// `data`: this rank's values of `of`. `increment`: displacement of the step [m], dim values per vertex.
+  /// Equal on all ranks. Collective.
   Balance operator()(const coupling::Exchange& data, const std::vector<coupling::Interface::Datum>& of,
                      const std::vector<double>& increment) const;
 
@@ -40,25 +40,25 @@ class Balancing {
 
 /// Forces and work of one participant over a step.
 struct SideBalance {
-  std::string label;   ///< its role or name
-  bool gives = false;  ///< it gives the load (a fluid); else it takes it
+  std::string label;   ///< role or name
+  bool gives = false;  ///< it gives the load (a fluid), otherwise it takes it
   Balance balance;
 };
 
-/// Those participants that give or take forces at walls that move: what a fluid's walls do and what the
-/// structures take must be the same work. Each side's is its load times the way of its own wall: the fluid's
-/// is where its last pass put it, which in the explicit scheme is the guess.
+/// Participants with forces at moving walls. The work of a fluid's walls and that taken by structures must
+/// agree. Each side uses its load and its own wall motion. The fluid's wall is that of its last pass, in the
+/// explicit scheme the guess.
 class Mechanics {
  public:
-  /// `labels`: of each side, for columns.
+  /// `labels`: one per side, for columns.
   Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
             std::vector<std::string> labels);
 
   bool empty() const { return members_.empty(); }
-  /// Whether all sides tell the vertices of their faces, so that there is work to compare.
+  /// True if all sides list the vertices of their faces, so that work can be compared.
   bool knows_work() const { return knows_work_; }
   int dim() const { return dim_; }
-  /// Balances of the accepted step from what each has given and taken; moves the walls. Collective.
+  /// Returns balances of the accepted step from given and taken data, and moves the walls. Collective.
   std::vector<SideBalance> accepted(const std::vector<coupling::Exchange>& given,
                                     const std::vector<coupling::Exchange>& taken);
 
@@ -70,7 +70,7 @@ class Mechanics {
  private:
   struct Member {
     std::size_t side;
-    bool gives;  // the load
+    bool gives;  // it gives the load
     Balancing balancing;
     std::vector<coupling::Interface::Datum> loads;
   };

@@ -37,7 +37,7 @@ Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::s
       start_time_(std::isnan(restart_time) ? 0. : restart_time),
       worked_(names_.size(), 0.) {
   if (!writes_) return;
-  // Not every run writes these: what an earlier run has left in the folder would be taken for this one's.
+  // Removes optional files of an earlier run, which could be mistaken for this one's.
   if (std::isnan(restart_time))
     for (const char* file : {"balance.csv", "amounts.csv", "volume.csv", "watch.csv"})
       std::filesystem::remove(folder_ / file);
@@ -70,7 +70,7 @@ void Monitor::row(const char* file, double time, const std::vector<std::string>&
 
 namespace {
 
-/// Processor seconds of this process without what it waited for replies.
+/// CPU seconds of this process without waiting for replies.
 double own_seconds(const std::vector<Partner>& partners) {
   double seconds = coupling::processor_seconds();
   for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
@@ -139,7 +139,7 @@ std::string Monitor::waiting(const std::vector<Partner>& partners, const Schedul
   std::vector<Worker> workers;
   for (std::size_t i = 0; i < partners.size(); ++i)
     workers.push_back({partners[i].name(), partners[i].channel->ranks(), worked_[i]});
-  // Its first pass holds the mesh mover's, which is the first of them.
+  // The first pass of the moved participant includes that of the mesh mover, which is listed first.
   for (Worker& worker : workers)
     if (schedule.mover && worker.name == *schedule.moved)
       worker.seconds = std::max(0., worker.seconds - workers.front().seconds);
@@ -148,9 +148,9 @@ std::string Monitor::waiting(const std::vector<Partner>& partners, const Schedul
 
 namespace {
 
-// A division is proposed if it gains at least this much.
+// Minimum gain for proposing a division.
 constexpr double worth_it = 0.1;
-// Below that a run is too short to judge [s].
+// Runs below this time are too short to judge [s].
 constexpr double too_short = 1;
 
 double work(const Worker& w) { return w.seconds * w.ranks; }
@@ -176,7 +176,7 @@ std::string listed(const std::vector<Worker>& workers, const std::vector<int>& r
 
 std::vector<int> divide_ranks(const std::vector<Worker>& workers, int total, bool side_by_side) {
   std::vector<int> ranks(workers.size(), 1);
-  // Each further rank where it helps most: right for sums of convex functions, and for the longest of falling ones.
+  // Adds each rank where it helps most; optimal for convex sums and for the maximum of decreasing functions.
   for (int n = int(workers.size()); n < total; ++n) {
     std::size_t best = 0;
     double most = -1;

@@ -18,26 +18,26 @@
 
 namespace couplet::coupler {
 
-/// The coupler's own output, by its rank 0: residuals.csv (a row a pass), participants.csv (a row a step:
-/// what each worked and waited, what it says of its step, the coupler's own work), balance.csv (forces, moments and work),
-/// amounts.csv (sums that go over), volume.csv (levels of closed fluids), watch.csv (integrals asked for), the console line of
-/// each step and the closing summary.
+/// Output of the coupler by rank 0: residuals.csv (per pass), participants.csv (per step: working and waiting
+/// times, reports, the coupler's own time), balance.csv (forces, moments, work), amounts.csv (transferred
+/// sums), volume.csv (levels of closed fluids), watch.csv (requested integrals), the console line of each
+/// step and the closing summary.
 class Monitor {
  public:
-  /// `names`: of everyone. `restart_time`: NaN for a fresh start.
+  /// `names`: of all participants. `restart_time`: NaN for a fresh start.
   Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names, double end_time,
           double restart_time);
-  /// The first step begins now: what went before is not its work.
+  /// Starts the clock of the first step; earlier work is not counted.
   void start(const std::vector<Partner>& partners);
   void iteration(const coupling::Step& step, int number, const Residual& residual, double omega);
-  /// One row of a table that is begun with its first row; nothing without columns.
+  /// Adds a row to a table, which is opened with its first row; nothing without columns.
   void row(const char* file, double time, const std::vector<std::string>& columns,
            const std::vector<double>& values);
   void step(const coupling::Step& step, double time, const FixedPointResult& result,
             const std::vector<Partner>& partners);
-  /// Mean and largest number of iterations, time by participant.
+  /// Mean and largest number of iterations, and time per participant.
   std::string summary(int halvings) const;
-  /// Who waited for whom, and how ranks are better divided; may be empty.
+  /// Waiting times, and a better division of ranks; may be empty.
   std::string waiting(const std::vector<Partner>& partners, const Schedule& schedule) const;
 
  private:
@@ -46,29 +46,29 @@ class Monitor {
   bool writes_;
   std::vector<std::string> names_;
   std::optional<io::Series> residuals_, participants_;
-  std::map<std::string, io::Series> tables_;  // begun so far
+  std::map<std::string, io::Series> tables_;  // opened so far
   double end_time_, restart_time_, start_time_;
   Clock::time_point start_ = Clock::now(), step_start_ = Clock::now(), last_line_{};
   long steps_ = 0, iterations_ = 0, most_iterations_ = 0;
-  std::vector<double> worked_;  // seconds of each over the run
+  std::vector<double> worked_;  // seconds per participant over the run
   double wall_ = 0;
-  double own_ = 0,
-         own_before_ = 0;  // processor seconds of the coupler: of the run, up to this step since it began
+  double own_ = 0, own_before_ = 0;  // CPU seconds of the coupler: total, and up to this step
 };
 
-/// Work of a participant in a run.
+/// Working time of a participant in a run.
 struct Worker {
   std::string name;
   int ranks = 1;
-  double seconds = 0;  ///< of wall time at work, on these ranks
+  double seconds = 0;  ///< wall time at work, on these ranks
 };
 
-/// `total` ranks for them, one at least for each. Work is taken to divide by the ranks. One after another (Gauss-Seidel) the
-/// times add up: the sum of work / ranks is the least that whole numbers allow; side by side the longest of them is.
+/// Divides `total` ranks, at least one each, assuming that work scales with ranks. In sequence (Gauss-Seidel)
+/// it minimizes the sum of work / ranks over integers; in parallel the largest of them.
 std::vector<int> divide_ranks(const std::vector<Worker>& workers, int total, bool side_by_side);
 
-/// For the end of a run: who waited for whom, and, where another division of the same ranks would take a tenth less time, that
-/// one; with one rank each, whose the next rank should be. Empty: one participant, or no work was measured.
+/// Summary at the end of a run: waiting times, and a division of the same ranks that saves at least a tenth
+/// of the time. With one rank each, it names the participant for the next rank. Empty for one participant or
+/// without timings.
 std::string waiting_sentence(const std::vector<Worker>& workers, bool side_by_side);
 
 }  // namespace couplet::coupler

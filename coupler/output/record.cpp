@@ -6,7 +6,7 @@
 namespace couplet::coupler {
 namespace {
 
-/// Columns of balance.csv are named after roles where there are such.
+/// Columns of balance.csv are named after roles, if there are any.
 std::vector<std::string> labels_of(const CouplingParameters& p, const std::vector<Partner>& partners) {
   std::vector<std::string> labels;
   for (const Partner& partner : partners) {

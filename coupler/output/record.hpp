@@ -11,15 +11,15 @@
 
 namespace couplet::coupler {
 
-/// Files that the coupler writes of a run: tables, balances of forces and work, interface data.
+/// Output files of the coupler: tables, balances of forces and work, interface data.
 class Record {
  public:
   Record(MPI_Comm comm, const CouplingParameters& parameters, const Pass& pass);
   /// Opens the files. `restart_time`: NaN for a fresh start.
   void open(const std::filesystem::path& folder, double end_time, double restart_time);
-  /// Forces and work of the accepted step on both sides; moves the walls. Collective.
+  /// Forces and work of the accepted step on both sides. Moves the walls. Collective.
   const std::vector<SideBalance>& balance();
-  /// The accepted step. `output`: number of the output that is due, -1 for none.
+  /// Records an accepted step. `output`: number of the output that is due, or -1.
   void accepted(double time, int output, VolumeLevel* level);
 
   Monitor& monitor() { return *monitor_; }

@@ -28,7 +28,7 @@ std::string names_of(const coupling::Interface& interface) {
   return names.empty() ? "nothing" : base::join(names);
 }
 
-/// What it gives itself, else what it takes.
+/// Data of this name that it gives, otherwise takes.
 const std::vector<double>* either(const std::string& name, const coupling::Exchange& given,
                                   const coupling::Exchange& taken) {
   for (const coupling::Exchange* data : {&given, &taken})
@@ -128,7 +128,7 @@ WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
 std::vector<Vec3> WatchIntegrals::areas(const Surface& s, const coupling::Exchange& given,
                                         const coupling::Exchange& taken) const {
   const std::vector<double>* moved = s.moves ? either("displacement", given, taken) : nullptr;
-  // A rank without vertices has no such name: all ranks together must know.
+  // Collective, because a rank without vertices does not have the datum.
   if (!s.corners.known() || !parallel::any(comm_, moved != nullptr)) return s.corners.reference_areas();
   return s.corners.areas(moved ? *moved : std::vector<double>{});
 }

@@ -10,22 +10,22 @@
 
 namespace couplet::coupler {
 
-/// Integrals over interfaces, or over parts of them, of data that go over them (`coupling.watch`):
+/// Integrals of transferred data over interfaces or parts of them (`coupling.watch`):
 ///   amounts (N, W)            sum of each component
-///   one value a place q       int q dA and its mean
-///   a vector q of dim values  int q . n dA, the flux out of the participant: a velocity's is the volume swept [m^3/s]
-/// Data at vertices are taken at faces as the mean over the corners. Areas are those of the moved surface where the
-/// participant gives or takes a displacement and tells its corners, else those of the reference configuration. 2-D: per metre
-/// of depth.
+///   one value q per place     int q dA and its mean
+///   a vector q of dim values  int q . n dA, flux out of the participant; for a velocity the swept volume [m^3/s]
+/// Vertex data are averaged over the corners of faces. Areas are those of the moved surface if the
+/// participant has a displacement and lists its corners, otherwise of the reference configuration. 2-D: per
+/// meter of depth.
 class WatchIntegrals {
  public:
-  /// Throws Error for a participant, datum or part that there is not, and for what cannot be integrated. Collective.
+  /// Throws Error for a missing participant, datum or part or data without an integral. Collective.
   WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
                  const std::map<std::string, WatchParameters>& watched);
 
-  /// "tip force x [N]"
+  /// For example "tip force x [N]".
   const std::vector<std::string>& columns() const { return columns_; }
-  /// One value a column, the same on all ranks; NaN where a datum has not gone over yet. Collective.
+  /// One value per column, equal on all ranks; NaN for a datum not yet transferred. Collective.
   std::vector<double> row(const std::vector<coupling::Exchange>& given,
                           const std::vector<coupling::Exchange>& taken) const;
 

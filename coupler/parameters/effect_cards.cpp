@@ -16,7 +16,7 @@ const char* semi_implicit_of(const P& p) {
   return p.scheme.adapts ? "scheme: auto" : "scheme: semi-implicit";
 }
 bool iterates(const P& p) { return p.scheme != coupling::Scheme::explicit_; }
-/// Whether participants see the motion of the guess before the structure has given its own.
+/// True if participants see a guessed motion before the structure gives its own.
 bool predicts(const P& p) { return predictor_order_of(p) > 0; }
 bool is_quasi_newton(const P& p) {
   return p.acceleration.type == AccelerationType::iqn_ils || p.acceleration.type == AccelerationType::iqn_mvj;

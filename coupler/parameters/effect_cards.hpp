@@ -9,7 +9,7 @@
 namespace couplet::coupler {
 
 using CouplingCard = diagnostics::EffectCard<CouplingParameters>;
-/// All that a coupling can have beside one pass a step over matching surfaces, in the order in which it is told.
+/// Features of a coupling beyond one pass per step over matching surfaces, in the order of the report.
 std::span<const CouplingCard> coupling_effect_cards();
 
 }  // namespace couplet::coupler

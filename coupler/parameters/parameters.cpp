@@ -65,7 +65,7 @@ std::string problem_of_roles(const CouplingParameters& p) {
              : "fluid and structure must be two different participants";
 }
 
-/// Those with an interface that the coupler knows.
+/// Participants with an interface known to the coupler.
 std::vector<std::string> partners_of(const CouplingParameters& p) {
   std::vector<std::string> names;
   if (p.exchange) names = p.exchange->participants;
@@ -92,7 +92,7 @@ void declare(config::Section& section, WatchParameters& p, const std::vector<std
       "participant");
 }
 
-/// Whole numbers, of participants that there are; the mesh mover's follow the fluid's.
+/// Checks for whole numbers and existing participants; the mesh mover's follow the fluid's.
 std::string problem_of_sub_steps(const CouplingParameters& p) {
   const std::vector<std::string> names = partners_of(p);
   for (const auto& [name, n] : p.sub_steps) {
@@ -111,7 +111,7 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
   return "";
 }
 
-/// Who takes part.
+/// Declares the participants.
 void declare_participants(config::Section& section, CouplingParameters& p) {
   section.optional_section<CouplingParameters::Fluid>(
       "fluid", p.fluid,

@@ -15,15 +15,15 @@ struct AccelerationParameters {
   enum class Type { constant, aitken, iqn_ils, iqn_mvj } type = Type::iqn_ils;
   double initial_relaxation = 0.5;
   double maximum_relaxation = 1.0;
-  int reused_steps = 8;       // quasi-Newton: earlier steps whose differences are kept
-  int maximum_columns = 100;  // of these differences
-  double filter = 1e-3;       // of what is independent in a column
+  int reused_steps = 8;       // quasi-Newton: number of earlier steps with stored differences
+  int maximum_columns = 100;  // largest number of these differences
+  double filter = 1e-3;       // limit of the independent part of a column
 };
 
 struct ConvergenceParameters {
   double relative = 1e-5;  // |r|_2 / |H(x)|_2
   double absolute = 0;     // rms of |r| over the vertices [m]
-  bool both = false;       // not either
+  bool both = false;       // require both bounds instead of either
   int min_iterations = 1, max_iterations = 50;
   enum class AtMaximum { fail, accept } at_maximum = AtMaximum::fail;
 };
@@ -33,22 +33,22 @@ struct MappingParameters {
   std::optional<double> tolerance;  // [m]
 };
 
-/// One integral over an interface.
+/// Integral over an interface.
 struct WatchParameters {
   std::string participant, data;
-  std::string part;  // of the interface; empty: all of it
+  std::string part;  // of the interface; empty for all of it
 };
 
-/// Participants of any kind that exchange data once a step, in place of fluid, structure and mesh.
+/// Participants of any kind that exchange data once per step, instead of fluid, structure and mesh.
 struct ExchangeParameters {
   enum class Order { serial, parallel, structure_first };
   std::vector<std::string> participants;
   Order order = Order::serial;
-  std::string digest;  // of the configuration of preCICE that the case was made of; empty: it was not
+  std::string digest;  // of the preCICE configuration that the case was created from; else empty
 };
 
 struct CouplingParameters {
-  /// `adapts`: auto, implicit from the step on that shows the need (see SchemeChoice).
+  /// `adapts`: auto, implicit from the first step that requires it (see SchemeChoice).
   struct CaseScheme {
     coupling::Scheme first = coupling::Scheme::semi_implicit;
     bool adapts = true;
@@ -61,14 +61,14 @@ struct CouplingParameters {
   struct Role {
     std::string participant;
   };
-  /// As its program calls its displacement and its load; empty: as this project does.
+  /// Names of displacement and load in the program; empty for Couplet's names.
   struct Fluid : Role {
     std::string displacement{}, load{};
     bool foreign() const { return !displacement.empty() || !load.empty(); }
   };
   struct Structure : Role {
-    std::string displacement = "displacement",
-                load{};  // as its program calls them; load: the sum of all forces
+    // Names in its program; load: the sum of all forces.
+    std::string displacement = "displacement", load{};
     bool foreign() const { return displacement != "displacement" || !load.empty(); }
   };
   std::optional<Fluid> fluid;
@@ -78,7 +78,7 @@ struct CouplingParameters {
   std::optional<Exchange> exchange;
   AccelerationParameters acceleration;
   ConvergenceParameters convergence;
-  /// Without exchange: fluid and structure one after the other, or side by side.
+  /// Without exchange: order of fluid and structure, in sequence or in parallel.
   Exchange::Order order = Exchange::Order::serial;
   std::optional<double> predictor_order;
   std::map<std::string, double> sub_steps;  // by participant
@@ -87,11 +87,11 @@ struct CouplingParameters {
   MappingParameters mapping;
   bool interface_output = false;  // for ParaView
   std::map<std::string, WatchParameters> watch;
-  /// What follows when a guard finds that the coupling itself makes the motion.
+  /// Reaction to a guard that attributes the motion to the coupling scheme.
   enum class OnDivergence { stop, warn } on_divergence = OnDivergence::stop;
-  /// A fluid whose bodies the mesh mover moves as the case prescribes: there is no structure, nothing to iterate.
+  /// True if a mesh mover moves bodies of a fluid as prescribed: nothing is iterated then.
   bool moves_alone() const { return fluid && mesh && !structure && !exchange; }
-  /// The same with the scheme that is in force: one pass where nothing is iterated.
+  /// Copy with the effective scheme: one pass if nothing is iterated.
   CouplingParameters in_force() const {
     CouplingParameters p = *this;
     if (moves_alone()) p.scheme = coupling::Scheme::explicit_;

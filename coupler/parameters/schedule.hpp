@@ -11,64 +11,64 @@
 
 namespace couplet::coupler {
 
-/// One coupling step as data: who takes part, in which order, how often.
-///   [mover once or with each pass][group: one pass (explicit) or until it converges, one after the other
-///   (Gauss-Seidel) or side by side (Jacobi)]
-/// The fluid prepares its step (mesh, momentum predictor) in its first pass by itself: that part of the
-/// semi-implicit scheme is the participants' (Step::scheme).
+/// Description of one coupling step: participants, order and iterations.
+///   [mover once or in each pass][group: one pass (explicit) or until convergence, in sequence (Gauss-Seidel)
+///   or in parallel (Jacobi)]
+/// The fluid itself prepares its step (mesh, momentum predictor) in its first pass. This part of the
+/// semi-implicit scheme belongs to the participants (Step::scheme).
 struct Schedule {
   std::vector<std::string> group;  ///< in the order of a pass
   bool side_by_side = false;
   bool iterates = true;
-  std::optional<std::string> mover, moved;  ///< who moves the mesh, and of whom (one of the group)
-  bool mesh_on_guess = false;               ///< moved in each pass, but to the same place: that of the first
+  std::optional<std::string> mover, moved;  ///< participant that moves the mesh, and the one whose mesh it is
+  bool mesh_on_guess = false;               ///< moved in each pass to the same position, that of the first
   int predictor = 2;
-  std::map<std::string, int> sub_steps;  ///< of those that take several
-  bool waveform = true;                  ///< input of sub-steps as a line in time
+  std::map<std::string, int> sub_steps;  ///< of participants with several
+  bool waveform = true;                  ///< linear in time as input of sub-steps
 
-  /// Everyone, the mover first: the fluid waits for its motion.
+  /// All participants with the mover first, because the fluid waits for its motion.
   std::vector<std::string> everyone() const;
   int sub_steps_of(const std::string& name) const;
 };
 
-/// Order of the prediction of the motion, 0 to 2. An exchange of one pass holds no motion and takes what was given last.
+/// Order of the motion predictor, 0 to 2. An exchange with one pass has none and uses the last values.
 int predictor_order_of(const CouplingParameters& parameters);
 
-/// The schedule that the roles or the exchange of `coupling:` stand for. Throws std::bad_optional_access without either.
+/// Schedule for the roles or the exchange of `coupling:`. Throws std::bad_optional_access without either.
 Schedule schedule_of(const CouplingParameters& parameters);
 
-/// Scheme of the next step. The semi-implicit scheme takes the friction of a wall at a guess of its velocity; where that
-/// friction drags much of the moving mass, the fluid renews its prediction again and again within a step: that costs more
-/// than iterating the whole step, leaves an oscillation, or does not converge at all. With `scheme: auto` these renewals are
-/// counted, and from the step on in which they do not stop the steps are implicit, to the end of the run.
+/// Scheme of the next step. The semi-implicit scheme computes wall friction with a guessed velocity. If
+/// friction drags much of the moving mass, the fluid repeats its prediction within a step. This costs more
+/// than iterating the whole step, and may oscillate or diverge. `scheme: auto` counts these renewals and
+/// becomes implicit for the rest of the run once they do not stop.
 class SchemeChoice {
  public:
   explicit SchemeChoice(CouplingParameters::CaseScheme scheme)
       : is_open_(scheme.adapts), now_(scheme.first) {}
   coupling::Scheme now() const { return now_; }
   void start_step() { renewals_ = 0; }
-  /// A pass in which a participant has begun to answer otherwise (Participant::answered_anew).
+  /// Counts a pass in which a participant renewed its prediction (Participant::answered_anew).
   void renewed() { ++renewals_; }
-  /// After a step that ended at `time`: whether those that follow are implicit from here on, which is told.
+  /// Call after a step that ended at `time`. Returns true, and reports it, if further steps are implicit.
   bool accepted(double time);
-  /// After a step that failed: whether it is to be tried again as an implicit one, which now() then is. If that ends,
-  /// tell(); if it fails as well, withdraw().
+  /// Call after a failed step. Returns true if it must be repeated as an implicit one, set in now(). On
+  /// success call tell(), on failure withdraw().
   bool failed();
   static void tell(double time, const std::string& why);
   void withdraw() { is_open_ = true, now_ = coupling::Scheme::semi_implicit; }
 
-  /// For checkpoints: steps in a row with too many renewals (-1 once the steps are implicit), and the share of renewed ones.
+  /// Data for checkpoints: consecutive steps with too many renewals (-1 once implicit), share renewed.
   std::array<double, 2> state() const {
     return {now_ == coupling::Scheme::implicit ? -1. : in_a_row_, renewed_share_};
   }
   void restore(const std::array<double, 2>& state);
 
-  /// Renewals within a step, and such steps in a row. A start from rest takes up to five, after which few are renewed
-  /// (perpendicular flap of 42 kg/m^3 in a fluid of 1 Pa s); where it takes six, the implicit scheme costs the same or less
-  /// (docs/validation/strong-coupling.md).
+  /// Limits: renewals within a step, and consecutive steps with so many. A start from rest takes up to five
+  /// (perpendicular flap of 42 kg/m^3 in a fluid of 1 Pa s). If it takes six, the implicit scheme costs no
+  /// more (docs/validation/strong-coupling.md).
   static constexpr int too_many = 3, most_in_a_row = 6;
-  /// Of the steps of late (exponential mean over so many) those with a renewal: what flips between renewed and not leaves an
-  /// oscillation, small beside the load but not beside its smallest component (lift of FSI1: 10 %).
+  /// Limit of the recent share of steps with renewals (exponential mean). Alternating renewals leave an
+  /// oscillation that is small relative to the load but not to its smallest component (lift of FSI1: 10 %).
   static constexpr double most_renewed = 0.4, memory = 50;
 
  private:

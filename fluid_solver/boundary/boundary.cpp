@@ -20,7 +20,7 @@ constexpr double round_enough = 0.1;  // of the area of the disc
 
 struct Extent {
   Vec3 area = Vec3::Zero(), centre = Vec3::Zero();
-  double size = 0, radius = 0;  // sum of |S|; largest distance of a point from the centre
+  double size = 0, radius = 0;  // sum of |S|; largest distance of a point from the center
 };
 
 Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Patch& patch) {
@@ -41,8 +41,8 @@ Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Pa
   return e;
 }
 
-/// Parabolic: 4 s (1 - s) between the two ends of a line (2-D), 1 - (r/R)^2 on a disc (3-D), scaled to the
-/// mean. Throws Error if the patch is no straight line or no disc. Collective.
+/// Parabolic profile: 4 s (1 - s) between the ends of a line (2-D), 1 - (r/R)^2 on a disc (3-D), scaled to
+/// the mean. Throws Error if the patch is neither. Collective.
 template <int D>
 InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                           InletProfile profile) {
@@ -186,7 +186,7 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   rows_.sort();
 }
 
-/// Adds the absorbing patches and the inlets before a volume, which only a compressible fluid has.
+/// Adds absorbing patches and inlets with an upstream volume, for a compressible fluid.
 template <int D>
 void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();
@@ -302,7 +302,7 @@ void Boundary<D>::pressure_at(double t, const std::vector<Vec3>& centres, std::v
                    {p.data() + faces.first, std::size_t(faces.count)});
 }
 
-/// u_b = t w + (1 - t) u_P + (1 - q - t) n n.(w - u_P), q = 1 where the pressure is given.
+/// u_b = t w + (1 - t) u_P + (1 - q - t) n n.(w - u_P), q = 1 if the pressure is given.
 template <int D>
 void Boundary<D>::close(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                         const Vectors<D>& w, Vectors<D>& u_boundary) const {

@@ -15,20 +15,20 @@
 
 namespace couplet::fluid {
 
-/// Consecutive boundary faces of one patch; on ranks without any `count` is 0.
+/// Consecutive boundary faces of one patch; `count` is 0 on ranks that have none.
 struct FaceRange {
   Index first = 0, count = 0;
 };
 
-/// The FaceRow of every boundary face, and the faces by what of it they have. Arrays over "boundary faces" are indexed by
-/// f - mesh.n_interior; lists ascend.
+/// FaceRow of every boundary face, and lists of the faces by type, in ascending order. Arrays over "boundary
+/// faces" are indexed by f - mesh.n_interior.
 struct FaceRows {
   std::vector<double> pressure, slip_length, inflow;  ///< see FaceRow
-  std::vector<Index> of_pressure;                     ///< the pressure is given
+  std::vector<Index> of_pressure;                     ///< faces with given pressure
   std::vector<Index> of_flux;                         ///< all others: phi = w.S
-  std::vector<Index> of_mesh;                         ///< of these: w is the normal velocity of the mesh
-  std::vector<Index> of_velocity;                     ///< and the rest of them
-  std::vector<char> with_mesh;                        ///< of all faces: w is the normal velocity of the mesh
+  std::vector<Index> of_mesh;      ///< those of of_flux where w is the normal velocity of the mesh
+  std::vector<Index> of_velocity;  ///< the rest of of_flux
+  std::vector<char> with_mesh;     ///< per boundary face: w is the normal velocity of the mesh
 
   explicit FaceRows(Index count = 0)
       : pressure(count, 0.0), slip_length(count, 0.0), inflow(count, 1.0), with_mesh(count, 0) {}
@@ -40,7 +40,7 @@ struct FaceRows {
       with_mesh[b] = moves_with_mesh;
     }
   }
-  /// Once all are set.
+  /// Builds the lists once all rows are set.
   void sort() {
     for (Index b = 0; b < static_cast<Index>(pressure.size()); ++b) {
       (pressure[b] > 0 ? of_pressure : of_flux).push_back(b);
@@ -48,8 +48,8 @@ struct FaceRows {
     }
   }
 
-  /// t = S/(S + L g), the share of mu g (w - u_P) along the wall that friction has: 1 without slip, 0 without friction.
-  /// `f`: the flux face of b.
+  /// t = S/(S + L g), the share of the tangential friction mu g (w - u_P) that acts: 1 without slip, 0
+  /// without friction. `f`: flux face of b.
   template <int D>
   double friction(const Placement<D>& at, Index b, Index f) const {
     const double area = at.area[f].norm();
@@ -57,14 +57,14 @@ struct FaceRows {
   }
 };
 
-/// Speed at the faces of an inlet relative to its mean.
+/// Speed at the faces of an inlet relative to the mean speed.
 template <int D>
 struct InletShape {
   Vec<D> direction = Vec<D>::Zero();  ///< unit vector into the domain
   std::vector<double> speed;          ///< per face of the patch; its mean over the area is 1 to round-off
 };
 
-/// The velocity that the keys of a condition give to the faces of a patch.
+/// Velocity of a patch as given by the keys of its condition.
 template <int D>
 class GivenVelocity {
  public:
@@ -74,9 +74,9 @@ class GivenVelocity {
 
   const FaceRange& faces() const { return faces_; }
   const mesh::Patch& patch() const { return *patch_; }
-  /// A wall whose velocity differs from place to place.
+  /// True for a wall whose velocity varies in space.
   bool turns() const { return turns_; }
-  /// At places of the patch, in the order of its faces where a profile was made for them [m/s].
+  /// Evaluates at points of the patch, in the order of its faces if a profile was made for them [m/s].
   void evaluate(double t, std::span<const Vec3> places, Vec<D>* w) const;
 
  private:
@@ -85,17 +85,17 @@ class GivenVelocity {
   BoundaryParameters parameters_;
   std::vector<fv::Expression> velocity_;
   fv::Expression mean_speed_;
-  InletShape<D> shape_;                 // with mean_speed
+  InletShape<D> shape_;                 // if mean_speed is given
   std::optional<fv::GridTable> table_;  // of the velocity
-  fv::Expression turning_;              // [rad/s], with a rotation
+  fv::Expression turning_;              // [rad/s], if a rotation is given
   bool turns_ = false;
 };
 
-/// The velocities of a boundary from its file, in `dimension` components. Throws Error with file:line.
+/// Reads the velocities of a boundary from its file, in `dimension` components. Throws Error with file:line.
 fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
                              int dimension);
 
-/// For --check: tables of boundaries that are missing or broken.
+/// Missing or invalid tables of boundaries, for --check.
 std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
                                                  const std::filesystem::path& case_folder);
 
@@ -111,61 +111,61 @@ class Boundary {
   /// Throws Error if a patch has no boundary or a boundary names no patch.
   Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters);
 
-  /// Numbers of the conditions for the loops over boundary faces.
+  /// Coefficients of the conditions for the loops over boundary faces.
   const FaceRows& rows() const { return rows_; }
-  /// No face of the whole domain has a given pressure: the pressure level is free.
+  /// True if no face of the whole domain has a given pressure, so that the pressure level is free.
   bool closed() const { return closed_; }
   /// Names of the patches of type interface.
   const std::vector<std::string>& interface_patches() const { return interface_patches_; }
   /// Patches of type body.
   const std::vector<const mesh::Patch*>& body_patches() const { return body_patches_; }
-  /// A wall whose velocity is given from outside: by the structure or by the prescribed motion.
+  /// True at a wall whose velocity is given from outside, by the structure or the prescribed motion.
   bool is_interface(Index boundary_face) const { return interface_[boundary_face] != 0; }
 
-  /// Some walls of the interface have a mass that the pressure equation foresees; the mass per area of each boundary
-  /// face [kg/m^2], 0: none.
+  /// True if the pressure equation accounts for the mass of some interface walls. wall_mass() is the mass per
+  /// area of each boundary face [kg/m^2], 0 if none.
   bool yields() const { return yields_; }
   const std::vector<double>& wall_mass() const { return wall_mass_; }
-  /// Boundary faces whose mass may be that of two sides. None in a closed domain: two sides that move as one say nothing of
-  /// the pressure's level, each by itself does.
+  /// Boundary faces whose mass may be that of two sides. Empty in a closed domain: two sides that move as one
+  /// do not determine the pressure level, but each by itself does.
   std::span<const Index> faces_with_two_sides() const {
     return closed_ ? std::span<const Index>{} : std::span<const Index>(two_sided_);
   }
-  /// The structure says these masses (`impedance: structure`), for all its faces of the interface or some.
+  /// True if the structure provides the masses of some interface faces (`impedance: structure`).
   bool asks_for_mass() const { return asks_for_mass_; }
-  /// Takes the structure's masses of boundary faces [kg/m^2] where it was asked for them. Returns true if one of this rank's has
-  /// changed. Throws Error if one is not above 0.
+  /// Sets the structure's masses of boundary faces [kg/m^2] where they are asked for. Returns true if one of
+  /// this rank's changed. Throws Error if one is not positive.
   bool set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses);
 
-  /// Pressure that gave walls which yield their velocity, per boundary face [Pa].
+  /// Sets the pressure that gave walls of known mass their velocity, per boundary face [Pa].
   void set_wall_load(std::vector<double> load) { wall_load_ = std::move(load); }
   const std::vector<double>& wall_load() const { return wall_load_; }
 
-  /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
+  /// Sets w at time t [m/s] at faces with given velocity; interface faces keep their value.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
-  /// Some walls may turn or stretch: the same on all ranks.
+  /// True on all ranks if some walls may rotate or stretch.
   bool walls_turn() const { return turns_; }
-  /// The turn (see turn_of()) of the walls whose velocity the case gives and that differs from place to place, at
-  /// their faces of `turn`, which has all boundary faces. `points`: of the mesh at time t.
+  /// Adds the turn (see turn_of()) of walls whose velocity the case gives and varies in space, at their faces
+  /// of `turn`, which has all boundary faces. `points`: points of the mesh at time t.
   void add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const;
-  /// p at time t [Pa] at the faces with given pressure; the others are left as they are.
+  /// Sets p at time t [Pa] at faces with given pressure; the others keep their value.
   void pressure_at(double t, const std::vector<Vec3>& centres, std::vector<double>& p) const;
-  /// Velocity at all boundary faces from that in the cells, see FaceRow.
+  /// Computes the velocity at all boundary faces from that in the cells, see FaceRow.
   void close(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
              Vectors<D>& u_boundary) const;
-  /// w one sub-step further at convective outlets, from w and u at its begin: dw/dt + U dw/dn = 0, implicit,
-  /// U the mean outflow speed of the patch. Collective.
+  /// Advances w at convective outlets by one sub-step, from w and u at its beginning: dw/dt + U dw/dn = 0,
+  /// implicit. U is the mean outflow speed of the patch. Collective.
   void convect(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w_begin,
                double dt, Vectors<D>& w) const;
-  /// Faces that take up what a closed domain would let out or in: convective outlets, else interfaces.
+  /// True for faces that balance the net flux of a closed domain: convective outlets, else interfaces.
   bool is_adjustable(Index boundary_face) const {
     return convective_patches_.empty() ? is_interface(boundary_face) : convective_[boundary_face] != 0;
   }
   bool has_convective_outlet() const { return !convective_patches_.empty(); }
   /// Absorbing patches, in the same order on all ranks.
   const std::vector<AbsorbingPatch>& absorbing_patches() const { return absorbing_patches_; }
-  /// Inlets of a compressible fluid behind which a volume lies: faces of given pressure, that of the volume, whose given
-  /// velocity is what flows into the volume.
+  /// Inlets of a compressible fluid with a volume upstream. The pressure of the volume is given at their
+  /// faces, and their given velocity is the flow into the volume.
   const std::vector<FaceRange>& upstream_patches() const { return upstream_patches_; }
   bool is_convective(Index boundary_face) const { return convective_[boundary_face] != 0; }
 
@@ -185,13 +185,13 @@ class Boundary {
   std::vector<const mesh::Patch*> body_patches_;
   std::vector<GivenVelocity<D>> velocity_patches_;
   std::vector<GivenPressure> pressure_patches_;
-  std::vector<FaceRange> convective_patches_;  // also empty ones
+  std::vector<FaceRange> convective_patches_;  // includes empty ones
   bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;
   std::vector<double> wall_mass_, wall_load_;
   std::vector<Index> two_sided_;
-  std::vector<char> asked_;  // by boundary face: its mass is the structure's word
+  std::vector<char> asked_;  // per boundary face: the structure provides its mass
 };
 
 }  // namespace couplet::fluid

@@ -15,13 +15,13 @@ namespace couplet::fluid {
 
 namespace {
 
-// Fewer steps show only the start of a motion, and a smaller share of the mean square is rounding.
+// Fewer steps only show the start of a motion; a smaller share of the mean square is round-off.
 constexpr int judged_steps = 10;
 constexpr double rounding = 1e-9;
 
 }  // namespace
 
-// The step in which the flow starts has the impulse of the start in its pressure, which says nothing about what follows.
+// Skips the step in which the flow starts, because its pressure contains the impulse of the start.
 void ComplianceWatch::add(double dt, const std::vector<double>& swept, const Totals& now) {
   sum_.resize(swept.size());
   square_.resize(swept.size());
@@ -64,7 +64,7 @@ ComplianceWatch::Totals ComplianceWatch::totals() const {
           deviation(mean_.pressure_volume, mean_square_.pressure_volume)};
 }
 
-// Effects of compressibility: changes of density, and waves of pressure beside moving walls.
+// Effects of compressibility: density changes, and pressure waves at moving walls.
 
 namespace {
 
@@ -74,7 +74,7 @@ std::optional<Sound> sound_in(const FluidView<D>& view) {
   return sound_of(p.compressibility, p.density, p.viscosity);
 }
 
-/// Waves of pressure: the change of density in an instant, and over the run how walls move and how the pressure answers.
+/// Pressure waves: the current change of density, and wall motion and pressure response over the run.
 template <int D>
 class WavesOfPressure final : public diagnostics::Diagnostic {
  public:
@@ -113,7 +113,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
     if (const auto range = pressure_range(view_))
       add(report, change_of_density(false, density(), *range, largest_speed(view_), sound_));
   }
-  /// Means over the run count at its end only: while a flow starts, its pressures compress much and walls have hardly moved.
+  /// Evaluates means only at the end, because pressures dominate before walls have moved.
   void conclude(diagnostics::Report& report) override {
     if (view_.parameters().is_compressible()) return;
     const ComplianceWatch::Walls mine = watch_.walls();
@@ -121,7 +121,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
     MPI_Allreduce(MPI_IN_PLACE, walls.data(), int(walls.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
     if (!(walls[0] > 0)) return;
     const ComplianceWatch::Totals totals = watch_.totals();
-    // A plate in the fluid sweeps as much on one side as it leaves on the other.
+    // A plate in the fluid sweeps the same volume on both sides.
     const double stroke = std::max(totals.swept, 0.5 * walls[2]);
     const double size = largest_extent(view_.mesh, view_.fluid.state().placement->boundary_centre);
     add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
@@ -166,7 +166,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-// Density changes go with the Mach number squared over two: 5 % at 0.3.
+// Density changes scale with half the squared Mach number: 5 % at 0.3.
 diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
   const double mach = speed / sound.speed;
   return {
@@ -181,10 +181,10 @@ diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
       .share = mach < 0.9 ? 1 / std::sqrt(1 - mach * mach) - 1 : 1};  // of pressures [Prandtl and Glauert]
 }
 
-// Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
-// du/dt, whatever the Mach number; the density follows by dp/(rho c^2). What the speed itself explains of that, 2 M^2 of a
-// body in a stream (pressures from 1 to -3 of rho u^2/2), is the compressibility's share. Linear acoustics leaves out what
-// goes with the change of density.
+// If flow is stopped or driven faster than waves cross the domain, the pressure rises as rho c du or rho L
+// du/dt at any Mach number, and the density by dp/(rho c^2). The speed alone explains 2 M^2 of a body in a
+// stream (pressures from 1 to -3 of rho u^2/2), which is the share of compressibility. Linear acoustics
+// neglects effects of the density change.
 diagnostics::EffectFinding change_of_density(bool is_compressible, double density, double range, double speed,
                                              const Sound& sound) {
   const double change = range / (density * sound.speed * sound.speed);
@@ -200,8 +200,8 @@ diagnostics::EffectFinding change_of_density(bool is_compressible, double densit
       .share = std::max(0., change - 2 * std::pow(speed / sound.speed, 2))};
 }
 
-// Compression takes part of what the walls displace, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
-// stroke it is what an incompressible fluid pushes through the openings instead.
+// Compression takes up part of the volume displaced by walls, V dp/(rho c^2), for a gas V dp/(gamma p). An
+// incompressible fluid would push this share of the stroke through the openings.
 diagnostics::EffectFinding compliance(double density, double stroke, double pressure_volume,
                                       const Sound& sound) {
   const double share = pressure_volume / (density * sound.speed * sound.speed) / std::max(stroke, 1e-300);
@@ -215,7 +215,7 @@ diagnostics::EffectFinding compliance(double density, double stroke, double pres
           .share = share};
 }
 
-// A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
+// A column of length L responds to motion of rate omega as tan(omega L/c)/(omega L/c): 3 % more at 0.3.
 diagnostics::EffectFinding wave_time(double rate, double size, const Sound& sound) {
   const double phase = rate * size / sound.speed;
   return {

@@ -11,18 +11,18 @@
 
 namespace couplet::fluid {
 
-/// What drives a flow in time: expressions of body force, velocities and pressures of boundaries that use t. A flow that
-/// answers linearly to a clock cannot drift away from it: what a step leaves turns back with the next half period. One that
-/// moves with a structure or carries vortices may swing of itself, clock or not: it is never counted as driven.
+/// Time-dependent expressions that drive a flow: body force, and velocities and pressures at boundaries. A
+/// flow that responds linearly to such an expression does not drift from it, because errors cancel over half
+/// a period. A flow coupled to a structure or with vortices may oscillate and never counts as driven.
 class Driving {
  public:
   explicit Driving(const FluidParameters& parameters);
-  /// Some expression uses the time at all.
+  /// True if some expression depends on time.
   bool is_possible() const { return !timed_.empty(); }
-  /// Walls, bodies or the mesh move: what drives the flow is not known from these expressions alone.
+  /// True if walls, bodies or the mesh move. These expressions then do not describe the driving completely.
   bool moves() const { return moves_; }
-  /// Some of them still change over the last steps of `dt` before `time` [s] at one of the `places` [m], those of this
-  /// rank. Collective over `comm`.
+  /// True if an expression still changes over the last steps of `dt` before `time` [s] at one of the `places`
+  /// [m] of this rank. Collective over `comm`.
   bool acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt) const;
 
  private:

@@ -20,14 +20,14 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double adams_bashforth_error = 5. / 12;
-// Of what a clock drives: forces at mid-step 1/24, friction by the trapezoidal rule 1/12; hardly any convection, 5/12. Of a flow that
-// friction holds at rate r, u' = f - r u, r u'' dt^3/8 beside it, less by 1 + r dt/2, which that rule divides by; by Adams and
-// Bashforth's 5/12 + 1/24.
+// Error constants of driven flows: 1/24 for forces at mid-step, 1/12 for friction by the trapezoidal rule,
+// 5/12 for the little convection. For a flow held by friction at rate r, u' = f - r u, the error is r u''
+// dt^3/8, reduced by 1 + r dt/2 with that rule. Adams-Bashforth gives 5/12 + 1/24.
 constexpr double driven_error = 1. / 12, held_error = 1. / 8, held_explicitly = 11. / 24;
 constexpr double hardly = 0.1;   // share of convection in the rate of change of a flow that answers linearly
-constexpr double window = 0.25;  // "of late" is about this part of the time that has gone by
+constexpr double window = 0.25;  // recent means cover about this part of the elapsed time
 
-/// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
+/// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
 template <int D>
 struct Fit {
   Eigen::Matrix<double, D + 1, D + 1> moments = Eigen::Matrix<double, D + 1, D + 1>::Zero();
@@ -39,11 +39,11 @@ struct Fit {
     moments += row * row.transpose() / (length * length);
     values += row * value.transpose() / (length * length);
   }
-  /// In the cell itself.
+  /// Value of the fit in the cell itself.
   Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
 };
 
-/// Divided differences of u in time. Where nothing drives: rate and its change become those of this step, u is kept.
+/// Divided differences of u in time. Updates rate and its change to this step and stores u.
 template <int D>
 struct Differences {
   std::span<const double> volume;
@@ -51,7 +51,7 @@ struct Differences {
   Vec<D>*u, *rate, *change;
   double per_step, per_apart;  ///< per_apart 0: there is no rate yet
 };
-/// Sums over the volume of the squares of u, its rate, the change of that and the change of that, and the volume.
+/// Volume sums of the squares of u, its rate and two further differences, and the volume.
 template <int D>
 COUPLET_PROCESSOR_CLONES std::array<double, 5> renew(const Differences<D>& d) {
   std::array<double, 5> sums{};
@@ -68,20 +68,17 @@ COUPLET_PROCESSOR_CLONES std::array<double, 5> renew(const Differences<D>& d) {
   return sums;
 }
 
-/// Shares of the error that a run leaves in the velocity, over its size, as norms over the volume:
-///   mesh    difference of u from the value that a linear fit through the neighbours of each cell has in it, h^2/4
-///           times the Laplacian of u on equal cells: recovery of the values
-///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams and Bashforth's second order, see StepErrors; of
-///           k sub-steps each k^-3. The flow forgets at the rate at which it is renewed, outflow over volume, and at which
-///           friction takes what work has brought in, (W' - E')/(2 E). Where a clock drives it
-///           (Driving) and it answers linearly (convection is a small share of its rate of change) no error drifts: the sum
-///           of the local errors as vectors, which turn back with each half period, counts if it is less; friction that holds the
-///           flow to its forces, r dt above 1, makes the force's time its own: (w dt)^2/8 of an oscillation. One that nothing
-///           drives and that repeats itself drifts in phase, see PhaseDrift: of this and the sum the larger one counts
-///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
-///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
-///           that does not the whole field; this is the mean of the two in logarithms
-/// Collective.
+/// Shares of the error in the velocity over its size, as norms over the volume. Collective.
+///   mesh    difference of u from a linear fit through the neighbors of each cell, h^2/4 times the Laplacian
+///           of u on equal cells (recovery of the values)
+///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams-Bashforth, see StepErrors; k^-3 each with k
+///           sub-steps. Errors decay with outflow over volume and with dissipation, (W' - E')/(2 E). In a
+///           driven flow (Driving) with a linear response, errors cancel within half a period, so the vector
+///           sum is used if smaller. If friction balances the forces (r dt > 1), the error of an oscillation
+///           is (w dt)^2/8. A self-excited periodic flow drifts in phase, see PhaseDrift; the larger counts.
+///   linear  residual of the pressure equation: net outflow of the cells over their flux, times the square
+///           root of the number of cells across. An alternating outflow moves only neighbors, a uniform one
+///           the whole field; this is the geometric mean.
 template <int D>
 class FluidErrorEstimate final : public diagnostics::Diagnostic {
  public:
@@ -107,8 +104,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   }
 
  private:
-  // Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
-  // the change of the rate, the change of that. One loop and one sum over the ranks: a cheap step costs little more.
+  // Divided differences of u at the ends of the last four steps, which have nearly equal lengths: rate, and
+  // its first and second changes. Uses one loop and one reduction, so that a cheap step costs little more.
   void accepted(double dt) {
     const auto n = std::size_t(fluid_.mesh().cells.n_owned());
     const double apart = 0.5 * (dt + dt_old_);
@@ -128,7 +125,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       see_energy(dt);
       const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps);
       drift_.add(dt, held_, mean(1), mean(2), adams_bashforth_error * sub_step * sub_step);
-      // Errors leave the flow with the outflow of all its volume, and by friction.
+      // Errors leave with the outflow, and are dissipated by friction.
       const double forgotten = friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
       for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
       const double faded = std::exp(-dt / (window * time_));
@@ -156,8 +153,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     parts.mesh = recovered_difference() / speed;
     parts.step = step_part();
     const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
-    const auto& known =
-        fluid_.parameters().compressibility;  // the trapezoidal rule knows the divergence before, too
+    // The trapezoidal rule also knows the divergence before.
+    const auto& known = fluid_.parameters().compressibility;
     const bool open = known && known->scheme == WaveScheme::trapezoidal;
     parts.linear = (open ? fluid_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
     return parts;
@@ -173,8 +170,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     squares = parallel::sum(fluid_.mesh().comm, squares), whole = parallel::sum(fluid_.mesh().comm, whole);
     return whole > 0 ? std::sqrt(squares / whole) : 0;
   }
-  /// Weights of the differences of the change of the rate, and of the change itself: local errors of a step, and of one that
-  /// a clock drives.
+  /// Weights of the second change and of the change of the rate: local errors of a step, and of one in a
+  /// driven flow.
   struct Weights {
     double local = 0, of_third = 0, of_second = 0;
   };
@@ -186,8 +183,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
             .of_third = less * driven_error * dt * sub_step * sub_step / apart,
             .of_second = less * (implicit ? held_error : held_explicitly) * held * dt * sub_step * sub_step};
   }
-  /// One loop over the cells. `squares`: of u, its rate, the change of that, the change of that; the volume; of what is left, outflow; of
-  /// what is carried.
+  /// Sums over the cells. `squares`: of u, its rate and two changes; the volume; of the residual outflow and
+  /// of the flux.
   void sum_differences(double per_step, double per_apart, const Weights& weights,
                        std::array<double, 8>& squares) {
     const Vectors<D>& u = fluid_.state().u;
@@ -200,7 +197,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       std::ranges::copy(sums, squares.begin());
       return;
     }
-    const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; none of other schemes
+    const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; empty with other schemes
     for (std::size_t c = 0; c < n && seen_ > 0; ++c) {
       const Vec<D> rate = (u[c] - u_[c]) * per_step;
       const Vec<D> change = seen_ > 1 ? Vec<D>((rate - rate_[c]) * per_apart) : Vec<D>(Vec<D>::Zero());
@@ -229,9 +226,11 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     energy_ += share * (held - energy_);
     work_ = ledger.work, held_ = held;
   }
-  /// Rate at which it takes what work brings in [1/s]. The flow's own decay is not in it: it takes the errors along with the solution.
+  /// Dissipation rate of the work [1/s], without the flow's own decay, which reduces errors and solution
+  /// alike.
   double friction() const {
-    // A flow that gains energy loses no error by it. In one that decays, the work alone is more than the solution's own way.
+    // A flow that gains energy does not lose errors. In a decaying flow, the work alone would exceed the
+    // solution's decay.
     const double taken = std::max(0., std::min(power_, power_ - gain_));
     return energy_ > 0 ? taken / (2 * energy_) : 0;
   }
@@ -281,7 +280,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     left = parallel::sum(mesh.comm, left), all = parallel::sum(mesh.comm, all);
     return all > 0 ? std::sqrt(left / all) : 0;
   }
-  /// Mass that a compressible fluid takes up by compression is no outflow.
+  /// Mass taken up by compression is not outflow.
   void add_compression(std::vector<double>& net) const {
     const State<D>& s = fluid_.state();
     if (!s.pressure[1]) return;
@@ -306,13 +305,13 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   time::StepErrors steps_;
   PhaseDrift drift_;
   double time_ = 0;                           // judged so far [s]
-  double power_ = 0, gain_ = 0, energy_ = 0;  // means of late: work and gain of energy [W], energy [J]
+  double power_ = 0, gain_ = 0, energy_ = 0;  // recent means: work and gain of energy [W], energy [J]
   double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
   Driving driving_;
-  Vectors<D> left_;          // sum of local errors; empty: nothing drives
-  double left_of_late_ = 0;  // norm, the largest of late
-  double carried_ = 0,
-         changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
+  Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
+  double left_of_late_ = 0;  // largest recent norm
+  // Recent maxima: convective part of the rates, and the rates [m/s^2].
+  double carried_ = 0, changed_ = 0;
 };
 
 }  // namespace

@@ -11,22 +11,22 @@
 namespace couplet::fluid {
 namespace {
 
-// Share of the volume that went through an opening in either direction, above which it was no oscillation, and of the volume
-// through the largest opening, above which it was no trickle.
+// Minimum share of the volume through an opening in one direction (more than an oscillation), and of the
+// volume through the largest opening (more than a trickle).
 constexpr double always = 0.9, much = 0.1;
 
-/// Which way the fluid went through inlets and outlets over the run. Inlets through which fluid left, and outlets through
-/// which it entered, all the time: a sign or a name is wrong.
+/// Checks flow directions over the run. Permanent outflow at an inlet or inflow at an outlet suggests a wrong
+/// sign or name.
 template <int D>
 class FlowThroughOpenings final : public diagnostics::Diagnostic {
  public:
   explicit FlowThroughOpenings(const FluidView<D>& view) : view_(view) {
-    // A wall that moves may draw fluid in through an outlet.
+    // A moving wall may draw fluid in through an outlet.
     const bool at_rest = !view.has_mover && !view.is_prescribed && !view.has_interface;
     for (const mesh::Patch& patch : view.mesh.patches) {
       const BoundaryParameters& b = view.parameters().boundaries.at(patch.name);
       const bool inlet = condition_of(b).passage == Passage::in;
-      // A pressure that is given on purpose may push.
+      // A pressure given on purpose may drive the flow.
       const bool outlet = at_rest && gives_pressure(b) && b.pressure.text == "0";
       if (inlet || outlet) openings_.push_back({&patch, inlet});
     }

@@ -7,7 +7,7 @@
 namespace couplet::fluid {
 namespace {
 
-constexpr double recent = 0.25;             // "of late" is about this part of the time that has gone by
+constexpr double recent = 0.25;             // recent means cover about this part of the elapsed time
 constexpr double stands_out = 0.1;          // of the swing: what a maximum stands out by
 constexpr double same_maxima = 0.05;        // of the swing and of the distance: maxima that are the same
 constexpr double no_swing = 1e-9;           // of the value: no swing

@@ -5,11 +5,11 @@
 
 namespace couplet::fluid {
 
-/// Whether a signal repeats itself: its last maxima come at equal distances and are equally high, or every second, or every third
-/// of them. A maximum counts if the signal falls after it by a tenth of its swing of late, so noise makes none.
+/// Detects whether a signal is periodic: its last maxima, or every second or third one, are equally spaced
+/// and high. A maximum counts if the signal then falls by a tenth of its recent range, so noise is ignored.
 class Repetition {
  public:
-  /// A value `dt` [s] after the last one.
+  /// Adds a value `dt` [s] after the previous one.
   void add(double dt, double value);
   bool repeats() const;
   template <class Numbers>
@@ -27,23 +27,24 @@ class Repetition {
   };
   bool repeats_after(std::size_t peaks) const;
   std::deque<Peak> peaks_;        // the last ones, oldest first
-  Peak extreme_;                  // highest since the last minimum, or lowest since the last maximum
-  bool rises_ = true;             // it is the highest
+  Peak extreme_;                  // largest value since the last minimum, or smallest since the last maximum
+  bool rises_ = true;             // extreme_ is a largest value
   double time_ = 0, dt_ = 0;      // since the first value; longest step [s]
-  double upper_ = 0, lower_ = 0;  // envelope of late
+  double upper_ = 0, lower_ = 0;  // recent envelope
 };
 
-/// How far a flow that repeats itself by its own law (a vortex street, no clock and no wall that drives it) is out of step. What a
-/// step leaves across its cycle is taken away by the flow, along it by nothing: the phase. A scheme whose step leaves w dt u''' moves the
-/// flow along its cycle by the share -w <u''', u'> / <u', u'> = w |u''|^2 / |u'|^2 of a step, means over a cycle (for a single frequency
-/// 5/12 (omega dt)^2 with Adams and Bashforth), so after a time t by
-///   d = t w |u''|^2 / |u'|^2,   and the velocity by d |u'|,
-/// at most by twice the amplitude |u'|^2 / |u''|.
+/// Estimates the phase error of a self-excited periodic flow, such as a vortex street without driving walls
+/// or clocks. The flow damps step errors across its cycle but not along it. A step with the error w dt u'''
+/// shifts the phase by the fraction -w <u''', u'>/<u', u'> = w |u''|^2/|u'|^2 of a step, with means over a
+/// cycle. For a single frequency and Adams-Bashforth this is 5/12 (omega dt)^2. After a time t, the phase and
+/// velocity errors are
+///   d = t w |u''|^2 / |u'|^2   and   d |u'|, at most twice the amplitude |u'|^2 / |u''|.
 class PhaseDrift {
  public:
-  /// Of a step of `dt` [s]: kinetic energy, the norms of the rate and of its change [m/s^2, m/s^3], the weight [s^2].
+  /// Adds a step of `dt` [s]: kinetic energy, norms of rate and change of rate [m/s^2, m/s^3], weight w
+  /// [s^2].
   void add(double dt, double energy, double rate, double change, double weight);
-  /// In the velocity [m/s]; 0: the flow does not repeat itself.
+  /// Velocity error [m/s]; 0 if the flow is not periodic.
   double error() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
@@ -52,9 +53,8 @@ class PhaseDrift {
 
  private:
   Repetition repetition_;
-  double time_ = 0;  // [s]
-  double rate_ = 0, change_ = 0,
-         weighted_ = 0;  // means of late of the squares; of the latter's times the weight
+  double time_ = 0;                              // [s]
+  double rate_ = 0, change_ = 0, weighted_ = 0;  // recent means of squares; last: change^2 times weight
 };
 
 }  // namespace couplet::fluid

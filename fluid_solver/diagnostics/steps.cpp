@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The length of steps against their limits, and the guess of a semi-implicit step.
+// Step sizes relative to their limits, and the guess of a semi-implicit step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,15 +12,15 @@
 namespace couplet::fluid {
 namespace {
 
-// A given step that exceeds its limit by this factor is certain to go wrong.
+// Factor above the limit at which a prescribed step certainly fails.
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
-// Error of the friction at the end of a step, over the load: what a growing oscillation reaches.
+// Error of the friction at the end of a step, relative to the load; a growing oscillation reaches it.
 constexpr double near_limit = 0.1;
 
-/// A step that is given is kept, also where it is too long for the implicit term on cells with few faces (StepSize). Looked
-/// at where it is the longest so far, and, where the limit itself changes (cells that move, viscosity of eddies), every few
-/// steps and at the end.
+/// A prescribed step is used even if it is too long for the implicit term on cells with few faces (StepSize).
+/// Checked at each new longest step; with a varying limit (moving cells, eddy viscosity) also every few steps
+/// and at the end.
 template <int D>
 class GivenStep final : public diagnostics::Diagnostic {
  public:
@@ -59,7 +59,7 @@ class GivenStep final : public diagnostics::Diagnostic {
   int steps_unseen_ = 0;  // whose limit may have changed
 };
 
-/// How often the semi-implicit scheme renewed its guess of the friction, and what its error came to.
+/// Number of friction renewals in the semi-implicit scheme, and the resulting error.
 template <int D>
 class FrictionOfTheGuess final : public diagnostics::Diagnostic {
  public:
@@ -89,8 +89,8 @@ class FrictionOfTheGuess final : public diagnostics::Diagnostic {
   double largest_ = 0;
 };
 
-/// sum |phi - dV/dt| / (2 V) of a cell, a Courant number over the step, or with `friction` its sum nu g / (2 D V), which is
-/// nu/h^2 of a cube [1/s]. Collective.
+/// Courant rate sum |phi - dV/dt|/(2 V) of a cell, or with `friction` sum nu g/(2 D V), which is nu/h^2 of a
+/// cube [1/s]. Collective.
 template <int D>
 double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, bool friction) {
   const State<D>& s = fluid.state();
@@ -108,7 +108,7 @@ double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, 
   return parallel::sum(mesh.comm, rate);
 }
 
-/// Numbers of a step, or of its sub-steps: Courant number, or nu dt/h^2 where friction limits it.
+/// Courant number of a step or its sub-steps, or nu dt/h^2 if friction limits it.
 template <int D>
 class PlaceOnTheMap final : public diagnostics::Diagnostic {
  public:

@@ -21,7 +21,7 @@ namespace couplet::fluid {
 #undef DIAGNOSTIC
 #undef ESTIMATE
 
-/// A diagnostic without memory: what a function finds in the accepted state.
+/// Diagnostic without memory: findings of a function about the accepted state.
 template <int D>
 class Finds final : public diagnostics::Diagnostic {
  public:

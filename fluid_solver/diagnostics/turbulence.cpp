@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers that the mesh does not resolve, with and without a turbulence model.
+// Unresolved layers, with and without a turbulence model.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Ducts turn turbulent at 2300 by the mean speed; the largest of a plane laminar one is 3/2 of it.
+// Ducts become turbulent at 2300 based on the mean speed; the maximum of plane laminar flow is 3/2 of it.
 constexpr double laminar_below = 3450;
 
 /// Largest y+ at walls; 0 without walls.
@@ -29,7 +29,7 @@ double largest_yplus(const FluidView<D>& view) {
   return largest;
 }
 
-/// 4 volumes over the area of the walls [m]; NaN without walls. Collective.
+/// 4 times volume over wall area [m]; NaN without walls. Collective.
 template <int D>
 double hydraulic_diameter(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
@@ -53,9 +53,9 @@ double eddy_viscosity(const FluidView<D>& view) {
 
 }  // namespace
 
-// Layers are as thin as where they begin: where the mesh resolves those at the walls (y+ up to 1) it resolves what they shed,
-// and the cell Reynolds number of the flow outside them says little. On whatever mesh, what passes walls so closely that ducts
-// stay laminar there has no turbulence to model: what such a mesh misses is in its estimated error.
+// Free layers are as thin as at their origin. A mesh that resolves the wall layers (y+ up to 1) also resolves
+// those shed from them, and the cell Reynolds number outside says little. Flow that remains laminar near
+// walls needs no turbulence model; other mesh errors are in the estimated error.
 diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds) {
   const double limit = yplus > 0 && yplus <= 1 ? 250 : 50;
   diagnostics::EffectFinding e{
@@ -74,14 +74,14 @@ diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, doubl
     e.what = fmt::format("Reynolds number (max speed, hydraulic diameter) = {:.3g}: laminar; {}", reynolds,
                          e.what);
   } else {
-    // Layers get thinner with the root of the number: what a mesh that is too coarse by that misses of them.
+    // Layer thickness scales with the inverse root of the number: the share missed by a coarse mesh.
     e.share = peclet > limit ? 1 - std::sqrt(limit / peclet) : 0;
   }
   return e;
 }
 
-// Turbulence passes its energy to ever smaller eddies as vortices stretch, which those of two dimensions do not: there the models
-// are added friction only, and layers thicken with the root of the viscosity.
+// Energy passes to smaller eddies by vortex stretching, which is absent in 2-D. There the models only add
+// friction, and layers thicken with the square root of the viscosity.
 diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
   diagnostics::EffectFinding e{
       .effect = dimension == 3 ? "turbulence model" : "eddy viscosity in two dimensions",
@@ -108,7 +108,7 @@ diagnostics::EffectFinding unresolved_walls(double yplus, double peclet) {
           .left_out = false};
 }
 
-// In two dimensions a model does not resolve what is left out without it.
+// A 2-D model does not resolve what is missing without it.
 template <int D>
 std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const FluidParameters& p = view.parameters();

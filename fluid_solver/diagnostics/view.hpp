@@ -11,19 +11,19 @@
 
 namespace couplet::fluid {
 
-/// View of a run that the fluid shows, as it is after the last accepted step.
+/// State of a fluid run after the last accepted step, as diagnostics see it.
 template <int D>
 struct FluidView {
   const mesh::Mesh& mesh;
   const Fluid<D>& fluid;
-  SubStepSize<D>& sizes;       ///< limits of the step; keeps what it has looked up
+  SubStepSize<D>& sizes;       ///< limits of the step; caches its results
   const coupling::Step& step;  ///< the accepted one
-  bool has_interface;          ///< walls that a structure moves
+  bool has_interface;          ///< a structure moves some walls
   bool has_mover;              ///< a mesh mover moves the mesh
   bool is_prescribed;          ///< the case moves the mesh
-  /// For an interface on a mesh at rest: largest displacement over the height of the cell there.
+  /// Largest displacement of an interface on a mesh at rest, relative to the cell height there.
   const double& wall_displacement;
-  const int& renewals;         ///< of the prediction, in the last step
+  const int& renewals;         ///< repeated predictions in the last step
   const double& unseen_share;  ///< error of the friction at the end of the last step, over the load
 
   const FluidParameters& parameters() const { return fluid.parameters(); }
@@ -33,14 +33,14 @@ struct FluidView {
   }
 };
 
-/// Faces of walls that move across themselves.
+/// Faces of walls that move in their normal direction.
 template <int D>
 std::vector<Index> moving_faces(const FluidView<D>& view);
 
-// Quantities that several diagnostics look at. Collective.
+// Quantities used by several diagnostics. Collective.
 template <int D>
 double largest_speed(const FluidView<D>& view);  ///< [m/s]
-/// Largest minus smallest pressure [Pa]; none in the first step, whose pressure is the impulse that starts the motion.
+/// Largest minus smallest pressure [Pa]. Empty in the first step, whose pressure is an impulse.
 template <int D>
 std::optional<double> pressure_range(const FluidView<D>& view);
 

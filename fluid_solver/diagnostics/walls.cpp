@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walls that move while the mesh is at rest, and gaps that block the flow.
+// Walls that move on a mesh at rest, and gaps that block the flow.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +12,7 @@
 namespace couplet::fluid {
 namespace {
 
-/// Largest sum of |w . S| over the sum of |w| |S| of the moving walls of a mesh at rest; NaN without such walls, or
-/// before they move. Collective.
+/// Largest sum |w . S| / sum |w| |S| of the moving walls of a fixed mesh; NaN without motion. Collective.
 template <int D>
 double through_moving_walls(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
@@ -47,7 +46,7 @@ std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {
        .advice = "add a mesh mover: 'coupling: {mesh: {participant: ...}}'"});
 }
 
-// A wall that moves across itself on a mesh at rest is an inlet.
+// A wall with normal motion on a mesh at rest acts as an inlet.
 template <int D>
 std::optional<diagnostics::Finding> walls_along_themselves(const FluidView<D>& view) {
   bool has_moving_wall = false;
@@ -79,7 +78,7 @@ std::optional<diagnostics::Finding> blocked_cells(const FluidView<D>& view) {
                                   .left_out = false});
 }
 
-// The guard ends a run that grows at once; what grows slowly is said.
+// The guard stops fast growth; this reports slow growth.
 template <int D>
 std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
   const EnergyLedger& ledger = view.fluid.state().ledger;

@@ -16,14 +16,14 @@ constexpr double stress_of_eddies = 2;
 
 }  // namespace
 
-/// Residuals add up over the steps, so the tolerance is much tighter than the change of u in one of them.
+/// Residuals accumulate over the steps, so the tolerance is much smaller than the change of u per step.
 template <int D>
 double ImplicitFriction<D>::tolerance() const {
   return std::min(1e-7, 0.1 * scene_.parameters.pressure_tolerance);
 }
 
-/// u^n + r (u^n - u^{n-1}), then one sweep of Jacobi's method, which costs no face loop: its viscous rate is
-/// that of the levels, extrapolated in the same way.
+/// First guess u^n + r (u^n - u^{n-1}) and one Jacobi sweep, without a face loop: its viscous rate is
+/// extrapolated too.
 template <int D>
 void ImplicitFriction<D>::guess(const State<D>& from, const Rates<D>& rates, double a, const Vectors<D>& side,
                                 Vectors<D>& u) const {
@@ -56,9 +56,9 @@ void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, con
     iterations_ += solver_.solve(w, tolerance(), side, u);
 }
 
-/// The stress of u~ = (1 + r/2) u^n - r/2 u^{n-1}, with its own nu_t: what multiplies the velocities of all three levels, here and in
-/// damp_eddies(), must be the same. By Adams-Bashforth a nu_t that falls by a factor of ten from step to step, as in a gap that
-/// opens, leaves an old rate that nothing damps. On the mesh of level n.
+/// Adds the stress of u~ = (1 + r/2) u^n - r/2 u^{n-1} with its own nu_t on the mesh of level n. The nu_t
+/// here and in damp_eddies() must be the same for all three levels. With Adams-Bashforth, a nu_t that
+/// decreases tenfold per step, as in an opening gap, would leave an undamped old rate.
 template <int D>
 void ImplicitFriction<D>::add_eddies(const State<D>& from, Vectors<D>& side) {
   const double ratio = step_.ratio(), e0 = 1 + ratio / 2, e1 = -ratio / 2;
@@ -76,9 +76,9 @@ void ImplicitFriction<D>::add_eddies(const State<D>& from, Vectors<D>& side) {
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) side[c] += step_.dt * eddy_rate_[c];
 }
 
-/// Theta dt nu_t g times the second difference of u in time, whose part at n+1 is in the matrix: with the a of modified
-/// Crank-Nicolson, an extrapolated rate so becomes that scheme, and no nu_t limits the step. Thin cells need it, where a few times
-/// the molecular viscosity asks for a thousandth of the convective step.
+/// Adds theta dt nu_t g times the second time difference of u, whose part at n+1 is in the matrix. With a of
+/// modified Crank-Nicolson an extrapolated rate becomes that scheme, and nu_t does not limit the step. In
+/// thin cells, a few times the molecular viscosity would require a thousandth of the convective step.
 template <int D>
 void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& eddies, Vectors<D>& side) const {
   const double ratio = step_.ratio();
@@ -93,9 +93,9 @@ void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& edd
   }
 }
 
-/// The non-orthogonal part is implicit too, by passes of deferred correction: left explicit beside an
-/// implicit orthogonal part it grows as soon as its share of the operator exceeds 1/8 (AB2 against 9/16, 3/8,
-/// 1/16), which a mesh sheared by 14 degrees reaches. The passes contract by that share.
+/// The non-orthogonal part is implicit by deferred correction. An explicit one is unstable if its share of
+/// the operator exceeds 1/8 (AB2 against 9/16, 3/8, 1/16), as on a mesh sheared by 14 degrees. The passes
+/// converge by that share.
 template <int D>
 void ImplicitFriction<D>::solve_in_passes(const Vectors<D>& w, double a, const Vectors<D>& side,
                                           Vectors<D>& u) {
@@ -124,7 +124,7 @@ void ImplicitFriction<D>::solve_in_passes(const Vectors<D>& w, double a, const V
   }
 }
 
-/// Makes u, found from before_ in a slow pass, the guess of the next by Anderson's acceleration. Collective.
+/// Computes the guess of the next pass from u and before_ by Anderson acceleration. Collective.
 template <int D>
 void ImplicitFriction<D>::accelerate(bool start, Vectors<D>& u) {
   const std::size_t owned = static_cast<std::size_t>(mesh_.cells.n_owned()) * D;

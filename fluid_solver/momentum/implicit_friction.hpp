@@ -13,44 +13,44 @@
 
 namespace couplet::fluid {
 
-/// A symmetric matrix by the rows of the owned cells, all of one width: what CG does with it takes one pass over the rows and two
-/// over the vectors. A loop over the faces, which writes each cell once per face, takes twice the instructions.
+/// Symmetric matrix stored by rows of owned cells, all of the same width. A CG iteration then takes one pass
+/// over the rows and two over the vectors. A loop over faces needs twice the instructions.
 struct ViscousRows {
-  Index width = 0;  ///< entries per row beside the diagonal: the most neighbours of a cell
-  std::vector<Index> column,
-      face;  ///< local cells, and the faces between; where there is none: the row's own cell, and -1
-  std::vector<double> value;     ///< 0 where there is none
+  Index width = 0;  ///< entries per row besides the diagonal: the largest number of neighbors of a cell
+  /// Local cells and the faces between; unused entries hold the row's own cell and -1.
+  std::vector<Index> column, face;
+  std::vector<double> value;     ///< 0 for unused entries
   std::vector<double> diagonal;  ///< per owned cell
 
   explicit ViscousRows(const mesh::Mesh& mesh);
   Index size() const { return static_cast<Index>(diagonal.size()); }
 };
 
-/// Share of an eddy viscosity in the matrix: theta dt nu_t at interior faces, nu_t the mean of two cells.
+/// Contribution of an eddy viscosity to the matrix, theta dt nu_t at interior faces (mean of the cells).
 struct EddyShare {
   const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; nullptr if there is none
   double factor = 0;                          ///< theta dt [s]
   double at(Index p, Index n) const { return eddy ? 0.5 * factor * ((*eddy)[p] + (*eddy)[n]) : 0; }
 };
 
-/// Solves  A u = V u + beta sum_f g (u_P - u_f) = b  for all components at once, by CG on D^(-1/2) A D^(-1/2), which is CG with
-/// Jacobi's preconditioner [hestenes1952]. beta = a nu dt [m^2]; at interior faces with the share of an eddy viscosity added.
-/// The system is well conditioned wherever convection limits the step.
+/// Solves A u = V u + beta sum_f g (u_P - u_f) = b for all components at once. Uses CG on D^(-1/2) A
+/// D^(-1/2), which is Jacobi-preconditioned CG [hestenes1952]. beta = a nu dt [m^2], plus the eddy
+/// viscosity's share at interior faces. The system is well conditioned if convection limits the step.
 template <int D>
 class ViscousSolver {
  public:
   ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
-  /// The system of the solves that follow. Collective.
+  /// Sets up the system for the following solves. Collective.
   void prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies = {});
-  /// Inverse of its diagonal D, per owned cell.
+  /// Inverse of the diagonal D, per owned cell.
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
-  /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
-  /// `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
+  /// `b`: per local cell (owned ones are read), without boundary parts. `w`: given velocity per boundary
+  /// face. `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
   /// Collective.
   int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
 
  private:
-  /// Addition of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
+  /// Contribution of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
   struct BoundaryRow {
     Index cell;
     double both, normal;  // beta g t, beta g (1 - t)
@@ -65,15 +65,15 @@ class ViscousSolver {
   std::shared_ptr<const Placement<D>> at_;
   double beta_ = 0;
   bool with_eddies_ = false;
-  std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2), but for boundary_rows_
+  std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2) without boundary_rows_
   std::vector<BoundaryRow> boundary_rows_;
   std::vector<double> inverse_diagonal_;
   std::vector<double> scale_;      // D^(-1/2), per local cell
-  Vectors<D> x_, r_, q_, search_;  // of the scaled system
+  Vectors<D> x_, r_, q_, search_;  // vectors of the scaled system
 };
 
-/// The implicit part of modified Crank-Nicolson, V' u^p - a dt nu L' u^p = right side; on oblique meshes in passes. With the stress of
-/// an eddy viscosity, explicit and damped.
+/// Implicit part of modified Crank-Nicolson, V' u^p - a dt nu L' u^p = right-hand side, in passes on
+/// non-orthogonal meshes. The stress of an eddy viscosity is explicit and damped.
 template <int D>
 class ImplicitFriction {
  public:
@@ -84,7 +84,7 @@ class ImplicitFriction {
         rate_operator_(rates),
         solver_(scene.mesh, scene.boundary) {}
 
-  /// u^p for the velocities w of the boundary. `rates`: of `from`; `side`: changed. Collective.
+  /// Computes u^p for the boundary velocities w. `rates`: rates of `from`. `side`: modified. Collective.
   void solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a, Vectors<D>& side,
              Vectors<D>& u);
   int iterations() const { return iterations_; }
@@ -103,11 +103,11 @@ class ImplicitFriction {
   const Step<D>& step_;
   RateOperator<D>& rate_operator_;
   ViscousSolver<D> solver_;
-  int iterations_ = 0;  // so far
+  int iterations_ = 0;  // total so far
   Vectors<D> oblique_rate_, right_side_, before_, u_boundary_;
-  std::vector<double> eddy_;  // of the velocity between the levels, as the next
+  std::vector<double> eddy_;  // of the velocity between the levels, as are the next vectors
   Vectors<D> between_, between_boundary_, eddy_rate_;
-  std::unique_ptr<linalg::Accelerator> accelerator_;  // of meshes that need many passes
+  std::unique_ptr<linalg::Accelerator> accelerator_;  // for meshes that need many passes
 };
 
 }  // namespace couplet::fluid

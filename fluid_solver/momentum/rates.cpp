@@ -29,7 +29,7 @@ void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vec
 
 namespace {
 
-/// Rates of the interior faces. They stand owner by owner: what is the owner's is read and written once.
+/// Rates of the interior faces, which are sorted by owner so that owner data are accessed once.
 template <bool Split, int D>
 [[gnu::always_inline]] inline void face_rates(const mesh::Mesh& mesh, double nu, const State<D>& s,
                                               Rates<D>& rates) {
@@ -68,7 +68,7 @@ COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool
   split ? face_rates<true>(mesh, nu, s, rates) : face_rates<false>(mesh, nu, s, rates);
 }
 
-/// (mean u).S, or what `whole` has beyond that.
+/// (mean u).S, or its difference from `whole`.
 template <bool Rest, int D>
 [[gnu::always_inline]] inline void mean_fluxes(const mesh::Mesh& mesh, const Vectors<D>& area,
                                                const Vectors<D>& u, const double* whole, double* flux) {

@@ -15,32 +15,32 @@ namespace couplet::fluid {
 /// and its width D = V^(1/dimension):
 ///   Smagorinsky  (C D)^2 (2 S:S)^(1/2)                                              [smagorinsky1963]
 ///   WALE         (C D)^2 (Sd:Sd)^(3/2) / ((S:S)^(5/2) + (Sd:Sd)^(5/4))              [nicoud1999]
-/// S the symmetric part of g, Sd the traceless symmetric part of g g. WALE vanishes in pure shear and as y^3
-/// at walls.
+/// S is the symmetric part of g, Sd the traceless symmetric part of g g. WALE vanishes in pure shear and as
+/// y^3 at walls.
 template <int D>
 double eddy_viscosity(const TurbulenceParameters& model, const Tensor<D>& gradient, double volume);
 
-/// Eddy viscosity of all local cells. `gradient` has its ghosts.
+/// Eddy viscosity of all local cells. The ghosts of `gradient` must be current.
 template <int D>
 void eddy_viscosity(const TurbulenceParameters& model, const Placement<D>& at,
                     const std::vector<Tensor<D>>& gradient, std::vector<double>& eddy);
 
-/// Gauss gradient du_i/dx_j per local cell (ghosts updated): (1/V) sum u_f S, u_f linear between the cells;
-/// on skewed meshes made exact for linear fields. Collective.
+/// Gauss gradient du_i/dx_j per local cell (ghosts updated): (1/V) sum u_f S with u_f linear between the
+/// cells. On skewed meshes it is made exact for linear fields. Collective.
 template <int D>
 void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
 
-/// u.S of the interior faces [m^3/s], or with `whole` what that has beyond it: the mean of the cells, on skewed meshes carried
-/// on to the face's center by the mean gradient (which is filled then, else left alone). Collective.
+/// u.S of the interior faces [m^3/s], or its difference from `whole` if that is given. u is the mean of the
+/// cells, on skewed meshes extrapolated to the face center by the mean gradient. Collective.
 template <int D>
 void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux,
                std::span<const double> whole = {});
 
-/// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density. The normal derivative at the face is
-/// the difference of its two cells, in grad u^T too: the mean of their gradients may have the other sign, as beside a wall where
-/// a thin cell borders a thick one, and the stress would drive the velocity.
+/// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density. The normal
+/// derivative is the difference of the two cells, also in grad u^T. The mean of their gradients may have the
+/// other sign, for example where thin and thick cells meet at a wall, and the stress would drive the flow.
 template <int D>
 Vec<D> eddy_stress(const Placement<D>& at, const std::vector<double>& eddy, const Vectors<D>& u,
                    const std::vector<Tensor<D>>& gradient, Index f, Index p, Index n) {
@@ -53,19 +53,19 @@ Vec<D> eddy_stress(const Placement<D>& at, const std::vector<double>& eddy, cons
          (at.conductance[f] * change + mean * at.oblique_of(f) + mean.transpose() * area + normal * area);
 }
 
-/// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric
-/// mid-point u_f. All at level n, on mesh n. `split`: the viscous part goes to Rates::viscous.
-/// `correct_oblique`: the mesh is not orthogonal. With an eddy viscosity, which vanishes on walls, its stress
-/// nu_t (grad u + grad u^T) comes to the rate that is not split; beside an implicit viscous part add it by add_eddies(). Collective.
+/// R = -sum phi u_f + nu sum [g du + (grad u)_f . k] at level n on mesh n, with skew-symmetric mid-point u_f
+/// [trias2014]. `split`: the viscous part goes to Rates::viscous. `correct_oblique`: the mesh is not
+/// orthogonal. The eddy stress nu_t (grad u + grad u^T), zero on walls, is added to the rate unless `split`
+/// is set; add it by add_eddies() then. Collective.
 template <int D>
 class RateOperator {
  public:
-  /// `compressible`: phi is not free of divergence, and half of u div u is put back, so that convection still gives no
+  /// `compressible`: phi is not divergence-free. Half of u div u is added back so that convection conserves
   /// energy.
   RateOperator(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
                bool compressible = false)
       : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), compressible_(compressible) {}
-  /// `gradient`: that of the state's velocity, if it is at hand.
+  /// `gradient`: gradient of the state's velocity, if known.
   void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
              const std::vector<Tensor<D>>* gradient = nullptr);
   /// Adds the non-orthogonal viscous part nu sum (grad u)_f . k of any velocity field (ghosts current).
@@ -74,9 +74,9 @@ class RateOperator {
                    Vectors<D>& rate);
   /// nullptr if the order is second everywhere.
   void set_fourth(const FourthOrder<D>* fourth) { fourth_ = fourth; }
-  /// state.eddy from state.u. Collective.
+  /// Sets state.eddy from state.u. Collective.
   void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);
-  /// The eddy viscosity of any velocity field (ghosts current), and what its stress adds to `rate`. Collective.
+  /// Computes the eddy viscosity of a velocity field (ghosts current), adds its stress to `rate`. Collective.
   void add_eddies(const TurbulenceParameters& model, const Placement<D>& at, const Vectors<D>& u,
                   const Vectors<D>& u_boundary, std::vector<double>& eddy, Vectors<D>& rate);
 
@@ -95,7 +95,7 @@ class RateOperator {
   std::vector<Tensor<D>> gradient_;
 };
 
-/// Viscous flux of momentum out of the fluid through each boundary face [N]: mu g (u_P - u_b), as the equation has it.
+/// Viscous momentum flux out of the fluid through each boundary face [N]: mu g (u_P - u_b).
 template <int D>
 void wall_flux(const mesh::Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
                const Vectors<D>& u_boundary, Vectors<D>& force);

@@ -6,7 +6,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Below this the flow has no gradient and the quotient of WALE is nothing over nothing [1/s].
+// Below this the flow has no gradient, and WALE's quotient is 0/0 [1/s].
 constexpr double no_gradient = 1e-150;
 
 }  // namespace

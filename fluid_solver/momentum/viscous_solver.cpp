@@ -15,7 +15,7 @@ namespace couplet::fluid {
 
 namespace {
 
-/// `Width` entries a row, known to the compiler; 0: a.width.
+/// `Width`: entries per row, known at compile time; 0: a.width.
 template <int D, int Width>
 [[gnu::always_inline]] inline double multiply_rows(const ViscousRows& a, const Vectors<D>& x, Vectors<D>& y) {
   const Index width = Width > 0 ? Width : a.width;
@@ -95,7 +95,7 @@ ViscousRows::ViscousRows(const mesh::Mesh& mesh) : diagonal(mesh.cells.n_owned()
   }
 }
 
-/// Without the boundary in a_->diagonal, with it in inverse_diagonal_.
+/// a_->diagonal excludes the boundary, inverse_diagonal_ includes it.
 template <int D>
 void ViscousSolver<D>::set_diagonal(const EddyShare& eddies) {
   const Placement<D>& at = *at_;
@@ -137,7 +137,7 @@ void ViscousSolver<D>::set_entries(const EddyShare& eddies) {
 
 template <int D>
 void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies) {
-  // On all ranks alike: each step of a mesh that moves has its own placement.
+  // Equal on all ranks, because each step of a moving mesh has its own placement.
   if (at == at_ && beta == beta_ && !eddies.eddy && !with_eddies_) return;
   at_ = std::move(at);
   beta_ = beta;
@@ -189,7 +189,7 @@ int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b
                                            flat<D>(x_).first(n), flat<D>(r_).first(n)));
     turn_search(next / std::exchange(rr, next), flat<D>(r_).first(n), flat<D>(search_).first(n));
   }
-  // The round-off of b itself is all that can be asked for: a little above it counts as solved.
+  // The tolerance cannot be below the round-off of b; slightly above counts as solved.
   if (!(rr <= std::max(goal, 1e-26 * sums[0])))
     throw SolveFailure(
         "The implicit viscous solve did not converge: residual {:.3e} of {:.3e} after {} iterations. {}",

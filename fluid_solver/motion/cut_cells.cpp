@@ -13,8 +13,8 @@ namespace {
 constexpr int most_trials = 60;
 constexpr double root_found = 1e-14;  // of the edge
 
-/// Share of an edge from the corner above zero to where the level is zero: false position, with half of the value of an end
-/// that stays (Illinois), else halving. A level that is linear takes one trial.
+/// Share of an edge from the positive corner to the zero of the level. Uses false position with the Illinois
+/// modification, else bisection; a linear level takes one trial.
 double way(const LevelCorner& above, const LevelCorner& below, const Level& level, double round_off) {
   double low = 0, high = 1, at_low = above.level - round_off, at_high = below.level - round_off;
   for (int trial = 0; trial < most_trials && high - low > root_found; ++trial) {
@@ -35,8 +35,8 @@ double way(const LevelCorner& above, const LevelCorner& below, const Level& leve
 
 }  // namespace
 
-/// Where one corner alone is above zero, or alone is not, the part is a simplex with its tip there; of a tetrahedron with two
-/// above, a and b, it is a prism with the corners a, b and the places on the four other edges: three tetrahedra.
+/// A single positive or non-positive corner gives a simplex there. A tetrahedron with two positive corners a,
+/// b gives a prism of a, b and the points on the four other edges, split into three tetrahedra.
 OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, double round_off) {
   std::array<std::size_t, 4> order{0, 1, 2, 3};
   const std::size_t n = corners.size();
@@ -75,16 +75,16 @@ OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, dou
 
 namespace {
 
-// Shares as near as this to nothing or all are round-off.
+// Shares this close to zero or one are round-off.
 constexpr double smallest_cut = 1e-10;
-// And levels, of the size of a cell: faces along a surface are closed.
+// Likewise for levels relative to the cell size: faces along a surface are closed.
 constexpr double level_round_off = 1e-10;
-// The middle of what is open of a cell is at least this share of the cell's size from the surface, times the open share.
+// Minimum distance of the open part's center from the surface, over cell size times open share.
 constexpr double least_depth = 0.01;
 
 double snapped(double share) { return share < smallest_cut ? 0 : share > 1 - smallest_cut ? 1 : share; }
 
-/// Part of a face: a segment, or a triangle of a fan around its middle.
+/// Part of a face: a segment, or a triangle of a fan around its center.
 template <int D>
 using Piece = std::array<LevelCorner, D>;
 
@@ -95,7 +95,7 @@ double size_of(const Piece<D>& piece) {
   if constexpr (D == 3) return side.cross(piece[2].place - piece[0].place).norm();
 }
 
-/// Volume of the simplex with its tip at `apex`, times a number that is the same for all.
+/// Volume of the simplex with its tip at `apex`, up to a constant factor.
 template <int D>
 double volume_of(const Piece<D>& piece, const Vec3& apex) {
   const Vec3 a = piece[0].place - apex, b = piece[1].place - apex;
@@ -117,7 +117,7 @@ void for_pieces(std::span<const Index> face, const Levels& levels, const Use& us
   }
 }
 
-/// Levels of the corners of a cell, and sums over its simplices: volume, open volume, integral of the level over that.
+/// Level range of a cell's corners, and sums over its simplices: volume, open volume, integral of the level.
 struct Sums {
   double low = 0, high = 0, volume = 0, open = 0, moment = 0;
   bool passes = false;
@@ -196,7 +196,7 @@ class Cutter {
     });
   }
 
-  /// The simplex of a piece and the centre of the cell, seen from the face at `shift`.
+  /// Adds the simplex of a piece and the cell center, relative to the face at `shift`.
   void add(const Piece<D>& piece, Index c, const Vec3& shift, double eps) {
     if (!is_cut(c)) return;
     LevelCorner apex{shift, levels_.at_centres[c]};

@@ -16,7 +16,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// Share of the flux through a pocket's inlets that their profiles may leave over.
+// Allowed net share of the flux through a pocket's inlets, due to their profiles.
 constexpr double inlet_leftover = 1e-6;
 
 }  // namespace
@@ -29,7 +29,7 @@ GapPockets<D>::GapPockets(const mesh::Mesh& mesh, const FluidParameters& paramet
   }
 }
 
-/// The least label spreads over the faces between free cells, then over the ranks, until all stand.
+/// Propagates the lowest label over faces between free cells and across ranks until nothing changes.
 template <int D>
 void GapPockets<D>::find(const std::vector<int>& gap) {
   label_.assign(mesh_.cells.n_local(), 0.0);
@@ -69,7 +69,7 @@ void GapPockets<D>::find(const std::vector<int>& gap) {
 template <int D>
 void GapPockets<D>::check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const {
   if (shut_.empty()) return;
-  // Net outflow of each pocket and the sum of its absolute values, then the same of each patch, to name it.
+  // Net outflow of each pocket and the sum of absolute values, in total and per patch, for messages.
   const std::size_t n = shut_.size();
   std::vector<double> sums(n * (1 + given_.size()), 0.0), sizes(sums.size(), 0.0);
   for (std::size_t g = 0; g < given_.size(); ++g)
@@ -126,8 +126,8 @@ template class GapPockets<3>;
 namespace {
 
 constexpr double near_enough = 0.1;  // of the opening
-// A blocked face keeps this share of its conductance. The leak is as small, and the pressure in the gap is that
-// of a fluid at rest in a slot between the pressures at its two ends (lubrication: linear along a parallel slot).
+// Share of the conductance kept by a blocked face. The leak is equally small, and the pressure in the gap
+// follows lubrication theory of a slot between its two ends (linear in a parallel slot).
 constexpr double kept = 1e-6;
 
 Vec3 direction_of(const GapParameters& gap, int dimension) {
@@ -136,7 +136,7 @@ Vec3 direction_of(const GapParameters& gap, int dimension) {
   return Vec3(d[0], d[1], d.size() > 2 ? d[2] : 0).normalized();
 }
 
-/// Distance of x from segments (2-D) or triangles, whose corners stand one after the other.
+/// Distance of x from segments (2-D) or triangles, whose corners are stored consecutively.
 template <int D>
 double distance(const Vec3& x, const std::vector<double>& corners) {
   double least = base::infinity;
@@ -148,8 +148,8 @@ double distance(const Vec3& x, const std::vector<double>& corners) {
   return least;
 }
 
-/// The second wall of each gap with a `height` stands there: the seat that a structure lands on is that of the mesh.
-/// Throws Error if a point is off by more than a tenth of the opening. Collective.
+/// Checks that the second wall of each gap with a `height` is the seat that the structure lands on. Throws
+/// Error if a point is off by more than a tenth of the opening. Collective.
 void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points) {
   for (const auto& [name, gap] : parameters.gaps) {
     const mesh::Patch* seat = gap.height ? mesh.find_patch(gap.between[1]) : nullptr;
@@ -175,7 +175,7 @@ void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std:
   }
 }
 
-/// Widens a box by the points of a patch. Collective.
+/// Extends a box by the points of a patch. Collective.
 void extend(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points, Vec3& low,
             Vec3& high) {
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
@@ -184,7 +184,7 @@ void extend(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Ve
   MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
 }
 
-/// Corners of the faces of all ranks that reach into a box, as segments (2-D) or triangles. Collective.
+/// Corners of faces on all ranks that intersect a box, as segments (2-D) or triangles. Collective.
 std::vector<double> corners_of(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
                                const Vec3& low, const Vec3& high) {
   std::vector<double> mine;
@@ -253,7 +253,7 @@ void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>
     high[side].setConstant(-base::infinity);
     extend(mesh_, *walls_[gap][side], points, low[side], high[side]);
   }
-  // A cell that is blocked is nearer than the limit to both.
+  // A blocked cell is nearer than the limit to both walls.
   const Vec3 room = Vec3::Constant(limit), from = low[0].cwiseMax(low[1]) - room,
              to = high[0].cwiseMin(high[1]) + room;
   if ((from.array() > to.array()).any()) return;
@@ -335,7 +335,7 @@ void Gaps<D>::correct_memory(State<D>& s) const {
     if (is_blocked(f)) s.memory[f] = 0;
 }
 
-/// Linear in between the free cell would feel the slope of the pressure along the gap, which drives nothing.
+/// With linear interpolation, the free cell would see the pressure gradient in the gap, which drives no flow.
 template <int D>
 void Gaps<D>::part(const Placement<D>& at, const std::vector<double>& p, const Vectors<D>* gradient,
                    const Vectors<D>& area, Vectors<D>& sum) const {
@@ -349,7 +349,7 @@ void Gaps<D>::part(const Placement<D>& at, const std::vector<double>& p, const V
   }
 }
 
-/// A compressible fluid compresses in the parts that are shut off.
+/// A compressible fluid is compressed in parts that are cut off.
 template <int D>
 std::string Gaps<D>::cause(const Placement<D>& at) const {
   return active_ && !compressible_ ? pockets_.cause(at) : std::string();

@@ -12,56 +12,54 @@
 
 namespace couplet::fluid {
 
-/// Parts that closed gaps shut off: those of the fluid that no free cells join to an outlet. What inlets let into
-/// such a part has nowhere to go; through the small conductance that blocked faces keep it would be pressed all
-/// the same, so it is refused.
+/// Parts of the fluid that closed gaps cut off from every outlet. Inflow into such a part has nowhere to go.
+/// The small conductance of blocked faces would still let it through, so it is rejected.
 template <int D>
 class GapPockets {
  public:
   GapPockets(const mesh::Mesh& mesh, const FluidParameters& parameters);
-  /// To be called when other cells are blocked than before. `gap`: per local cell, below 0: free. Collective.
+  /// Call when the set of blocked cells has changed. `gap`: per local cell, negative if free. Collective.
   void find(const std::vector<int>& gap);
-  /// Throws SchemeFailure, naming the inlets and a place, if the velocities `w` of the boundary faces let a pocket
-  /// have more in than out, which a `compressible` fluid can take up, or if they lead into blocked cells. Collective.
+  /// Throws SchemeFailure, with the inlets and a place, if the boundary velocities `w` have a net inflow into
+  /// a pocket or lead into blocked cells. A `compressible` fluid can take up a net inflow. Collective.
   void check(const Placement<D>& at, const Vectors<D>& w, double time, bool compressible) const;
 
-  /// Why a flow may have diverged: a pocket whose walls move; empty if there is none. Collective.
+  /// Possible cause of a divergent flow: a pocket with moving walls; empty if there is none. Collective.
   std::string cause(const Placement<D>& at) const;
 
  private:
   const mesh::Mesh& mesh_;
-  std::vector<const mesh::Patch*> open_,
-      given_;                  // given pressure; given velocity but of walls. The same on all ranks
-  std::vector<double> label_;  // per local cell: least cell id of its part, plus 1; 0: blocked
-  std::vector<double> shut_;   // labels of the parts without an outlet, and 0, ascending
+  // Patches of given pressure, and of given velocity except walls; equal on all ranks.
+  std::vector<const mesh::Patch*> open_, given_;
+  std::vector<double> label_;  // per local cell: lowest cell id of its part, plus 1; 0 if blocked
+  std::vector<double> shut_;   // labels of the parts without an outlet, and 0, in ascending order
 };
 
-/// Gaps that nearly close, a valve on its seat: cells between two walls that are nearer to each other than the
-/// given opening are blocked. They move with the mesh like a body, nothing passes them: the free cells beside
-/// them see a wall that moves with the mesh, and keep their volume to round-off. What the blocked cells lose in
-/// volume until they open again (at most that of the gap at the given opening) is not pressed out. Which cells
-/// are blocked follows from the places of the points alone: the same after a restart and in a repeated step.
-///
-/// The opening at a cell: the distance of its centre from the one wall plus that from the other.
+/// Gaps that almost close, such as a valve on its seat. Cells are blocked if their two walls are closer than
+/// the given opening. Blocked cells move with the mesh like a body and let nothing pass. The adjacent free
+/// cells see a wall that moves with the mesh, and keep their volume to round-off. Volume lost by blocked
+/// cells until they reopen, at most that of the gap at the given opening, is not displaced. Only the
+/// positions of the points determine which cells are blocked, so restarts and repeated steps agree. The
+/// opening at a cell is the sum of the distances of its center from both walls.
 template <int D>
 class Gaps final : public Obstacles<D> {
  public:
   using Changed = typename Obstacles<D>::Changed;
   using Obstacles<D>::is_closed;
 
-  /// Throws Error if a gap names what is no patch, or if its seat is elsewhere. `points`: at rest. Collective.
+  /// Throws Error if a gap names a missing patch or its seat is elsewhere. `points`: at rest. Collective.
   Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points);
 
   Changed mark(double t, const std::shared_ptr<const Placement<D>>& at,
                const std::vector<Vec3>& points) override;
-  /// Throws SchemeFailure if w presses fluid into a part that is shut off, see GapPockets.
+  /// Throws SchemeFailure if w forces fluid into a part that is cut off, see GapPockets.
   void begin(const Step<D>& step, const State<D>& from, const Vectors<D>& w) override;
-  /// Cells are blocked or freed: an impulse, as in a first step.
+  /// True if cells were blocked or freed, which gives an impulse as in a first step.
   bool starts_anew() const override { return changed_; }
   std::shared_ptr<const std::vector<char>> marks() const override;
-  /// Blocked cells move with their centres.
+  /// Moves blocked cells with their centers.
   void hold(const Placement<D>& at, double dt, Vectors<D>& u) const override;
-  /// Nothing passes, phi is what the mesh sweeps.
+  /// Sets phi of blocked faces to the volume swept by the mesh.
   void block(const Step<D>& step, std::vector<double>& phi) const override;
   using Obstacles<D>::block;
   void correct_memory(State<D>& state) const override;
@@ -71,8 +69,8 @@ class Gaps final : public Obstacles<D> {
   std::string cause(const Placement<D>& at) const override;
 
   const std::vector<std::string>& names() const { return names_; }
-  /// State of a gap at the last mark(): least opening at a cell [m] (NaN: everywhere beyond the limit), blocked
-  /// cells, their volume [m^3].
+  /// State of a gap at the last mark(): smallest opening at a cell [m] (NaN if all exceed the limit), number
+  /// of blocked cells and their volume [m^3].
   struct Facts {
     double opening = 0, cells = 0, volume = 0;
   };
@@ -88,12 +86,12 @@ class Gaps final : public Obstacles<D> {
   bool compressible_;
   std::vector<std::string> names_;
   std::vector<double> limit_;                             // opening [m]
-  std::vector<std::array<const mesh::Patch*, 2>> walls_;  // of each gap
+  std::vector<std::array<const mesh::Patch*, 2>> walls_;  // per gap
   std::vector<char> never_;                               // per local cell: it has a face of given pressure
-  std::vector<int> gap_;  // per local cell the gap that blocks it; below 0: free
-  Vectors<D> velocity_;   // per local cell, of blocked ones [m/s]
+  std::vector<int> gap_;  // per local cell the gap that blocks it; negative if free
+  Vectors<D> velocity_;   // per local cell, of blocked cells [m/s]
   std::vector<Facts> facts_;
-  bool active_ = false;   // any cell of any rank is blocked
+  bool active_ = false;   // a cell of any rank is blocked
   bool changed_ = false;  // in this step
   std::shared_ptr<const Placement<D>> marked_;
 };

@@ -10,9 +10,9 @@
 namespace couplet::fluid {
 namespace {
 
-// Cells are clear of a surface if it is farther from the centre than so many extents.
+// A cell is clear of a surface if its center is farther away than this many extents.
 constexpr double well_clear = 1.01;
-// Share of the rate of shear at which a cell whose centre nears the surface goes over to the line at the surface.
+// Fraction of the shear rate at which a cell approaches the linear profile at the surface.
 constexpr double of_shear = 0.3;
 
 }  // namespace
@@ -138,9 +138,8 @@ void ImmersedBodies<D>::block(const Step<D>& step, const std::vector<Index>& bou
   }
 }
 
-/// The memory is that of the flux that the whole face would have with the velocity in its open part. A closed face remembers that
-/// nothing passes: what
-/// opens next begins without a flux, whatever the velocities beside it.
+/// Sets the memory of the flux through the whole face with the velocity of its open part. A closed face
+/// stores zero, so a newly opened one starts without a flux.
 template <int D>
 void ImmersedBodies<D>::correct_memory(State<D>& s) const {
   if (!cut_) {
@@ -211,8 +210,8 @@ void ImmersedBodies<D>::hold(const Placement<D>& at, double dt, Vectors<D>& u) c
     force_by_steps(at, u);
 }
 
-/// u_N = u_b + (u_b - u_P) |level_N| / |level_P|, the mean over the fluid cells beside N. The quotient is
-/// limited to one, where the fluid cell is closer to the surface than N.
+/// u_N = u_b + (u_b - u_P) |level_N|/|level_P|, averaged over the adjacent fluid cells P. The ratio is at
+/// most one if P is closer to the surface.
 template <int D>
 void ImmersedBodies<D>::force_by_steps(const Placement<D>& at, Vectors<D>& u) const {
   std::vector<double> weight(body_.size(), 0.0);
@@ -230,8 +229,8 @@ void ImmersedBodies<D>::force_by_steps(const Placement<D>& at, Vectors<D>& u) co
   mesh_.cells.update_ghosts(flat<D>(u), D);
 }
 
-/// du/ds at the surface, s the distance from it, per local cell that is not all open: least squares over the neighbours P whose
-/// centres are farther out, weighted so that one which becomes such a neighbour comes in evenly.
+/// du/ds at the surface per partly closed cell, s the distance from it. Least squares over neighbors P with
+/// centers farther out, with weights that vary continuously as neighbors are added.
 template <int D>
 Vectors<D> ImmersedBodies<D>::slopes(const Placement<D>& at, const Vectors<D>& u) const {
   Vectors<D> slope(body_.size(), Vec<D>::Zero());
@@ -252,9 +251,9 @@ Vectors<D> ImmersedBodies<D>::slopes(const Placement<D>& at, const Vectors<D>& u
   return slope;
 }
 
-/// Inside: u_b + s du/ds. A cell that is cut with its centre outside, 0 < s < e, e the extent of the cell, goes over to that line at
-/// the rate (nu/e^2 + 0.3 |du/ds|) (e/s - 1), implicitly: evenly from none to at once as its centre nears the surface, whatever the
-/// step. A share of the line in each step, by contrast, would be all of it at small steps.
+/// Inside: u_b + s du/ds. A cut cell of extent e with its center outside, 0 < s < e, approaches that profile
+/// at the rate (nu/e^2 + 0.3 |du/ds|)(e/s - 1), implicitly. The effect grows continuously as the center nears
+/// the surface and is independent of the step size.
 template <int D>
 void ImmersedBodies<D>::force_by_cuts(const Placement<D>& at, double dt, Vectors<D>& u) const {
   const auto is_beside = [&](Index c, bool inside) {
@@ -274,7 +273,7 @@ void ImmersedBodies<D>::force_by_cuts(const Placement<D>& at, double dt, Vectors
   mesh_.cells.update_ghosts(flat<D>(u), D);
 }
 
-/// At s' in the middle of what is open of a cell: u + (s' - s) du/ds.
+/// Value at s', the center of the open part of a cell: u + (s' - s) du/ds.
 template <int D>
 void ImmersedBodies<D>::carry(const Placement<D>& at, const Vectors<D>& u, std::vector<double>& phi) const {
   if (!cut_) return;
@@ -288,7 +287,7 @@ void ImmersedBodies<D>::carry(const Placement<D>& at, const Vectors<D>& u, std::
     if (beside_surface(f)) phi[f] = 0.5 * (in_open(mesh_.owner[f]) + in_open(other(f))).dot(at.area[f]);
 }
 
-/// From the fluid cells at the faces of the marked ones.
+/// Uses fluid cells at the faces of marked cells.
 template <int D>
 void ImmersedBodies<D>::add_forces_of_steps(const Placement<D>& at, const std::vector<double>& p,
                                             const Vectors<D>& u, double viscosity, Sums& sums) const {
@@ -307,7 +306,7 @@ void ImmersedBodies<D>::add_forces_of_steps(const Placement<D>& at, const std::v
   }
 }
 
-/// On the part of the surface in each cell: the pressure carried there by its gradient, and mu du/ds along it.
+/// Forces on the surface in each cell: pressure extrapolated by its gradient, and mu du/ds.
 template <int D>
 void ImmersedBodies<D>::add_forces_of_cuts(const Placement<D>& at, const PressureLevel<D>& level,
                                            const Vectors<D>& u, double viscosity, Sums& sums) const {

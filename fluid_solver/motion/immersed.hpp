@@ -16,13 +16,13 @@
 
 namespace couplet::fluid {
 
-/// Share of a segment, a triangle or a tetrahedron in which a level is above zero, and the integral of the level there,
+/// Share of a segment, triangle or tetrahedron where a level is positive, and the integral of the level there
 /// over the size of the whole.
 struct OpenPart {
   double share = 0, moment = 0;
 };
 
-/// A corner of one, and the level there.
+/// Corner of a simplex and the level there.
 struct LevelCorner {
   Vec3 place = Vec3::Zero();
   double level = 0;
@@ -30,65 +30,65 @@ struct LevelCorner {
 
 using Level = std::function<double(const Vec3&)>;
 
-/// Uses the places where the level is zero on the edges, of the level itself: a corner of the surface that lies on an edge, or an edge
-/// along the surface, is met exactly; between the edges the surface is flat. `corners`: two, three or four. Levels up to
+/// Locates the zeros of the level itself on the edges, so that a surface edge or corner on an edge is
+/// captured exactly. Between edges the surface is flat. `corners`: two, three or four. Levels up to
 /// `round_off` count as zero.
 OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, double round_off);
 
-/// A level [m] at the points and cells of a mesh, and anywhere.
+/// Level [m] at the points and cells of a mesh, and at arbitrary places.
 struct Levels {
   std::span<const Vec3> points;  ///< per local point
   std::span<const double> at_points, at_centres;
   Level anywhere;
 };
 
-/// How the surface of bodies, where a level is zero, cuts the mesh, see open_part(): evenly as surface or mesh move. A plane is
-/// met exactly. No face of a closed cell is open.
+/// Cut of the mesh with the surface of bodies, where a level is zero, see open_part(). It varies continuously
+/// with surface and mesh and is exact for planes. No face of a closed cell is open.
 template <int D>
 struct CutCells {
   std::vector<double> faces;       ///< open share, per flux face
   std::vector<double> cells;       ///< open share, per local cell
-  std::vector<double> open_depth;  ///< mean level of the open part, per local cell [m]; 0: there is none
-  /// Largest difference of the level from that at the centre, per local cell [m].
+  std::vector<double> open_depth;  ///< mean level of the open part, per local cell [m]; 0 if none is open
+  /// Largest difference of the level from that at the center, per local cell [m].
   std::vector<double> extent;
-  Vectors<D> wall;  ///< surface in the cell, out of the open part, per local cell [m^2]
+  Vectors<D> wall;  ///< area vector of the surface in the cell, out of the open part, per local cell [m^2]
 };
 
 /// Collective.
 template <int D>
 CutCells<D> cut(const mesh::Mesh& mesh, const Placement<D>& at, const Levels& levels);
 
-/// Rigid bodies inside the mesh (direct forcing): the cells whose centre lies in a body carry its velocity, and the velocity in
-/// the layer of them next to the fluid is set so that on the straight line to a fluid cell it passes through the body's
-/// velocity where the level is zero. What passes a face and what couples two pressures is the face's open share: with
-/// `surface: steps` nothing or all, by the marked cells; with `cut` what of the face lies outside of the bodies, so that cells
-/// which pass the surface close and open gradually. Mesh and bodies may both move. All follows from time and points alone: it is
-/// the same after a restart and in a repeated step.
+/// Rigid bodies inside the mesh by direct forcing. Cells with their center in a body have its velocity. In
+/// the layer of them next to the fluid, the velocity is set so that it matches the body where the level is
+/// zero, on a line to a fluid cell. The open share of a face scales its flux and the coupling of the two
+/// pressures. With `surface: steps` it is 0 or 1 by the marked cells. With `cut` it is the part outside the
+/// bodies, so that cells open and close gradually. Mesh and bodies may both move. Everything follows from
+/// time and points, so restarts and repeats agree.
 template <int D>
 class ImmersedBodies final : public Obstacles<D> {
  public:
   using Changed = typename Obstacles<D>::Changed;
   using Obstacles<D>::is_closed;
 
-  /// `parameters`: with the same kind of surface for all bodies.
+  /// `parameters`: must have the same kind of surface for all bodies.
   ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters);
 
   Changed mark(double t, const std::shared_ptr<const Placement<D>>& at,
                const std::vector<Vec3>& points) override;
-  /// Its centre is in a body since the last mark().
+  /// True if the cell's center was in a body at the last mark().
   bool is_solid(Index cell) const { return body_[cell] >= 0; }
   /// Share of a flux face through which the fluid passes.
   double open(Index f) const { return cut_ ? shape_.faces[f] : blocked(f) ? 0 : 1; }
   bool cuts() const { return cut_; }
-  /// One of the cells at a flux face is cut or closed; `cut` only.
+  /// True if a cell at the flux face is cut or closed; `cut` only.
   bool beside_surface(Index f) const {
     return shape_.cells[mesh_.owner[f]] < 1 || shape_.cells[other(f)] < 1;
   }
-  /// Volume flux of the bodies' motion through what of a face is not open [m^3/s].
+  /// Volume flux of the bodies' motion through the closed part of a face [m^3/s].
   double carried(Index flux_face, const Placement<D>& at) const;
-  /// In the marked cells; beside a surface that cuts cells u goes over to that within `dt`.
+  /// Sets u in the marked cells; at a cut surface u approaches that value within `dt`.
   void hold(const Placement<D>& at, double dt, Vectors<D>& u) const override;
-  /// Mean fluxes of whole faces beside the surface with the velocity in the middle of what is open of the cells; `cut` only.
+  /// Adjusts mean fluxes of whole faces at the surface to the velocity of the open cell parts; `cut` only.
   void carry(const Placement<D>& at, const Vectors<D>& u, std::vector<double>& phi) const override;
   void block(const Step<D>& step, std::vector<double>& phi) const override;
   void block(const Step<D>& step, const std::vector<Index>& boundary_faces,
@@ -96,21 +96,21 @@ class ImmersedBodies final : public Obstacles<D> {
   void correct_memory(State<D>& state) const override;
   bool has_pressure() const override { return false; }
   void before(std::vector<double>& b, std::vector<double>& p) const override;
-  /// Mean of the fluid cells beside a closed one, so that the gradient there sees no jump.
+  /// Takes the mean of adjacent fluid cells in a closed cell, so that the gradient there has no jump.
   void after(const Placement<D>& at, std::vector<double>& p) const override;
   bool is_in_budget() const override { return false; }
 
-  /// On each body [N]: pressure, then friction. `p` with its gradient. Collective.
+  /// Forces on each body [N]: pressure, then friction. `p` must include its gradient. Collective.
   std::vector<std::pair<Vec<D>, Vec<D>>> forces(const Placement<D>& at, const PressureLevel<D>& level,
                                                 const Vectors<D>& u, double viscosity) const;
   const std::vector<std::string>& names() const { return names_; }
-  /// Sum of |phi - what the body displaces| over the closed faces between body and fluid [m^3/s]. Collective.
+  /// Sum of |phi - flux displaced by the body| over closed faces between body and fluid [m^3/s]. Collective.
   double leak(const Placement<D>& at, const std::vector<double>& phi) const;
 
  private:
   using Obstacles<D>::mesh_;
   using Obstacles<D>::around_;
-  using Sums = std::vector<double>;  // of each body: pressure, then friction
+  using Sums = std::vector<double>;  // per body: pressure, then friction
   Index other(Index f) const { return f < mesh_.n_interior ? mesh_.neighbour[f] : mesh_.owner[f]; }
   bool blocked(Index f) const { return is_solid(mesh_.owner[f]) || is_solid(other(f)); }
   Changed mark_cells(double t, const Placement<D>& at, std::span<const Vec3> points);
@@ -124,17 +124,17 @@ class ImmersedBodies final : public Obstacles<D> {
                            double viscosity, Sums& sums) const;
   void add_forces_of_cuts(const Placement<D>& at, const PressureLevel<D>& level, const Vectors<D>& u,
                           double viscosity, Sums& sums) const;
-  std::shared_ptr<const Placement<D>> around_of_;  // that around_ was made from
+  std::shared_ptr<const Placement<D>> around_of_;  // from which around_ was made
   bool cut_;
   double nu_;  // [m^2/s]
   std::vector<std::string> names_;
   std::vector<fv::Expression> level_;
   std::vector<std::vector<fv::Expression>> speed_;
-  std::vector<int> body_;      // per local cell; -1: fluid
+  std::vector<int> body_;      // per local cell; -1 in the fluid
   std::vector<double> depth_;  // per local cell: lowest level of all bodies [m]
   Vectors<D> velocity_;        // per local cell, of its body
   std::vector<Index> faces_;   // interior faces between body and fluid
-  std::vector<int> nearest_;   // per local cell: the body of the lowest level; `cut` only
+  std::vector<int> nearest_;   // per local cell: body with the lowest level; `cut` only
   CutCells<D> shape_;          // `cut` only
 };
 

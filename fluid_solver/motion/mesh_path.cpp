@@ -11,10 +11,10 @@
 namespace couplet::fluid {
 namespace {
 
-// Largest relative motion of the sides of periodic patches, as a share of their distance.
+// Largest relative motion of the sides of periodic patches, over their distance.
 constexpr double most_torn = 1e-8;
 
-/// Whoever moved the points: a cell turned over has no flow.
+/// Rejects inverted cells, whatever moved the points.
 template <int D>
 void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
   bool inverted = false;

@@ -61,8 +61,8 @@ template void add_centrifugal<3>(const RotatingFrame<3>&, const Placement<3>&, d
 template class RotatingFrame<2>;
 template class RotatingFrame<3>;
 
-/// 2-D: a face is as deep as the scene, its edges along z are left at corner 0 and right at corner 1:
-/// e_z x (u_1 - u_0), see Mesh for the order.
+/// 2-D: e_z x (u_1 - u_0) for a face of unit depth with edges along z at corner 0 (left) and 1 (right), see
+/// Mesh.
 template <int D>
 Vec<D> turn_of(std::span<const Vec3> corners, std::span<const Vec3> velocities) {
   if constexpr (D == 2) {
@@ -97,7 +97,7 @@ std::vector<Vec3> face_corners(const mesh::Mesh& mesh, const mesh::Patch& patch,
   return corners;
 }
 
-/// Adds the walls whose velocity the case gives; the others were added before.
+/// Adds walls with velocity given by the case; the others were added before.
 template <int D>
 void Boundary<D>::add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t,
                            Vectors<D>& turn) const {

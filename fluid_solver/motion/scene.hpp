@@ -16,25 +16,25 @@
 
 namespace couplet::fluid {
 
-/// Parts of the mesh that the fluid does not enter: immersed bodies or closed gaps, in this class itself none. Every function is called
-/// a few times per step and loops over cells or faces itself.
+/// Parts of the mesh closed to the fluid: immersed bodies or closed gaps. This base class has none. Every
+/// function is called a few times per step and itself loops over cells or faces.
 template <int D>
 class Obstacles {
  public:
   explicit Obstacles(const mesh::Mesh& mesh) : mesh_(mesh), closed_(mesh.cells.n_local(), 0) {}
   virtual ~Obstacles() = default;
 
-  enum class Changed { nothing, shares, cells };  ///< `cells`: other cells are closed than before
+  enum class Changed { nothing, shares, cells };  ///< `cells`: the set of closed cells changed
   /// Marks the cells of a placement at time t [s]. The same on all ranks. Collective.
   virtual Changed mark(double, const std::shared_ptr<const Placement<D>>&, const std::vector<Vec3>&) {
     return Changed::nothing;
   }
-  /// Prepares what the other functions need in a step from a level, with the given velocities w [m/s]. Collective.
+  /// Prepares a step from a level with the given velocities w [m/s]. Collective.
   virtual void begin(const Step<D>&, const State<D>&, const Vectors<D>&) {}
-  /// The multi-step schemes begin anew after this step, which has an impulse.
+  /// True if the multi-step schemes restart after this step, which has an impulse.
   virtual bool starts_anew() const { return false; }
 
-  /// Nothing passes any face of a closed cell but what moves with the obstacle.
+  /// True if no face of the cell lets anything pass except the motion of the obstacle.
   bool is_closed(Index cell) const { return closed_[cell] != 0; }
   /// Sets the values of closed cells to zero.
   template <class T>
@@ -43,38 +43,38 @@ class Obstacles {
     for (std::size_t c = 0; c < values.size(); ++c)
       if (closed_[c]) set_zero(values[c]);
   }
-  /// Closed cells on any rank, per local cell; nullptr if they take part in the choice of the step size.
+  /// Closed cells of any rank, per local cell; nullptr if they are included in the choice of the step size.
   virtual std::shared_ptr<const std::vector<char>> marks() const { return nullptr; }
-  /// Placement as the pressure equation sees it, where closed faces conduct little or nothing; nullptr if it is that of the step.
+  /// Placement for the pressure equation with closed faces nearly blocked; nullptr for that of the step.
   const Placement<D>* around() const { return around_.get(); }
 
-  /// Sets u in and beside closed cells. Ghosts current before and after. Collective.
+  /// Sets u in and at closed cells. Ghosts are current before and after. Collective.
   virtual void hold(const Placement<D>&, double, Vectors<D>&) const {}
-  /// Fluxes of a velocity through the faces as if all of each were open. Collective.
+  /// Fluxes of a velocity through the faces as if they were fully open. Collective.
   virtual void carry(const Placement<D>&, const Vectors<D>&, std::vector<double>&) const {}
-  /// Reduces these fluxes to what passes the open part of each flux face, and adds what moves with the obstacle [m^3/s].
+  /// Reduces these fluxes to the open part of each flux face and adds the motion of the obstacle [m^3/s].
   virtual void block(const Step<D>&, std::vector<double>&) const {}
-  /// Does so at the boundary faces of given flux.
+  /// Does so at boundary faces of given flux.
   virtual void block(const Step<D>&, const std::vector<Index>&, std::vector<double>&) const {}
-  /// Corrects the memory of the fluxes of a state, which starts anew at closed faces. Collective.
+  /// Corrects the memory of the fluxes of a state, which restarts at closed faces. Collective.
   virtual void correct_memory(State<D>&) const {}
 
-  /// The cells inside have a pressure of their own.
+  /// True if the cells inside have their own pressure.
   virtual bool has_pressure() const { return true; }
-  /// Right-hand side and guess of the pressure equation.
+  /// Adjusts the right-hand side and guess of the pressure equation.
   virtual void before(std::vector<double>& b, std::vector<double>&) const { clear(b); }
-  /// The solution, in closed cells. Collective.
+  /// Sets the solution in closed cells. Collective.
   virtual void after(const Placement<D>&, std::vector<double>&) const {}
-  /// part() has something to add.
+  /// True if part() adds something.
   virtual bool parts() const { return false; }
-  /// Adds to `sum` of the free cells at closed faces sign area (p_P - p_f), p_f linear between the cells (with `gradient` also on
-  /// skewed meshes): such a cell sees its own pressure there, as at a wall.
+  /// Adds sign area (p_P - p_f) to `sum` of the free cells at closed faces, p_f linear between the cells
+  /// (with `gradient` also on skewed meshes). Such a cell then sees its own pressure there, as at a wall.
   virtual void part(const Placement<D>&, const std::vector<double>&, const Vectors<D>*, const Vectors<D>&,
                     Vectors<D>&) const {}
 
-  /// Work that the obstacles do is in the energy budget.
+  /// True if the work of the obstacles is included in the energy budget.
   virtual bool is_in_budget() const { return true; }
-  /// Why a flow may have diverged; empty if there is no reason here. Collective.
+  /// Possible cause of a divergent flow; empty if there is none here. Collective.
   virtual std::string cause(const Placement<D>&) const { return {}; }
 
  protected:
@@ -106,56 +106,56 @@ struct Scene {
   Properties fluid;
   bool oblique = false;                      ///< the non-orthogonal parts are needed
   std::optional<RotatingFrame<D>> frame{};   ///< empty if there is none
-  std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr: second order everywhere
-  /// Each step marks their cells.
+  std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr if the order is second everywhere
+  /// Obstacles; each step marks their cells.
   std::unique_ptr<Obstacles<D>> obstacles = std::make_unique<Obstacles<D>>(mesh);
 
-  /// The placement as the pressure equation sees it.
+  /// Placement for the pressure equation.
   const Placement<D>& around(const Step<D>& step) const {
     return obstacles->around() ? *obstacles->around() : *step.to;
   }
   const std::vector<Vec3>& points_of(const Step<D>& step) const {
     return step.points.empty() ? points_at_rest : step.points;
   }
-  /// Velocity whose means at the faces are the fluxes of u. Collective.
+  /// Velocity whose face means are the fluxes of u. Collective.
   const Vectors<D>& flux_velocity(const Placement<D>& at, const Vectors<D>& u) const {
     return fourth ? fourth->flux_velocity(at, u) : u;
   }
   bool is_compressible() const { return fluid.sound > 0; }
 };
 
-/// Where the mesh is in a coupling step: its points move along straight lines from that of level n to that at the end.
+/// Positions of the mesh within a coupling step. Points move on straight lines from level n to the end.
 template <int D>
 class MeshPath {
  public:
-  /// `geometry`: of the mesh at rest, of which the points alone are kept. `moves`: the mesh will. Collective.
+  /// `geometry`: of the mesh at rest; only its points are kept. `moves`: the mesh will move. Collective.
   MeshPath(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
            bool moves);
 
-  /// As read, per local point [m].
+  /// Points as read, per local point [m].
   const std::vector<Vec3>& points_at_rest() const { return points_at_rest_; }
 
   bool moves() const { return moves_; }
-  /// As a frame that does not turn.
+  /// True if the mesh only moves as a translating frame.
   bool translates() const { return translates_; }
-  /// Placement of the mesh at rest; a frame that is only translated keeps its shape, and with it the pressure equation and its factors.
+  /// Placement of the mesh at rest. A translated frame keeps the pressure equation and its factors.
   std::shared_ptr<const Placement<D>> start(const mesh::Geometry& geometry);
-  /// Placement of other points; of those at rest if `points` is empty.
+  /// Placement of other points; of the points at rest if `points` is empty.
   std::shared_ptr<const Placement<D>> at(std::span<const Vec3> points) const;
-  /// The sub-step of `dt` on a mesh that ends at the share `s` of the way from `begin` to `end` (empty: it rests
-  /// there). `level`: where it starts, at t = `time` of the coupling step. Throws SolveFailure for inverted cells.
-  /// Collective.
+  /// Sub-step of `dt` on a mesh that ends at the share `s` of the way from `begin` to `end` (empty if it is
+  /// at rest there). `level`: start, at t = `time` of the coupling step. Throws SolveFailure for inverted
+  /// cells. Collective.
   SubStep<D> sub_step(const State<D>& level, double dt, double s, std::span<const Vec3> begin,
                       std::span<const Vec3> end, double time) const;
-  /// Throws Error where the points at `time` part what is joined. Collective.
+  /// Throws Error if the points at `time` separate joined patches. Collective.
   void refuse_torn(std::span<const Vec3> points, double time) const;
 
  private:
   const mesh::Mesh& mesh_;
   const std::vector<Vec3> points_at_rest_;
   bool moves_, translates_;
-  std::optional<mesh::PeriodicPoints> periodic_;  // with patches joined on a mesh that moves
-  std::shared_ptr<const Placement<D>> frame_;     // with translates_: the placement at rest
+  std::optional<mesh::PeriodicPoints> periodic_;  // for joined patches on a moving mesh
+  std::shared_ptr<const Placement<D>> frame_;     // placement at rest, for a translating frame
 };
 
 }  // namespace couplet::fluid

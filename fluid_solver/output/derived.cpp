@@ -130,7 +130,7 @@ std::span<const double> Quantities<D>::keep(std::vector<double> values) {
   return kept_.back();
 }
 
-/// `values`: of the cells, then of the boundary faces.
+/// `values`: cells first, then boundary faces.
 template <int D>
 void Quantities<D>::add(const char* name, const char* unit, int components, std::span<const double> values,
                         std::size_t cells) {

@@ -14,21 +14,21 @@
 
 namespace couplet::fluid {
 
-/// Time means and second central moments of velocity and pressure per local cell, then per owned boundary face,
-/// weighted with the steps (West's update, which loses no digits over long runs).
+/// Time means and second central moments of velocity and pressure, per local cell and then per owned boundary
+/// face, weighted with the steps. West's update avoids round-off over long runs.
 template <int D>
 class RunningStatistics {
  public:
   static constexpr int n_shear = D * (D - 1) / 2;
   RunningStatistics(std::size_t cells, std::size_t faces);
-  /// Statistics before the first state: NaN everywhere.
+  /// Statistics before the first state, NaN everywhere.
   static RunningStatistics nothing_yet(std::size_t cells, std::size_t faces);
-  /// `state` and `pressure` (nullptr if there is none) held for dt [s].
+  /// Adds `state` and `pressure` (nullptr if there is none) with the weight dt [s].
   void add(const State<D>& state, const PressureLevel<D>* pressure, double dt);
   double duration() const { return duration_; }  ///< [s]
 
   std::size_t cells() const { return cells_; }
-  /// Below, entries from cells() on are those of boundary faces; reynolds_shear() is of cells alone.
+  /// Entries from cells() on belong to boundary faces; reynolds_shear() covers only cells.
   const Vectors<D>& velocity_mean() const { return velocity_; }
   const std::vector<double>& pressure_mean() const { return pressure_; }
   Vectors<D> velocity_rms() const;
@@ -51,8 +51,8 @@ class RunningStatistics {
   std::vector<double> shear_, pressure_, pressure_square_;  // sum dt u_i' u_j'; mean; sum dt p'^2
 };
 
-/// Wall shear and the distance of the first cell in wall units, y+ = y (tau/rho)^(1/2) / nu, y from the
-/// cell's centre straight to the wall, tau the mean over the last step.
+/// Wall shear and the distance of the first cell in wall units, y+ = y (tau/rho)^(1/2)/nu. y is the normal
+/// distance of the cell center from the wall, tau the mean over the last step.
 struct WallSummary {
   double largest_shear = 0, mean_shear = 0;  ///< [Pa]; mean over the area
   double largest_yplus = 0, mean_yplus = 0;
@@ -64,8 +64,8 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch);
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 
-/// Coefficients of drag, lift and moment: sum F.d / (q A), sum F.l / (q A), sum ((x - c) x F).a / (q A L) of
-/// the forces on some walls, means over the last step.
+/// Coefficients of drag, lift and moment from the forces on some walls, means over the last step: sum F.d/(q
+/// A), sum F.l/(q A), sum ((x - c) x F).a/(q A L).
 struct Coefficients {
   double drag = 0, lift = 0, moment = 0;
 };
@@ -73,34 +73,34 @@ struct Coefficients {
 template <int D>
 Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& parameters);
 
-/// Kinetic energy [J] and what takes it away [W], as the scheme has it: the sum over the faces of mu g |du|^2
-/// (orthogonal part), of the eddies' force times du, and what the pressure takes because the cells' velocity
-/// is not quite free of divergence, the sum of V grad p.u at t^{n+1/2}: the price of no checkerboard (in an
-/// open domain it holds the work at inlets and outlets too). Collective.
+/// Kinetic energy [J] and its losses [W] in the scheme. The losses are the sum over faces of mu g |du|^2
+/// (orthogonal part), the eddy force times du, and the sum of V grad p.u at t^{n+1/2}. The last one arises
+/// because cell velocities are not exactly divergence-free, which suppresses checkerboards; in an open domain
+/// it includes the work at inlets and outlets. Collective.
 struct EnergyBudget {
   double kinetic = 0, viscous = 0, eddies = 0, pressure = 0;
 };
 template <int D>
 EnergyBudget energy_budget(const Fluid<D>& fluid);
 
-/// A field of the fluid as files, probes and samples show it.
+/// Field of the fluid for files, probes and samples.
 struct Quantity {
   std::string name, unit;
   int components = 1;
   std::span<const double> cells;     ///< per local cell
-  std::span<const double> boundary;  ///< per owned boundary face; empty: it is known in the cells only
+  std::span<const double> boundary;  ///< per owned boundary face; empty if it is known only in the cells
 };
 
-/// The fields of the accepted state that the case asks for. They refer to the fluid, which must not step on meanwhile.
+/// Fields of the accepted state that the case asks for. They become invalid when it advances.
 template <int D>
 class Quantities {
  public:
-  /// Velocity and pressure, which is zero before the first step.
+  /// Adds velocity and pressure; the pressure is zero before the first step.
   explicit Quantities(const Fluid<D>& fluid);
   Quantities(const Quantities&) = delete;
-  /// Means and root mean squares.
+  /// Adds means and root mean squares.
   void add(const RunningStatistics<D>& statistics);
-  /// Fields that are known in the cells only. `statistics`: nullptr if there are none. Collective.
+  /// Adds the fields known only in cells. `statistics`: nullptr if there are none. Collective.
   void add_in_cells(const RunningStatistics<D>* statistics);
 
   const std::vector<Quantity>& all() const { return all_; }
@@ -115,7 +115,7 @@ class Quantities {
   const Fluid<D>& fluid_;
   std::vector<Quantity> all_;
   std::shared_ptr<const PressureLevel<D>> pressure_;
-  std::deque<std::vector<double>> kept_;  // values that were computed for this
+  std::deque<std::vector<double>> kept_;  // values computed here
 };
 
 }  // namespace couplet::fluid

@@ -21,16 +21,15 @@
 
 namespace couplet::fluid {
 
-/// Values at mesh points from those in the cells and at the boundary, on the mesh as it is: what probes and
-/// samples are made of.
+/// Values at mesh points from those in cells and at the boundary of the current mesh, for probes and samples.
 template <int D>
 class PointValues {
  public:
-  /// `geometry`: of the mesh at rest, looked at while this is made.
+  /// `geometry`: geometry of the mesh at rest, used only in the constructor.
   PointValues(const Fluid<D>& fluid, const mesh::Geometry& geometry);
-  /// To be called when the mesh may have moved, before fill(). Collective.
+  /// Call when the mesh may have moved, before fill(). Collective.
   void follow();
-  /// Sets `values`, width() a local point, at the points of the probes; the others are left alone. Collective.
+  /// Sets `values`, width() per local point, at the points of the probes only. Collective.
   void fill(const Quantities<D>& quantities, std::span<const io::Probe> probes,
             std::span<double> values) const;
 
@@ -39,17 +38,17 @@ class PointValues {
   fv::VertexInterpolation interpolation_;
 };
 
-/// The places of a line or plane that lie in the mesh.
+/// Places of a line or plane that lie in the mesh.
 class Sample {
  public:
-  /// `places`: of the local points [m]. Throws Error if none does. Collective.
+  /// `places`: local points [m]. Throws Error if no place of the sample is in the mesh. Collective.
   Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
          const SampleParameters& parameters);
   const std::string& name() const { return name_; }
   const std::vector<io::Probe>& probes() const { return probes_; }
   /// Position of each probe along from-to and from-up, 0 to 1.
   const std::vector<std::array<double, 2>>& along() const { return along_; }
-  /// Values at each probe from those at local points, `components` each, on rank 0; empty elsewhere. Collective.
+  /// Values at each probe from those at local points, `components` each, on rank 0, else empty. Collective.
   std::vector<double> gather(MPI_Comm comm, std::span<const double> at_points, int components) const;
 
  private:
@@ -60,14 +59,14 @@ class Sample {
 
 struct FluidContext;
 
-/// surface-<patch>.h5 of the patches in `output.surfaces`: pressure, traction and wall shear, y+ at walls, Cp where a
+/// Writes surface-<patch>.h5 for `output.surfaces`: pressure, traction, wall shear, y+ at walls, and Cp if a
 /// section `coefficients` names the wall.
 template <int D>
 class FluidSurfaces {
  public:
   /// Keeps a reference. Throws Error for a name that is no patch. Collective.
   explicit FluidSurfaces(const Fluid<D>& fluid);
-  /// Nothing before the first step, which alone gives a load. Collective.
+  /// Writes nothing before the first step, which computes the first load. Collective.
   void write(double time, const FluidContext& context);
 
  private:
@@ -80,42 +79,42 @@ class FluidSurfaces {
   bool is_open_ = false;
 };
 
-/// Numbers of one time, each with its name and unit, "drag [-]".
+/// Numbers at one time, each with its name and unit, for example "drag [-]".
 using Row = std::vector<std::pair<std::string, double>>;
 
-/// A file with one row per step, opened with the first row.
+/// File with one row per step, opened with the first row.
 struct SeriesTable {
   std::string file;
-  std::function<Row()> row;  ///< collective, counts on rank 0; empty: nothing is known yet
+  std::function<Row()> row;  ///< collective, read on rank 0; empty if nothing is known yet
   std::optional<io::Series> series{};
 };
 
-/// The tables that the case asks for, and balance.csv. `walls`: patches that bear a force.
+/// Tables requested by the case, and balance.csv. `walls`: patches on which forces are computed.
 template <int D>
 std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const std::vector<const mesh::Patch*>& walls);
 
-/// Where a fluid writes to.
+/// Name, output folder and restart time of a fluid.
 struct FluidContext {
   std::string name = "fluid";
-  std::filesystem::path output_folder;  ///< empty: nothing is written
+  std::filesystem::path output_folder;  ///< empty if nothing is written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   io::FieldChoice fields{};
 };
 
-/// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, fluxes.csv, flow-areas.csv, balance.csv, energy.csv,
-/// bodies.csv, probes.csv, sample-NAME.csv, surface-PATCH.h5. They are opened when first written to.
+/// Writes the files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, fluxes.csv, flow-areas.csv,
+/// balance.csv, energy.csv, bodies.csv, probes.csv, sample-NAME.csv, surface-PATCH.h5.
 template <int D>
 class FluidOutput {
  public:
-  /// `geometry`: of the mesh at rest, looked at while this is made.
+  /// `geometry`: geometry of the mesh at rest, used only in the constructor.
   FluidOutput(const Fluid<D>& fluid, const mesh::Geometry& geometry, FluidContext context);
-  FluidOutput(const FluidOutput&) = delete;  // its tables look at it
-  /// Where output `number` has fields in the volume. `statistics` may be null.
+  FluidOutput(const FluidOutput&) = delete;  // its tables refer to it
+  /// Writes the volume fields of output `number`, if it has any. `statistics` may be nullptr.
   void write_fields(double time, int number, const RunningStatistics<D>* statistics);
   void write_series(double time);
-  /// Writes the patches that the case asks for. Collective.
+  /// Writes the patches requested by the case. Collective.
   void write_surfaces(double time);
-  /// Lines and planes. `statistics` may be null. Collective.
+  /// Writes lines and planes. `statistics` may be nullptr. Collective.
   void write_samples(double time, const RunningStatistics<D>* statistics);
 
  private:
@@ -135,7 +134,7 @@ class FluidOutput {
   std::optional<io::FieldWriter> fields_;
   std::optional<FluidSurfaces<D>> surfaces_;
   std::vector<SeriesTable> tables_;
-  std::vector<std::optional<io::Series>> sample_series_;  // one a sample, on rank 0
+  std::vector<std::optional<io::Series>> sample_series_;  // one per sample, on rank 0
 };
 
 }  // namespace couplet::fluid

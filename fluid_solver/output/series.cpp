@@ -74,9 +74,9 @@ Row wall_layers(const Fluid<D>& fluid, const WallPatches& walls) {
   return row;
 }
 
-/// Fluxes through a patch out of the fluid, relative to the patch where it moves: at the accepted time, but for the loads,
-/// which are means over the last step as in forces.csv. In a steady flow without body forces volumes and momenta of all
-/// patches add up to zero.
+/// Fluxes through a patch out of the fluid, relative to a moving patch, at the accepted time. Loads are means
+/// over the last step as in forces.csv. In a steady flow without body forces, volumes and momenta of all
+/// patches sum to zero.
 template <int D>
 struct PatchFlux {
   std::string patch;
@@ -127,8 +127,8 @@ Row fluxes(const Fluid<D>& fluid) {
   return row;
 }
 
-/// Area that an ideal flow would need to carry the same mass with the same difference of pressure, (KA)_e in [thesis] eq.
-/// (4.35): negative where the flow goes against the pressure, NaN where there is no difference.
+/// Area in which an ideal flow has the same mass flow and pressure difference, (KA)_e in [thesis] eq. (4.35).
+/// Negative for flow against the pressure, NaN without a difference.
 template <int D>
 Row flow_areas(const Fluid<D>& fluid) {
   Row row;
@@ -212,7 +212,7 @@ Row energies(const Fluid<D>& fluid) {
           {"pressure power [W]", e.pressure}};
 }
 
-/// Forces on the immersed bodies, and what leaks through their surfaces.
+/// Forces on the immersed bodies, and the leakage through their surfaces.
 template <int D>
 Row bodies(const Fluid<D>& fluid) {
   Row row;

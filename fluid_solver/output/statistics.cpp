@@ -7,7 +7,7 @@
 namespace couplet::fluid {
 namespace {
 
-/// Round-off may leave a square below zero; what is not a number stays so.
+/// Round-off may make a square negative; NaN is kept.
 double root(double square) { return square < 0 ? 0.0 : std::sqrt(square); }
 
 }  // namespace
@@ -86,7 +86,7 @@ std::vector<double> RunningStatistics<D>::reynolds_shear() const {
   return shear;
 }
 
-/// `use`: entries, name, values; first those of the cells, then those of the boundary faces.
+/// `use`: called with entries, name and values, first of cells and then of boundary faces.
 template <int D>
 template <class Self, class Use>
 void RunningStatistics<D>::visit(Self& self, const Use& use) {

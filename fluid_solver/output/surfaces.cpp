@@ -18,7 +18,7 @@ FluidSurfaces<D>::FluidSurfaces(const Fluid<D>& fluid)
     : fluid_(fluid),
       series_(fluid.mesh(), fluid.points_at_rest(), fluid.parameters().output.surfaces, "output.surfaces") {}
 
-// The forces are those of forces.csv, so that their sum is.
+// Forces equal those of forces.csv, and so does their sum.
 template <int D>
 typename FluidSurfaces<D>::Faces FluidSurfaces<D>::faces() const {
   const mesh::Mesh& mesh = fluid_.mesh();
@@ -36,7 +36,7 @@ typename FluidSurfaces<D>::Faces FluidSurfaces<D>::faces() const {
   return faces;
 }
 
-/// Per boundary face; empty where no coefficients are of this patch. The first by name counts.
+/// Per boundary face; empty if no coefficients use this patch, else those of the first by name.
 template <int D>
 std::vector<double> FluidSurfaces<D>::pressure_coefficient(const mesh::Patch& patch,
                                                            std::span<const double> pressure) const {

@@ -165,16 +165,16 @@ using Entry = std::pair<BoundaryType, Condition>;
 const auto& condition_table() {
   const auto without_friction = [](const BoundaryParameters&) { return FaceRow{.slip_length = no_friction}; };
   static const std::array table{
-      // The fluid comes in with a velocity that the case gives. Of a compressible fluid it may let pressure waves out
-      // (pressure/absorbing), or lie before a volume (pressure/upstream_volume).
+      // Inflow with a prescribed velocity. For a compressible fluid it may let pressure waves out
+      // (pressure/absorbing) or have an upstream volume (pressure/upstream_volume).
       Entry{BoundaryType::inlet,
             {.name = "inlet",
              .about = "inlet: prescribed velocity",
              .declare = declare_inlet,
              .velocity = GivenBy::keys,
              .passage = Passage::in}},
-      // The fluid leaves at a pressure that the case gives. What comes in through it carries half of its velocity, so
-      // that its share of the kinetic energy vanishes, phi (u_b - u_P/2).u_P = 0.
+      // Outflow at a prescribed pressure. Backflow carries half its velocity, so that phi (u_b - u_P/2).u_P =
+      // 0.
       Entry{BoundaryType::outlet,
             {.name = "outlet",
              .about = "outlet: prescribed pressure",
@@ -185,7 +185,7 @@ const auto& condition_table() {
                  },
              .velocity = GivenBy::nobody,
              .passage = Passage::out}},
-      // The fluid leaves with the velocity that the mean outflow carries to the patch: Boundary::convect().
+      // Outflow with the velocity convected to the patch by the mean outflow: Boundary::convect().
       Entry{
           BoundaryType::convective_outlet,
           {.name = "convective-outlet",
@@ -193,22 +193,21 @@ const auto& condition_table() {
            .velocity = GivenBy::flow,
            .passage = Passage::out}},
       Entry{BoundaryType::no_slip, {.name = "no-slip", .about = "no-slip: wall at rest", .wall = true}},
-      // A wall that moves along itself.
+      // Wall with tangential motion.
       Entry{BoundaryType::moving_wall,
             {.name = "moving-wall",
              .about = "moving-wall: wall with a prescribed velocity",
              .declare = declare_moving_wall,
              .velocity = GivenBy::keys,
              .wall = true}},
-      // A wall at rest along which the fluid slides the faster the more it is sheared, u = L du/dn [navier1823].
+      // Wall at rest with slip proportional to the shear, u = L du/dn [navier1823].
       Entry{BoundaryType::partial_slip,
             {.name = "partial-slip",
              .about = "partial-slip: wall at rest with a slip length (Navier)",
              .declare = declare_partial_slip,
              .row = [](const BoundaryParameters& b) { return FaceRow{.slip_length = b.slip_length}; },
              .wall = true}},
-      // A surface without friction that the fluid does not cross; it moves with the mesh. A plane of symmetry is the
-      // same.
+      // Impermeable surface without friction that moves with the mesh. A symmetry plane is the same.
       Entry{BoundaryType::slip,
             {.name = "slip",
              .about = "slip, symmetry: no normal flow, no friction",
@@ -216,22 +215,22 @@ const auto& condition_table() {
              .velocity = GivenBy::mesh}},
       Entry{BoundaryType::symmetry,
             {.name = "symmetry", .about = "", .row = without_friction, .velocity = GivenBy::mesh}},
-      // Fluid that leaves comes in at the partner: the mesh is joined there, no face of the boundary is left.
+      // Outflow enters at the partner: the mesh is joined there, without boundary faces.
       Entry{BoundaryType::periodic,
             {.name = "periodic",
              .about = "periodic: outflow re-enters at the partner",
              .declare = declare_periodic,
              .velocity = GivenBy::nobody,
              .joined = true}},
-      // A wall that moves with the structure. Where its mass is known the pressure equation foresees its answer, as a
-      // Robin condition: pressure/yielding_walls.
+      // Wall that moves with the structure. If its mass is known, the pressure equation includes its response
+      // as a Robin condition: pressure/yielding_walls.
       Entry{BoundaryType::interface,
             {.name = "interface",
              .about = "interface: wall that moves with the structure",
              .declare = declare_interface,
              .velocity = GivenBy::structure,
              .wall = true}},
-      // A wall that moves as prescribed, across itself too.
+      // Wall with prescribed motion, also in normal direction.
       Entry{
           BoundaryType::body,
           {.name = "body",

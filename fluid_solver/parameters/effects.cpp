@@ -145,7 +145,7 @@ namespace {
 constexpr double slow_waves = 0.3;  // of the audit: travel time of sound over 1/omega
 constexpr int most_samples = 2000, places = 4;
 
-/// Root mean square rate of what is prescribed over its root mean square about the mean [1/s]; 0: it does not change.
+/// RMS rate of a prescribed quantity over its RMS fluctuation [1/s]; 0 if it is constant.
 double rate_of(const config::ExpressionText& text, const Vec3& at, const diagnostics::CaseScene& scene) {
   const fv::Expression value(text, "what is prescribed");
   const int n = std::clamp(int(scene.end_time / std::max(scene.time_step, 1e-300)), 2, most_samples);
@@ -161,7 +161,7 @@ double rate_of(const config::ExpressionText& text, const Vec3& at, const diagnos
   return variance > 1e-9 * square ? std::sqrt(changes / variance) : 0;
 }
 
-/// The fastest of all that is prescribed.
+/// Largest rate of all prescribed quantities.
 double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
                     const diagnostics::CaseScene& scene) {
   std::vector<config::ExpressionText> texts;
@@ -184,8 +184,8 @@ double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
   return rate;
 }
 
-/// Decides whether pressure waves are computed: where sound takes longer across the mesh than 0.3/omega of what boundaries and
-/// motions prescribe, where gaps shut off an inlet, and where an interface moves in a fluid without an outlet.
+/// Decides about pressure waves. They are computed if sound takes longer across the mesh than 0.3/omega of
+/// boundaries and motions, if gaps cut off an inlet, or if an interface moves in a fluid without an outlet.
 diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::MeshFacts& mesh,
                                        const diagnostics::CaseScene& scene) {
   const auto without = [](std::string reason) {
@@ -270,8 +270,8 @@ diagnostics::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshF
                       reynolds, cell)};
 }
 
-/// Explicit diffusion holds to nu dt (sum of 4/h^2) <= 1, convection to about half a cell a step: the implicit term costs about
-/// as much as two explicit steps.
+/// Explicit diffusion requires nu dt (sum of 4/h^2) <= 1, convection about half a cell per step. The implicit
+/// term costs about two explicit steps.
 diagnostics::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
   const double nu = p.kinematic_viscosity(), h = mesh.shortest_edge;
   const double diffusion = nu > 0 ? h * h / (4 * mesh.dim * nu) : std::numeric_limits<double>::infinity();
@@ -310,7 +310,7 @@ std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& p, 
 }
 
 diagnostics::ExpectedCost expected_cost(const FluidParameters& p, const mesh::MeshFacts& mesh) {
-  // Measured: 56 MB with 4096 cells in 2-D, of which PETSc with its libraries takes 21.
+  // Measured: 56 MB with 4096 cells in 2-D, including 21 MB for PETSc and its libraries.
   const double cells = double(mesh.cells), eddies = p.turbulence ? 8 : 0;
   return {mesh.cells, 49e6 + (1800 + eddies) * cells, 2e-6 * cells};
 }

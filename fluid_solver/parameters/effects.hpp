@@ -10,7 +10,7 @@
 
 namespace couplet::fluid {
 
-/// Scene that the cards look at: the parameters, and what the job around the fluid decides.
+/// Input of the effect cards: the parameters, and the facts about the job around the fluid.
 struct FluidScene {
   FluidParameters parameters;
   bool moving_mesh = false;  ///< the job has a mesh mover
@@ -20,10 +20,9 @@ struct FluidScene {
 using FluidCard = diagnostics::EffectCard<FluidScene>;
 std::span<const FluidCard> fluid_effect_cards();
 
-/// `effects: auto` of a fluid: its dimension, laminar or large-eddy, how the viscous term is stepped, whether pressure waves are
-/// computed, and whether the mesh moves.
-/// The speed is the largest that boundaries, profiles and the start name; the Reynolds number stands on the smallest side of
-/// the mesh's box.
+/// Resolves `effects: auto` of a fluid: its dimension, laminar flow or LES, the viscous scheme, pressure
+/// waves, and mesh motion. The speed is the largest one in boundaries, profiles and the initial state. The
+/// Reynolds number uses the smallest side of the mesh's bounding box.
 std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& parameters,
                                                       const mesh::MeshFacts& mesh,
                                                       const diagnostics::CaseScene& scene);

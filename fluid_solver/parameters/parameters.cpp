@@ -55,7 +55,7 @@ void declare_gap(config::Section& s, GapParameters& gap) {
       "between");
 }
 
-/// A gap that nothing can open or close: what it blocks at the start remains blocked; empty if there is none.
+/// Gap whose walls never move, so that its blocked cells stay blocked; empty if there is none.
 std::string gap_at_rest(const FluidParameters& p) {
   const auto rests = [&p](const std::string& patch) {
     const auto wall = p.boundaries.find(patch);
@@ -72,7 +72,7 @@ std::string gap_at_rest(const FluidParameters& p) {
   return "";
 }
 
-/// After `boundaries`, at which it looks.
+/// Call after declaring `boundaries`, which this uses.
 void declare_gaps(config::Section& s, FluidParameters& p) {
   s.map<GapParameters>(
       "gaps", p.gaps, declare_gap, "gap",
@@ -81,7 +81,7 @@ void declare_gaps(config::Section& s, FluidParameters& p) {
   s.doubt([&p] { return gap_at_rest(p); }, "gaps");
 }
 
-/// Mesh and fluid.
+/// Declares mesh and fluid.
 void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh", p.mesh)
       .required()
@@ -106,7 +106,7 @@ void declare_scene(config::Section& s, FluidParameters& p) {
                             "boundary condition of each patch of the mesh; every patch needs an entry");
 }
 
-/// Size of the steps, and how exactly they are solved.
+/// Declares step sizes and tolerances.
 void declare_steps(config::Section& s, FluidParameters& p) {
   s.value("time-step", p.time_step)
       .unit("s")
@@ -145,7 +145,7 @@ void declare_steps(config::Section& s, FluidParameters& p) {
           "coupled run needs about 1e-4 of the coupling tolerance");
 }
 
-/// Initial state and body forces.
+/// Declares the initial state and body forces.
 void declare_start(config::Section& s, FluidParameters& p) {
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
@@ -164,7 +164,7 @@ void declare_start(config::Section& s, FluidParameters& p) {
       .doc("force per mass, one expression of x, y, z [m] and t [s] per component; absent: none");
 }
 
-/// Schemes in time.
+/// Declares time schemes.
 void declare_schemes(config::Section& s, FluidParameters& p) {
   s.choice(
        "scheme", p.scheme,
@@ -199,7 +199,7 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "pressures keep zero mean");
 }
 
-/// Parts that move, close or rotate.
+/// Declares parts that move, close or rotate.
 void declare_moving_parts(config::Section& s, FluidParameters& p) {
   s.map<BodyParameters>(
       "bodies", p.bodies,
@@ -246,7 +246,7 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
       "centrifugal and Euler forces act; absent: none");
 }
 
-/// Models of what the equations leave out.
+/// Declares models of neglected effects.
 void declare_models(config::Section& s, FluidParameters& p) {
   s.optional_section<TurbulenceParameters>(
       "turbulence", p.turbulence,
@@ -290,7 +290,7 @@ std::string wrong_flow_areas(const FluidParameters& p) {
   return "";
 }
 
-/// Output.
+/// Declares the output.
 void declare_written(config::Section& s, FluidParameters& p) {
   s.section(
       "output",

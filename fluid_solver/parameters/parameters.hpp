@@ -30,24 +30,24 @@ enum class BoundaryType {
 };
 enum class InletProfile { uniform, parabolic };
 
-/// Velocities in a file, see GridTable: columns u, v (and w) over some of x, y, z, t.
+/// Velocities from a file, see GridTable: columns u, v (and w) over some of x, y, z, t.
 struct VelocityTableParameters {
   std::string file;
   fv::GridTable::Outside outside = fv::GridTable::Outside::error;
 };
 
-/// omega(t) a x (x - c), besides the other velocity.
+/// Adds omega(t) a x (x - c) to the other velocity.
 struct RotationParameters {
   config::ExpressionText speed;                      // [rad/s], of t
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
 };
 
-/// Who says what mass per area stands behind an interface of type Robin.
+/// Source of the mass per area behind a Robin interface.
 enum class Impedance { given, structure };
 /// Motion of Robin faces on the two sides of a thin body.
 enum class Sides { automatic, together, apart };
 
-/// The keys of all conditions; what a condition does not read stays as it is here.
+/// Keys of all conditions; those that a condition does not read keep their defaults.
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
   std::vector<config::ExpressionText> velocity;      // [m/s], inlet and moving wall
@@ -64,69 +64,69 @@ struct BoundaryParameters {
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
   Impedance impedance = Impedance::given;            // interface
   Sides sides = Sides::automatic;                    // interface
-  /// The wall's answer is foreseen in the pressure equation.
+  /// True if the pressure equation accounts for the response of the wall.
   bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };
 
-/// Numbers that a condition gives to the equations at each of its faces: with w the velocity and p_b the pressure that
-/// are given, L the slip length, g the conductance and S the area of a face, t = S/(S + L g), n its normal, P its cell,
-///   flux            phi = w.S                            ; of a given pressure: phi^p - (dt/rho) g (p_b - p_P)
-///   pressure row    nothing, p_b from the wall's motion  ; of a given pressure: g, and g p_b on the right side
-///   viscous row     beta g [t I + (1 - t) n n], and the same of w on the right side; of a given pressure: nothing
-///   value at b      u_b = u_P + [t I + (1 - t) n n] (w - u_P)                      ; of a given pressure: u_P
+/// Coefficients of a condition in the equations of its faces, with given velocity w or pressure p_b, slip
+/// length L, conductance g, area S, t = S/(S + L g), normal n and cell P.
+///   flux            phi = w.S; for a given pressure phi^p - (dt/rho) g (p_b - p_P)
+///   pressure row    none, p_b follows from the wall's motion; for a given pressure g, and right side g p_b
+///   viscous row     beta g [t I + (1 - t) n n], right side that times w; none for a given pressure
+///   value at b      u_b = u_P + [t I + (1 - t) n n] (w - u_P); u_P for a given pressure
 ///   load            p_b S + mu g (u_P - u_b)
 struct FaceRow {
-  double pressure = 0;     ///< 1: the pressure is given, w is not
+  double pressure = 0;     ///< 1 if the pressure is given instead of w
   double slip_length = 0;  ///< L [m], mu du/dn = mu (w - u_b)/L along the wall; infinity: no friction
-  double inflow = 1;       ///< share of u_b that comes in with a flux into the domain
+  double inflow = 1;       ///< share of u_b carried in by a flux into the domain
 };
 inline constexpr double no_friction = std::numeric_limits<double>::infinity();
 
-/// Who gives w.
+/// Source of w.
 enum class GivenBy {
   rest,       ///< it is zero
-  keys,       ///< of the condition
+  keys,       ///< the keys of the condition
   mesh,       ///< the normal velocity of the mesh
   structure,  ///< at an interface
-  motion,     ///< prescribed, or of the mesh mover
-  flow,       ///< what arrives
-  nobody,     ///< there is none: the pressure is given, or there are no faces
+  motion,     ///< prescribed, or by the mesh mover
+  flow,       ///< the flow at a convective outlet
+  nobody,     ///< not defined, because the pressure is given or there are no faces
 };
 enum class Passage { none, in, out };
 
-/// A boundary condition: its keys, and what it gives to flux, pressure row, viscous row, boundary value and load at each of its faces,
-/// as numbers. The loops over faces read these from flat arrays and never ask for a type. A new condition touches conditions.cpp and its
-/// name in BoundaryType.
+/// Boundary condition: its keys, and its coefficients for flux, pressure row, viscous row, boundary value and
+/// load at each face. Face loops read these from flat arrays and never check the type. A new condition only
+/// needs an entry in conditions.cpp and a name in BoundaryType.
 struct Condition {
-  std::string name;   ///< in the YAML
-  std::string about;  ///< its part of the documentation of `type`; empty if another tells it
+  std::string name;   ///< name in the YAML
+  std::string about;  ///< its part of the documentation of `type`; empty if another one covers it
   void (*declare)(config::Section&, BoundaryParameters&) = nullptr;  ///< its keys; nullptr if it has none
   FaceRow (*row)(const BoundaryParameters&) = [](const BoundaryParameters&) { return FaceRow(); };
   GivenBy velocity = GivenBy::rest;
-  Passage passage = Passage::none;  ///< of the fluid, as expected
-  bool wall = false;                ///< exerts friction on the fluid and bears its force
-  bool joined = false;              ///< its faces are interior ones
+  Passage passage = Passage::none;  ///< expected flow direction
+  bool wall = false;                ///< exerts friction on the fluid and carries its force
+  bool joined = false;              ///< its faces become interior faces
 };
 
 /// Condition of a patch.
 const Condition& condition_of(const BoundaryParameters& boundary);
 inline bool is_wall(const BoundaryParameters& b) { return condition_of(b).wall; }
 inline bool gives_pressure(const BoundaryParameters& b) { return condition_of(b).row(b).pressure > 0; }
-/// A wall whose velocity the case gives.
+/// True for a wall whose velocity the case gives.
 inline bool is_moving_wall(const BoundaryParameters& b) {
   return is_wall(b) && condition_of(b).velocity == GivenBy::keys;
 }
 
-/// All names, with `last` before the last one.
+/// All names as a list, with `last` before the last one.
 std::string condition_names(const std::string& last);
-/// `type` and the keys that it brings.
+/// Declares `type` and the keys of each type.
 void declare_boundary(config::Section& section, BoundaryParameters& parameters);
 void declare_rotation(config::Section& section, RotationParameters& rotation);
 
-/// How the pressure follows from the divergence where the fluid is computed as weakly compressible.
+/// Time scheme of the pressure waves of a weakly compressible fluid.
 enum class WaveScheme { none, three_level, trapezoidal };
 
-/// The compressibility of a fluid: how it is computed, or, with `none`, by what a run judges whether to neglect it was right.
+/// Compressibility of a fluid. With `none`, it is only used to check that neglecting it was justified.
 struct CompressibilityParameters {
   WaveScheme scheme = WaveScheme::three_level;
   std::optional<double> mean_time;       // [s], of the means at absorbing boundaries
@@ -140,47 +140,47 @@ struct CompressibilityParameters {
 };
 void declare(config::Section& section, CompressibilityParameters& parameters);
 
-/// Gases by molar mass and ratio of heat capacities, liquids by their speed of sound.
+/// Known gases (by molar mass and ratio of heat capacities) and liquids (by speed of sound).
 std::vector<std::string> substances();
 
-/// Why a fluid of this density [kg/m^3] cannot be the named substance; empty: it can, or none is named.
+/// Why a fluid of this density [kg/m^3] cannot be the named substance; empty if it can or none is named.
 std::string misfit_of(const CompressibilityParameters& parameters, double density);
 
 struct Sound {
   double speed = 0;  ///< [m/s]
-  std::string of;    ///< "sf6 at 20 degC"
+  std::string of;    ///< substance, for example "sf6 at 20 degC"
 };
-/// Speed of sound by the keys, else by density [kg/m^3] and viscosity [Pa s], where they are those of a gas at 1 atm or of a liquid. None for a
-/// model fluid, such as one of 1 kg/m^3 and 1 Pa s: nothing is known of its sound.
+/// Speed of sound from the keys, else from density [kg/m^3] and viscosity [Pa s] if they match a gas at 1 atm
+/// or a liquid. Empty for a model fluid, such as one of 1 kg/m^3 and 1 Pa s.
 std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& parameters, double density,
                               double viscosity);
 
-/// Speed of sound of a fluid that is computed as weakly compressible [m/s], else 0. Throws Error if it is not known.
+/// Speed of sound of a weakly compressible fluid [m/s], else 0. Throws Error if it is unknown.
 double solved_sound(const std::optional<CompressibilityParameters>& parameters, double density,
                     double viscosity);
 
 enum class ViscousTreatment { automatic, explicit_, implicit };
 /// Scheme of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
 enum class ExplicitScheme { adams_bashforth, runge_kutta };
-/// How the face fluxes follow the cells' velocities from step to step.
+/// Update of the face fluxes from the cell velocities between steps.
 enum class Projection { flux_memory, incremental, non_incremental };
 
 /// Order of the operators along lines of hexahedra and quadrilaterals.
 enum class FaceValues { second_order, fourth_order, automatic };
 
-/// Who sets the pressure level, and so holds the volume, of a fluid without an outlet.
+/// Source of the pressure level, and so of the volume, of a fluid without an outlet.
 enum class VolumeLevelBy { nobody, structure };
 
 enum class TurbulenceModel { smagorinsky, wale };
 
-/// Large-eddy simulation; absent: no model, no cost.
+/// Large-eddy simulation; absent if there is no model.
 struct TurbulenceParameters {
   TurbulenceModel model = TurbulenceModel::wale;
-  std::optional<double> constant;  // by default the usual one of the model
+  std::optional<double> constant;  // absent: the usual one of the model
   double constant_of() const { return constant.value_or(model == TurbulenceModel::wale ? 0.325 : 0.17); }
 };
 
-/// How bodies close the cells of a mesh that does not conform to them.
+/// Treatment of cells that the surface of an immersed body intersects.
 enum class BodySurface { automatic, steps, cut };
 
 /// A rigid body inside the mesh.
@@ -190,29 +190,29 @@ struct BodyParameters {
   BodySurface surface = BodySurface::automatic;
 };
 
-/// Two walls between which nothing passes where they are nearer than `opening`.
+/// Two walls that block the flow between them where they are closer than `opening`.
 struct GapParameters {
   std::vector<std::string> between;
   double opening = 0;  // [m]
-  /// Height of the seat, the second wall, along `direction` [m]; absent if it is not stated.
+  /// Height of the seat, the second wall, along `direction` [m]; absent if not given.
   std::optional<config::ExpressionText> height;
   std::vector<double> direction;  // from the seat to the other wall; empty: z, in 2-D y
 };
 
-/// Running means from a time on; absent: none.
+/// Running means from a time on; absent if there are none.
 struct StatisticsParameters {
   double start = 0;  // [s]
 };
 
-/// Force and moment coefficients of some walls together.
+/// Force and moment coefficients of a group of walls.
 struct CoefficientParameters {
   std::vector<std::string> patches;
   double speed = 1, area = 1, length = 1;  // [m/s], [m^2] (2-D: m of depth 1 m), [m]
-  double pressure = 0;                     // [Pa], that of Cp = 0
+  double pressure = 0;                     // [Pa], reference of Cp
   Vec3 drag = Vec3::UnitX(), lift = Vec3::UnitY(), axis = Vec3::UnitZ(), centre = Vec3::Zero();
 };
 
-/// Places where velocity and pressure are written at each output: a line (one side) or a plane (two).
+/// Places where velocity and pressure are written at each output: a line or a plane.
 struct SampleParameters {
   enum class Type { line, plane };
   Type type = Type::line;
@@ -221,7 +221,7 @@ struct SampleParameters {
   int points = 101, rows = 21;                  // along from-to; along from-up
 };
 
-/// The effective flow area between two patches.
+/// Effective flow area between two patches.
 struct FlowAreaParameters {
   std::string from, to;
 };
@@ -240,7 +240,7 @@ struct ProbeParameters {
   Vec3 point = Vec3::Zero();  // [m]
 };
 
-/// A fluid by its numbers.
+/// Properties of a fluid.
 struct Properties {
   double rho = 0;    ///< density [kg/m^3]
   double mu = 0;     ///< dynamic viscosity [Pa s]
@@ -256,29 +256,29 @@ struct FluidParameters {
   double density = 0;    // [kg/m^3]
   double viscosity = 0;  // dynamic [Pa s]
   std::map<std::string, BoundaryParameters> boundaries;
-  std::optional<double> time_step;  // [s]; empty: by the stability limit
+  std::optional<double> time_step;  // [s]; absent: from the stability limit
   double safety_factor = 0.8;
   ViscousTreatment viscous = ViscousTreatment::automatic;
-  /// Largest implicit sub-step over the explicit limit; empty without such a bound.
+  /// Largest ratio of implicit to explicit sub-step; absent if unlimited.
   std::optional<double> implicit_stretch;
   double pressure_tolerance = 1e-6;
   std::vector<config::ExpressionText> initial_velocity;    // [m/s]; empty: at rest
   std::optional<config::ExpressionText> initial_pressure;  // [Pa]
-  std::vector<config::ExpressionText> body_force;          // [m/s^2]; empty: none
+  std::vector<config::ExpressionText> body_force;          // [m/s^2]; empty if there is none
   std::optional<TurbulenceParameters> turbulence;
   std::optional<StatisticsParameters> statistics;
   FluidOutputParameters output;
   std::map<std::string, BodyParameters> bodies;
   std::map<std::string, GapParameters> gaps;
-  std::optional<fv::MotionParameters> motion;        // of the mesh; absent: none
-  std::optional<RotationParameters> rotating_frame;  // that mesh and velocities are seen from; absent: none
+  std::optional<fv::MotionParameters> motion;        // of the mesh; absent if it is at rest
+  std::optional<RotationParameters> rotating_frame;  // frame of mesh and velocities; absent if it is inertial
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
   FaceValues face_values = FaceValues::second_order;
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
-  std::optional<CompressibilityParameters> compressibility;  // absent: none, judged by the density
+  std::optional<CompressibilityParameters> compressibility;  // absent: neglected, checked by the density
   std::map<std::string, ProbeParameters> probes;
-  /// [m/s]; 0: the fluid is computed as incompressible.
+  /// Speed of sound [m/s]; 0 if the fluid is computed as incompressible.
   double sound_speed() const { return solved_sound(compressibility, density, viscosity); }
   bool is_compressible() const { return compressibility && compressibility->is_solved(); }
   double kinematic_viscosity() const { return viscosity / density; }  ///< [m^2/s]
@@ -289,7 +289,7 @@ struct FluidParameters {
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
 
 void declare(config::Section& section, FluidParameters& parameters);
-/// The section `output`.
+/// Declares the section `output`.
 void declare_output(config::Section& section, FluidOutputParameters& parameters);
 
 }  // namespace couplet::fluid

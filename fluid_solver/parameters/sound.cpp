@@ -35,7 +35,7 @@ struct Liquid {
 constexpr std::array liquids{Liquid{"water", 1482, 998},   Liquid{"sea-water", 1522, 1025},
                              Liquid{"ethanol", 1160, 789}, Liquid{"glycerol", 1920, 1261},
                              Liquid{"oil", 1430, 870},     Liquid{"mercury", 1450, 13546}};
-// Tolerated factors of a liquid's density, for salt, sugar and temperature; pressure of a gas up to which it is nearly ideal [Pa].
+// Tolerances of a liquid's density (salt, sugar, temperature); largest pressure of a nearly ideal gas [Pa].
 constexpr double least_share = 0.8, largest_share = 1.25, highest_pressure = 2e7;
 
 /// Marczak (1997), 0 to 95 degC.
@@ -60,7 +60,7 @@ Sound of_substance(const CompressibilityParameters& p) {
   return {liquid->speed_of_sound, p.substance};
 }
 
-/// At 1 atm c^2 = gamma p / rho needs no name: gamma is that of the gas whose density at 20 degC is the nearest.
+/// At 1 atm, c^2 = gamma p/rho requires no name: gamma is that of the gas nearest in density at 20 degC.
 Sound of_gas(double density, double pressure, std::optional<double> gamma) {
   const auto apart = [&](const Gas& gas) {
     return std::abs(std::log(density * gas_constant * room / (pressure * gas.molar_mass)));
@@ -82,7 +82,7 @@ std::vector<std::string> substances() {
 
 namespace {
 
-/// One of speed, substance and pressure.
+/// Requires exactly one of speed, substance and pressure.
 void check_source_of_sound(config::Section& s, const CompressibilityParameters& p) {
   s.check(
       [&p]() -> std::string {
@@ -180,7 +180,7 @@ std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& gi
   if (p.speed_of_sound) return Sound{*p.speed_of_sound, "the fluid"};
   if (!p.substance.empty()) return of_substance(p);
   if (p.pressure) return of_gas(density, *p.pressure, p.heat_capacity_ratio);
-  // Gases of any temperature have 5e-6 to 1e-4 Pa s; a fluid as light and more viscous is a model.
+  // Gases have 5e-6 to 1e-4 Pa s at any temperature; an equally light and more viscous fluid is a model.
   if (density > 0.02 && density < 50 && viscosity > 5e-6 && viscosity < 1e-4)
     return of_gas(density, atmosphere, p.heat_capacity_ratio);
   if (density > 900 && density < 1100) return Sound{1482, "water"};

@@ -10,14 +10,14 @@
 namespace couplet::fluid {
 namespace {
 
-// Default time of the means, in travel times of sound across the mesh.
+// Default averaging time, in travel times of sound across the mesh.
 constexpr double mean_times = 10;
 
-/// Boundaries that let pressure waves out: with v the speed outward at a face beyond what is given there, at t^{n+1/2}
+/// Boundaries that let pressure waves out. With v the outward speed relative to the given one at t^{n+1/2},
 ///   outlet: p_b = p_given + rho c (v - mean v),  v = phi/S
 ///   inlet:  rho c v = p_b - mean p_b,            v = (w - given).n
-/// the means over the patch and over some time, so that what is given holds in the end. Implicit: v at t^{n+1/2} is
-/// middle_weights() of v at t^{n+1} and before, which scales the conductance of the face by 1/(1 + a c dt g/S).
+/// Means over the patch and a relaxation time preserve the given values. Implicit: v at t^{n+1/2} is
+/// middle_weights() of v at t^{n+1} and before, which scales the face's conductance by 1/(1 + a c dt g/S).
 template <int D>
 class AbsorbingBoundaries final : public Term<D> {
  public:
@@ -27,7 +27,7 @@ class AbsorbingBoundaries final : public Term<D> {
     mean_time_ = scene.parameters.compressibility->mean_time.value_or(mean_times * size / scene.fluid.sound);
   }
 
-  /// The means move by their filter as if the last half step went on.
+  /// The means follow their filter as if the last half step continued.
   void prepare(const State<D>& from) override {
     before_ = &from.openings;
     weight_ = middle_weights(step_.dt, step_.by.dt_old);
@@ -72,7 +72,7 @@ class AbsorbingBoundaries final : public Term<D> {
       }
     }
   }
-  /// Subtracts at faces of given pressure what their answer takes away.
+  /// Subtracts the response of faces with given pressure.
   void before(Projected<D>& out, RightSide& side) override {
     for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches()) {
       if (inlet) continue;

@@ -12,12 +12,12 @@ namespace couplet::fluid {
 
 namespace {
 
-/// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to faces that may
-/// move, for changes of density that are small and Mach numbers below about 0.3. At t^{n+1} with p = p^{n+1/2}
+/// Weak compressibility in the pressure equation: dp/dt + rho c^2 div u = 0 in every cell, u relative to
+/// moving faces, for Mach numbers below 0.3. At t^{n+1} with p = p^{n+1/2} and the three-level WaveRule
 ///   rho c^2 div u^{n+1} = -(rate p + past),
-/// by the three levels of WaveRule, or by the trapezoidal rule 2 (p - p^n)/dt = -rho c^2 (div u^{n+1} + div u^n)/2 with
-/// p^{n+1} = 2 p - p^n, which keeps the energy of what a step does not resolve, too. In the pressure equation
-/// V rate/(c^2 dt) joins the diagonal and -V past/(c^2 dt) the right side.
+/// or by the trapezoidal rule 2 (p - p^n)/dt = -rho c^2 (div u^{n+1} + div u^n)/2 with p^{n+1} = 2 p - p^n,
+/// which conserves the energy of unresolved waves. Adds V rate/(c^2 dt) to the diagonal and -V past/(c^2 dt)
+/// to the right side.
 template <int D>
 class Compression final : public Term<D> {
  public:
@@ -40,7 +40,7 @@ class Compression final : public Term<D> {
   void add_to_diagonal(Diagonal& diagonal) override {
     if (sets_level()) diagonal.cells = storage_;
   }
-  /// The size of b less what of it holds p as it was is what the step changes.
+  /// The scale is b without the part that keeps the old p, because the rest is the change by the step.
   void before(Projected<D>&, RightSide& side) override {
     if (!sets_level()) return;
     std::vector<double>& b = side.b;
@@ -88,7 +88,7 @@ class Compression final : public Term<D> {
       for (Index c = 0; c < owned; ++c) past_[c] += rule.past[k] * p[c];
     }
   }
-  /// p at the begin of the step, for the trapezoidal rule.
+  /// p at the start of the step, for the trapezoidal rule.
   const std::vector<double>& begin() const {
     const PressureLevel<D>& level = *step_.by.pressure[0];
     return level.end.empty() ? level.p : level.end;
@@ -99,15 +99,15 @@ class Compression final : public Term<D> {
   std::vector<double> past_, storage_;  // per owned cell [Pa/s], [m]; nothing is stored in closed cells
 };
 
-// Tolerance of y. Its error is missing in the volume's balance.
+// Tolerance of y, whose error appears in the volume's balance.
 constexpr double response_tolerance = 1e-10;
-// Share of the faces' conductance. Cells that follow the volume's pressure up to this share do not determine it.
+// Limit over the faces' conductance. Cells that follow the volume's pressure this closely are ignored.
 constexpr double least_answer = 1e-9;
 
-/// A volume V_0 at rest behind the inlets, at one pressure: dp/dt = rho c^2 (q - q_out)/V_0, q what the inlets' velocity
-/// prescribes, q_out what enters the mesh. Its pressure is that of their faces. By the same rule in time as the cells, in
-/// one step with them: the answer y of the cells to its pressure, A y = G with the conductance G of its faces, gives the
-/// flux before p is solved for, since A p = b + G p_0 makes G.p = y.(b + G p_0) for the symmetric matrix A.
+/// Volume V_0 at rest behind the inlets at one pressure: dp/dt = rho c^2 (q - q_out)/V_0 with prescribed
+/// inflow q and flow q_out into the mesh. Its pressure is that of the inlet faces. It is solved together with
+/// the cells by the same time rule: with A y = G for the conductance G of its faces, A p = b + G p_0 gives
+/// G.p = y.(b + G p_0) before p is known, because A is symmetric.
 template <int D>
 class UpstreamVolume final : public Term<D> {
  public:
@@ -154,12 +154,12 @@ class UpstreamVolume final : public Term<D> {
     faces_ = sums[0];
     answer_ = sums[1];
   }
-  /// No pressure at its faces as long as it is not known.
+  /// The pressure at its faces is zero until it is known.
   void foresee(const State<D>&, Projected<D>& out) override {
     for (const auto& [first, count] : scene_.boundary.upstream_patches())
       std::fill_n(out.boundary.begin() + first, count, 0.0);
   }
-  /// Its pressure, onto its faces and into b, which lacks them.
+  /// Sets its pressure at the faces and in b.
   void before(Projected<D>& out, RightSide& side) override {
     const Placement<D>& at = *step_.to;
     const double factor = step_.dt / scene_.fluid.rho;
@@ -183,7 +183,7 @@ class UpstreamVolume final : public Term<D> {
         side.b[mesh_.owner[f]] += at.conductance[f] * pressure_;
         square += std::pow(at.conductance[f] * change, 2);
       }
-    // In a fluid at rest there may be nothing but the volume's pressure.
+    // In a fluid at rest, the volume's pressure may be the only one.
     const double size = std::sqrt(parallel::sum(mesh_.comm, square));
     if (side.size >= 0) side.size = std::hypot(side.size, size);
   }
@@ -191,7 +191,7 @@ class UpstreamVolume final : public Term<D> {
     level.upstream = pressure_;
     if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
   }
-  /// At the pressure of its faces.
+  /// Uses the pressure of its faces.
   void start(const Placement<D>& at, PressureLevel<D>& level) const override {
     double sums[2] = {};
     for (const auto& [first, count] : scene_.boundary.upstream_patches())
@@ -203,7 +203,7 @@ class UpstreamVolume final : public Term<D> {
     level.upstream = sums[0] / sums[1];
   }
   using Term<D>::start;
-  /// y is where the next one is looked for: of the accepted level.
+  /// y is the guess for the next one, so that of the accepted level is stored.
   void accept() override { accepted_ = response_; }
   void save(io::CheckpointWriter& file) const override {
     file.write(mesh::Entries::cells, "upstream-response", accepted_);

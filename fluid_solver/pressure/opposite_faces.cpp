@@ -15,19 +15,19 @@ namespace {
 
 constexpr double thin = 0.25;    // thickness over the extent of the walls
 constexpr double facing = 0.7;   // least -n.n' of the normals
-constexpr double beside = 1.1;   // of a face's radius: so far from its centre it is still met
+constexpr double beside = 1.1;   // of a face's radius: largest distance from its center to meet it
 constexpr std::size_t look = 8;  // faces at a place of the way across
 constexpr int along = 8;         // parts of an edge
 constexpr int rounds = 50;       // of the scaling
 
 struct Face {
   Vec3 centre, normal;  // out of the fluid
-  double radius;        // of its corners about the centre [m]
+  double radius;        // of its corners about the center [m]
   Index entry;
   int rank;
 };
 
-/// Places that stand for equal parts of a face.
+/// Sample points that represent equal parts of a face.
 std::vector<Vec3> samples_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   const std::span<const Index> corners = mesh.face_points[f];
   const Vec3& centre = geometry.face_centre[f];
@@ -57,8 +57,8 @@ class Walls {
     if (!all.empty()) reach_ = thin * (high - low).norm();
   }
 
-  /// The face that the normal of `from` meets across the body from a place of it; nullptr if there is none. Goes on as far as no face
-  /// can be met, so that walls with one wet side cost little.
+  /// Face met by the normal of `from` across the body from a place; nullptr if there is none. Stops where no
+  /// face can be met, so that walls with one wet side cost little.
   const Face* across(const Face& from, const Vec3& place) const {
     for (double way = 0; way <= reach_;) {
       const Vec3 at = place + way * from.normal;
@@ -90,7 +90,7 @@ class Walls {
   double widest_ = 0, reach_ = 0;  // largest radius; largest thickness [m]
 };
 
-/// Area that a face has in common with one of another rank.
+/// Common area of a face with one of another rank.
 struct Told {
   Index to, from;
   double area;
@@ -109,7 +109,7 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
       radius = std::max(radius, (geometry.points[v] - geometry.face_centre[f]).norm());
     mine.push_back({geometry.face_centre[f], geometry.face_area[f].normalized(), radius, b, rank});
   }
-  // All of them are here while the opposite ones are looked for, and no longer.
+  // All faces are stored on each rank only during the search.
   const std::vector<Face> all = parallel::all_gather(mesh.comm, mine);
   const Walls walls(all);
 
@@ -129,7 +129,7 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
       sums[1] += part;
       covered[std::size_t(face.entry)] += part;
       sums[2] += part * (other.centre - place).dot(face.normal);
-      // Half of what each of the two says: their common area is one number.
+      // Half of both values, because the common area is one number.
       common[{face.entry, other.rank, other.entry}] += part / 2;
       tell[std::size_t(other.rank)].push_back({other.entry, face.entry, part / 2});
     }
@@ -159,8 +159,8 @@ OppositeFaces::OppositeFaces(const mesh::Mesh& mesh, const mesh::Geometry& geome
   balance(covered);
 }
 
-/// Samples do not say quite what each face has in common with others: symmetric scaling until the parts of each add up to
-/// what is covered of it, so that a body that moves as a whole pushes the same volume on both sides.
+/// Corrects the sampled common areas by symmetric scaling until the parts of each face sum to its covered
+/// area. A body that moves as a whole then displaces the same volume on both sides.
 void OppositeFaces::balance(const std::vector<double>& covered) {
   std::vector<double> factor(std::size_t(map_.n_local()));
   for (int i = 0; i < rounds; ++i) {

@@ -11,7 +11,7 @@
 
 namespace couplet::fluid {
 
-// Up to here kept Cholesky factors beat multigrid in 2-D: thin cells cost them no iterations.
+// Up to this size, stored Cholesky factors are faster than multigrid in 2-D, also with thin cells.
 constexpr GlobalIndex largest_direct = 120000;
 
 namespace {
@@ -86,7 +86,7 @@ void PressureEquation<D>::save(io::CheckpointWriter& file) const {
 template <int D>
 void PressureEquation<D>::load(io::CheckpointReader& file) {
   if (fixed_) return;
-  // Other ranks have another kind of preconditioner, or another one of the same kind: it is made anew.
+  // A different number of ranks requires another preconditioner, so it is rebuilt.
   linalg::PreconditionerMemory memory;
   std::vector<double> saved;
   if (file.on_same_ranks()) {
@@ -125,14 +125,14 @@ void PressureEquation<D>::set(const Placement<D>& at, bool regular, const Diagon
   if (fixed_) std::vector<double>().swap(values_), solver_->solver().refresh();
 }
 
-// A closed domain has a pressure up to a constant only if the fluxes add up to nothing.
+// The pressure of a closed domain is solvable up to a constant only if the fluxes sum to zero.
 template <int D>
 void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
   const double sum = parallel::sum(mesh_.comm, as_vector(std::span<const double>(b)).sum());
   as_vector(std::span(b)).array() -= sum / static_cast<double>(mesh_.cells.n_global());
 }
 
-/// A tolerance that is not finite would let anything pass: fluxes whose squares overflow make one.
+/// Rejects a tolerance that is not finite, from fluxes whose squares overflow.
 template <int D>
 linalg::SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
                                                            std::span<double> p, double relative,
@@ -156,9 +156,9 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
   const Index owned = mesh_.cells.n_owned();
   if (singular()) {
     remove_mean(b);
-    // Twice the first diagonal entry makes the matrix regular for factors and p = 0 there, the same solution but for a
-    // constant. Conjugate gradients take the singular matrix as it is, for b sums up to nothing: regular, its least
-    // eigenvalue would be far below all others, which multigrid in single precision answers badly (cavity 32^3 on two ranks: 214 iterations in 30 steps for 151).
+    // Doubling the first diagonal entry makes the matrix regular for direct solvers and p = 0 there, the same
+    // solution up to a constant. CG uses the singular matrix, because b sums to zero. The tiny lowest
+    // eigenvalue of a regularized one slows float multigrid (cavity 32^3: 214 instead of 151 iterations).
     double pin = owned > 0 ? p[0] : 0;
     MPI_Bcast(&pin, 1, MPI_DOUBLE, 0, mesh_.comm);
     as_vector(std::span(p).first(owned)).array() -= pin;

@@ -12,7 +12,7 @@
 
 namespace couplet::fluid {
 
-/// Entries that the matrix has beside those of the mesh: in the row of an owned cell. Symmetric as a whole.
+/// Entries in rows of owned cells in addition to those of the mesh. Symmetric as a whole.
 struct Couplings {
   std::vector<Index> row;
   std::vector<GlobalIndex> column;
@@ -25,35 +25,35 @@ struct Diagonal {
   std::vector<double> cells;  ///< per owned cell [m]
 };
 
-/// A = -sum_f g (p_N - p_P), and g p_P at faces of given pressure: symmetric, positive (semi-)definite. Faces
-/// of given flux have no entry. The places of the entries are fixed; a moved mesh only refills the values.
+/// A = -sum_f g (p_N - p_P), plus g p_P at faces of given pressure: symmetric, positive (semi-)definite.
+/// Faces of given flux have no entry. The sparsity is fixed; a moved mesh only changes the values.
 template <int D>
 class PressureEquation {
  public:
-  /// `fixed`: the mesh rests; nothing is kept for a second set(). `couplings`: their places stay, set() takes their
-  /// values; nullptr if there are none. They must outlive the equation.
+  /// `fixed`: the mesh is at rest, so nothing is kept for a second set(). `couplings`: set() reads their
+  /// values at fixed positions; nullptr if there are none. They must outlive the equation.
   PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
                    const Couplings* couplings = nullptr);
-  /// `regular`: what is added gives a closed domain a level. Collective.
+  /// `regular`: the additions determine the level in a closed domain. Collective.
   void set(const Placement<D>& at, bool regular = false, const Diagonal& added = {});
-  /// The pressure is known up to a constant only.
+  /// True if the pressure is determined only up to a constant.
   bool singular() const { return boundary_.closed() && !regular_; }
-  /// The preconditioner lags behind a matrix that moves: what it was made from, to make it again. A fixed matrix needs
-  /// none of this.
+  /// Saves the matrix from which the preconditioner was made, so that it can be rebuilt. A fixed matrix needs
+  /// no saving.
   void save(io::CheckpointWriter& file) const;
   /// Makes the present state the one that save() saves.
   void accept() { accepted_ = now_; }
-  /// The matrix is then that of the preconditioner: set() has to come before the next solve. Collective.
+  /// Restores the matrix of the preconditioner: call set() before the next solve. Collective.
   void load(io::CheckpointReader& file);
-  /// A new preconditioner at the next solve.
+  /// Rebuilds the preconditioner at the next solve.
   void refresh() {
     if (solver_) solver_->solver().refresh();
   }
-  /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
-  /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on
-  /// exit. Stops at max(relative |b|, absolute). With `answer`, the residual of the guess falls to this share, too, down to
-  /// least_answer relative |b|: a partner that changes b sees p change by what it has changed. `size`: in the
-  /// place of |b|, below 0: |b| itself. Collective.
+  /// `b`: per owned cell, made compatible here in a closed domain. `p`: per local cell, guess on entry; on
+  /// exit with current ghosts, and zero mean in a closed domain (at its convective outlets, if any). Stops at
+  /// max(relative |b|, absolute). `answer` also reduces the residual of the guess to this share, down to
+  /// least_answer relative |b|, so that a partner that changes b sees the response of p. `size`: replaces |b|
+  /// unless negative. Collective.
   linalg::SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
                                 double relative, double absolute, double answer = 0, double size = -1);
   static constexpr double least_answer = 1e-4;
@@ -68,12 +68,12 @@ class PressureEquation {
   const Boundary<D>& boundary_;
   const Couplings* couplings_;  // nullptr if there are none
   bool fixed_, regular_ = false;
-  bool pinned_ = true;  // where the pressure is known up to a constant, one cell's is zero
-  bool direct_;         // small 2-D meshes: kept Cholesky factors
+  bool pinned_ = true;  // one cell's pressure is zero if it is determined up to a constant
+  bool direct_;         // small 2-D meshes: Cholesky factors are kept
   std::unique_ptr<linalg::CellSolver> solver_;
   void fill(std::span<const double> coefficients);
-  // Moving mesh only: the matrix's diagonal per owned cell, one entry a face, then the couplings; and the preconditioner with those
-  // that it was made from: now, and as the accepted level had it.
+  // Moving mesh only. Matrix entries: diagonal per owned cell, one entry per face, then the couplings. The
+  // preconditioner is stored with the entries it was made from, now and at the accepted level.
   std::vector<double> values_;
   struct Lagging {
     linalg::PreconditionerMemory memory;

@@ -13,23 +13,22 @@
 namespace couplet::fluid {
 namespace {
 
-// Absolute goal of the pressure equation relative to the size of the fluxes: below it there is only
-// round-off, on which a relative tolerance would spin (uniform flow, fluid at rest).
+// Absolute tolerance of the pressure equation relative to the fluxes. Below it there is only round-off, on
+// which a relative tolerance would stall (uniform flow, fluid at rest).
 constexpr double flux_floor = 3e-15;
-// Up to here two passes of the pressure equation hold after an implicit predictor (measured: 40 hold, 50
-// grow).
+// Largest non-orthogonality [degree] at which two passes are stable after an implicit predictor (40 is, 50 is
+// not).
 constexpr double largest_degrees = 40;
 
 constexpr int oblique_passes = 2, most_oblique_passes = 200;
 constexpr double standing = 1e-3;  // change of the pressure gradient in a pass
 constexpr linalg::Acceleration gradient_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
-// The first pass only gives the second one the gradient of its non-orthogonal part: what that share of the
-// operator leaves of a looser tolerance.
+// The first pass only provides the gradient of the non-orthogonal part for the second one, which reduces its
+// error by that part's share of the operator.
 constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
-// A closed domain: share of the boundary fluxes that a moving wall may leave over as an error of
-// discretisation, and the speed below which there is no flow [m/s].
-// Walls that only move along themselves leave over a share of their speeds, which is the error of these.
+// Closed domain: share of the boundary fluxes that a moving wall may leave as a discretization error, and the
+// speed of a fluid at rest [m/s]. Walls that move tangentially leave a share of their speeds as the error.
 constexpr double largest_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
 
 template <int D>
@@ -105,10 +104,10 @@ void PressureProjection<D>::set_obliqueness(const Placement<D>& at) {
   degrees_ = std::atan(parallel::max(mesh_.comm, at.obliqueness)) * 180 / std::numbers::pi;
 }
 
-/// p~ at t^{n+1/2}, the guess of the pressure equation, through the levels at hand (three only where the
-/// solver's noise is small), and the gradient to start the non-orthogonal part with, linear in time through
-/// the last two. With q < 1 its share of the operator, two passes make that z^2 = q^2 (2 z - 1), |z| = q: no
-/// step amplifies it. A parabola would need q < 0.7, a single pass q < 1/3.
+/// p~ at t^{n+1/2}, the guess of the pressure equation, extrapolated from the available levels (three only if
+/// solver noise is small), and the first non-orthogonal gradient, extrapolated linearly from two. With its
+/// share q < 1 of the operator, two passes give z^2 = q^2 (2 z - 1), |z| = q, so nothing is amplified. A
+/// parabola would require q < 0.7, a single pass q < 1/3.
 template <int D>
 void PressureProjection<D>::extrapolate_pressure() {
   const std::size_t order = scene_.parameters.pressure_tolerance >= 1e-3 ? 2 : 3;
@@ -156,11 +155,10 @@ void PressureProjection<D>::add_oblique_pressure(const std::vector<double>& phi)
   }
 }
 
-/// On an oblique mesh in passes: the gradient in the non-orthogonal part is that of the steps before in the
-/// first, then that of the pass before. Two are enough where no old pressure is in the predictor (|z| = q,
-/// see extrapolate_pressure()) or q is small; an implicit predictor gives the old one back unsmoothed, and
-/// what two passes leave of it grows from about 45 degrees on: there the passes go on until the gradient
-/// stands.
+/// Non-orthogonal meshes use passes: the first with the extrapolated gradient, later ones with that of the
+/// previous pass. Two suffice without an old pressure in the predictor (|z| = q, see extrapolate_pressure()),
+/// or for small q. An implicit predictor returns the old pressure without smoothing, and above about 45
+/// degrees the rest of two passes grows; then passes continue until the gradient converges.
 template <int D>
 void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, const std::vector<double>& phi,
                                     double answer) {
@@ -192,8 +190,9 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, c
   }
 }
 
-/// The gradient that the next pass starts from, by Anderson's acceleration: the mode of a few cells that falls by 0.97 a pass where
-/// a face is 87 degrees oblique costs a dozen passes in place of two hundred. Whether the gradient stands. Collective.
+/// Gradient for the next pass, by Anderson acceleration. A mode of a few cells that decreases by 0.97 per
+/// pass at a face of 87 degrees then takes a dozen passes instead of two hundred. Returns true if the
+/// gradient has converged. Collective.
 template <int D>
 bool PressureProjection<D>::mix_gradients(int pass) {
   const std::size_t owned = static_cast<std::size_t>(mesh_.cells.n_owned()) * D;
@@ -225,9 +224,9 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
   if (equation_.singular()) balance_closed_domain();
 }
 
-// An incompressible fluid without an outlet needs boundary fluxes that add up to nothing. What a moving wall
-// leaves over (discretisation error) is spread over the interface, or over all moving faces, by their area;
-// at a convective outlet what flows in elsewhere has to leave.
+// An incompressible fluid without an outlet requires boundary fluxes that sum to zero. The discretization
+// error of moving walls is distributed by area over the interface, or over all moving faces; a convective
+// outlet takes the net inflow.
 template <int D>
 void PressureProjection<D>::balance_closed_domain() {
   enum { total, size, adjustable_area, other_area, speeds };
@@ -242,13 +241,13 @@ void PressureProjection<D>::balance_closed_domain() {
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   const bool adjustable = sums[adjustable_area] > 0;
-  // Walls that turn let nothing through but round-off of their speeds.
+  // The flux through rotating walls is only round-off of their speeds.
   if (!adjustable && std::abs(sums[total]) > std::max(1e-6 * sums[size], 1e-12 * sums[speeds]))
     throw Error(
         "The fluid domain is closed, but the prescribed velocities give a net outflow of {:.6g} m^3/s. Add "
         "an outlet or correct the velocities.",
         sums[total]);
-  // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over.
+  // With a level that keeps the volume, or responding walls, only guesses of the wall motion leave so much.
   if (adjustable && !scene_.boundary.has_convective_outlet() &&
       scene_.parameters.volume_level == VolumeLevelBy::nobody && !scene_.boundary.yields() &&
       std::abs(sums[total]) > largest_leftover * sums[size] &&
@@ -303,8 +302,8 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   set_boundary_pressure(from);
 }
 
-/// Wall: grad p . S = -(rho/dt) (w^{n+1} - w^n).S, the added-mass pressure, exact for a rigidly moving box;
-/// p_b = p_P + (grad p . S - grad p~ . k)/g.
+/// Wall: grad p . S = -(rho/dt)(w^{n+1} - w^n).S, the added-mass pressure, exact for a rigidly moving box.
+/// Then p_b = p_P + (grad p . S - grad p~ . k)/g.
 template <int D>
 void PressureProjection<D>::set_boundary_pressure(const State<D>& from) {
   const Placement<D>& now = *step_.to;
@@ -318,8 +317,8 @@ void PressureProjection<D>::set_boundary_pressure(const State<D>& from) {
   }
 }
 
-/// sum p_f S per local cell, p_f linear between the cells; on skewed meshes carried on to the face's centre
-/// by the gradient of that: exact for linear p.
+/// sum p_f S per local cell, p_f linear between the cells; on skewed meshes corrected to the face center by
+/// the gradient, exact for linear p.
 template <int D>
 void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                                               const std::vector<double>& boundary,

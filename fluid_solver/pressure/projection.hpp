@@ -10,38 +10,38 @@
 
 namespace couplet::fluid {
 
-/// The second stage of a step: sum g (p_N - p_P) = (rho/dt) sum phi^p, p = p^{n+1/2}, in passes on oblique meshes. What features add
-/// to it is a list of terms, which is empty for an incompressible fluid between walls that move as they are told.
+/// Second stage of a step: sum g (p_N - p_P) = (rho/dt) sum phi^p, p = p^{n+1/2}, in passes on non-orthogonal
+/// meshes. Features extend it by a list of terms, which is empty for an incompressible fluid and given walls.
 template <int D>
 class PressureProjection {
  public:
-  /// `moving`: the mesh will move. `result`: filled here. Collective.
+  /// `moving`: the mesh will move. `result`: filled by project(). Collective.
   PressureProjection(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
                      Projected<D>& result, bool moving);
 
-  /// The guess p~ of the solve, the gradient that its non-orthogonal part starts with, the terms and the matrix. Collective.
+  /// Prepares the guess p~, the initial non-orthogonal gradient, the terms and the matrix. Collective.
   void prepare(const State<D>& from);
-  /// p and p_b for the given velocities w at t^{n+1} from the predicted fluxes, without and then with -(dt/rho) grad p~ . k.
-  /// `answer`: PressureEquation::solve(). Collective.
+  /// Computes p and p_b for given velocities w at t^{n+1} from predicted fluxes, without and then with
+  /// -(dt/rho) grad p~ . k. `answer`: see PressureEquation::solve(). Collective.
   void project(const State<D>& from, const Vectors<D>& w, const std::vector<double>& phi, double answer);
 
-  /// The matrix of a state that no step made. Collective.
+  /// Sets up the matrix for a state that no step computed. Collective.
   void start(const Placement<D>& at);
-  /// psi in p for the boundary fluxes of w: the potential that makes phi^p free of divergence. Collective.
+  /// Sets p to the potential psi that makes phi^p divergence-free for the boundary fluxes of w. Collective.
   void solve_initial(const Placement<D>& at);
-  /// phi^p at the boundary from w. Collective.
+  /// Sets phi^p at the boundary from w. Collective.
   void set_boundary_flux(const Vectors<D>& w);
-  /// The result of the last project() as a level of history; `correction`: made of fluxes by the way. Collective.
+  /// Returns the last project() as a level of history; `correction`: fluxes computed alongside. Collective.
   std::shared_ptr<PressureLevel<D>> pressure_level(const FluxCorrection* correction = nullptr) const;
-  /// Fills what follows from p and boundary in a level that no step made. Collective.
+  /// Fills the data that follow from p and boundary in a level that no step computed. Collective.
   void start(const Placement<D>& at, PressureLevel<D>& level) const;
 
-  /// The entries of the matrix have changed: it is made anew when it is needed next.
+  /// Discards the matrix after a change of its entries; it is rebuilt when next needed.
   void forget_matrix() { assembled_ = nullptr; }
   PressureEquation<D>& equation() { return equation_; }
   const std::vector<std::unique_ptr<Term<D>>>& terms() const { return terms_; }
   int iterations() const { return iterations_; }
-  /// State of the solvers beside the level they start from, as of the last accept(). load() is collective.
+  /// State of the solvers in addition to the level, as of the last accept(). load() is collective.
   void accept();
   void save(io::CheckpointWriter& file) const;
   void load(io::CheckpointReader& file);
@@ -68,11 +68,11 @@ class PressureProjection {
   std::vector<std::unique_ptr<Term<D>>> terms_;
   PressureEquation<D> equation_;
   RightSide side_;
-  std::shared_ptr<const Placement<D>> assembled_;  // of the matrix
-  std::vector<double> versions_;                   // of the terms in it
-  int iterations_ = 0;                             // so far
-  // Oblique meshes only.
-  double degrees_ = 0;         // largest angle between a face's normal and the line of its cells
+  std::shared_ptr<const Placement<D>> assembled_;  // placement of the matrix
+  std::vector<double> versions_;                   // versions of the terms in the matrix
+  int iterations_ = 0;                             // total so far
+  // Non-orthogonal meshes only.
+  double degrees_ = 0;         // largest angle between a face normal and the line of its cells
   Vectors<D> gradient_start_;  // of p, for the first pass
   Vectors<D> gradient_before_;
   std::unique_ptr<linalg::Accelerator> accelerator_;

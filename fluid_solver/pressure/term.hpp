@@ -14,16 +14,16 @@
 
 namespace couplet::fluid {
 
-/// dp/dt at the end of a step from pressures in the middles of steps: rate p + sum past_k p_k, p that of the step itself,
-/// p_k those before. The derivative there of the parabola through three levels, with equal steps
-/// (2 p - 3 p_1 + p_2)/dt; of a line through two; 0 with one. L-stable for waves: with W = c k dt
-/// (2 z - 1)(z - 1)^2 + W^2 z^3 = 0 has |z| < 1.
+/// dp/dt at the end of a step from pressures at mid-steps: rate p + sum past_k p_k, with p of this step and
+/// p_k of earlier ones. It is the derivative of the parabola through three levels, (2 p - 3 p_1 + p_2)/dt for
+/// equal steps, of a line through two, and 0 with one. L-stable for waves: with W = c k dt, (2 z - 1)(z -
+/// 1)^2 + W^2 z^3 = 0 has |z| < 1.
 struct WaveRule {
-  double rate = 0;  ///< [1/s]; 0: no level before, the step is incompressible
+  double rate = 0;  ///< [1/s]; 0 if there is no earlier level, and the step is incompressible
   std::array<double, 2> past{};
 };
 
-/// `times`: of the levels before, latest first; two of them count.
+/// `times`: times of earlier levels, latest first; only two are used.
 inline WaveRule three_level_rule(double middle, double end, std::span<const double> times) {
   WaveRule rule;
   const double h = end - middle;
@@ -41,8 +41,8 @@ inline WaveRule three_level_rule(double middle, double end, std::span<const doub
   return rule;
 }
 
-/// Weights of v at t^{n+1}, t^n and t^{n-1} for a value at t^{n+1/2}: of second order, and what is stiff goes with -1/3 a
-/// step, as in the implicit viscous term. `old`: size of the step before, 0: none, and no order.
+/// Weights of v at t^{n+1}, t^n and t^{n-1} for a second-order value at t^{n+1/2}. Stiff components decay by
+/// -1/3 per step, as in the implicit viscous term. `old`: size of the previous step, or 0.
 inline std::array<double, 3> middle_weights(double dt, double old) {
   constexpr double c = 1.0 / 16;
   if (old <= 0) return {1, 0, 0};
@@ -50,7 +50,7 @@ inline std::array<double, 3> middle_weights(double dt, double old) {
   return {a, 1 - a - c, c};
 }
 
-/// The rule of a step; three levels at most.
+/// Rule of a step, with at most three levels.
 template <int D>
 WaveRule wave_rule(const Step<D>& step) {
   std::array<double, 2> times{};
@@ -71,11 +71,11 @@ double wave_rate(const Step<D>& step, bool trapezoidal) {
 /// Right-hand side of the pressure equation.
 struct RightSide {
   std::vector<double> b;  ///< per owned cell
-  double size = -1;       ///< by which the solution is judged, see PressureEquation::solve(); below 0: |b|
+  double size = -1;       ///< norm for the tolerance, see PressureEquation::solve(); negative: |b|
 };
 
-/// A feature in the pressure equation. Every function is called once per step or solve and loops over its faces or cells itself. The
-/// scene, the step and its prediction are those of the step under way.
+/// Feature in the pressure equation. Every function is called once per step or solve and itself loops over
+/// faces or cells. Scene, step and prediction are those of the current step.
 template <int D>
 class Term {
  public:
@@ -83,35 +83,35 @@ class Term {
       : scene_(scene), mesh_(scene.mesh), step_(step), prediction_(prediction) {}
   virtual ~Term() = default;
 
-  /// After the prediction from a level. Collective.
+  /// Called after the prediction from a level. Collective.
   virtual void prepare(const State<D>&) {}
 
-  /// In this step the term gives the pressure of a closed domain a level.
+  /// True if the term determines the pressure level of a closed domain in this step.
   virtual bool sets_level() const { return false; }
-  /// Changes where the entries of the matrix do, on a mesh that rests. 0 is that of a matrix without terms.
+  /// Changes whenever the matrix entries do, on a mesh at rest. 0 stands for a matrix without terms.
   virtual double version() const { return 0; }
   virtual void add_to_diagonal(Diagonal&) {}
-  /// Entries beside those of the mesh; nullptr if there are none. add_to_diagonal() sets their values.
+  /// Entries in addition to those of the mesh; nullptr if none. add_to_diagonal() sets the values.
   virtual const Couplings* couplings() const { return nullptr; }
-  /// A new matrix. Collective.
+  /// Called with a new matrix. Collective.
   virtual void respond(PressureEquation<D>&) {}
 
-  /// Sets pressures, velocities and fluxes of the boundary as far as they are known before p. Collective.
+  /// Sets pressures, velocities and fluxes of the boundary that are known before p. Collective.
   virtual void foresee(const State<D>&, Projected<D>&) {}
   /// Adds to the right-hand side. Collective.
   virtual void before(Projected<D>&, RightSide&) {}
   /// Sets pressures, velocities and fluxes of the boundary once p is known. Collective.
   virtual void after(Projected<D>&) {}
 
-  /// Adds to the level what the next step needs and p determines.
+  /// Adds data to the level that the next step needs and that depend on p.
   virtual void complete(PressureLevel<D>&) const {}
-  /// Level n+1 in the place of level n. Collective.
+  /// Advances the state of the term from level n to n+1. Collective.
   virtual void commit(const Projected<D>&, State<D>&) const {}
-  /// A pressure and a state that no step made. Collective.
+  /// Initializes a pressure and a state that no step computed. Collective.
   virtual void start(const Placement<D>&, PressureLevel<D>&) const {}
   virtual void start(State<D>&) const {}
 
-  /// State of the solvers beside the level, as of the last accept(). load() is collective.
+  /// State of the solvers in addition to the level, as of the last accept(). load() is collective.
   virtual void accept() {}
   virtual void save(io::CheckpointWriter&) const {}
   virtual void load(io::CheckpointReader&) {}
@@ -123,7 +123,7 @@ class Term {
   const Prediction<D>& prediction_;
 };
 
-// The terms, each in the file of its name.
+// Factories of the terms, each in the file of its name.
 
 template <int D>
 using MakeTerm = std::unique_ptr<Term<D>>(const Scene<D>&, const Step<D>&, const Prediction<D>&);

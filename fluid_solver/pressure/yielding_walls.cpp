@@ -11,10 +11,10 @@
 namespace couplet::fluid {
 namespace {
 
-// Share of the interface's area that must lie opposite itself for a line in the log.
+// Share of the interface's area that must be opposite itself for a log entry.
 constexpr double worth_telling = 0.05;
 
-/// Where the case states that two sides move together there are two. Collective.
+/// Checks that there are two sides where the case states that they move together. Collective.
 void check_sides(const mesh::Mesh& mesh, const FluidParameters& parameters, const OppositeFaces& opposite) {
   for (const mesh::Patch& patch : mesh.patches) {
     if (parameters.boundaries.at(patch.name).sides != Sides::together) continue;
@@ -30,14 +30,14 @@ void check_sides(const mesh::Mesh& mesh, const FluidParameters& parameters, cons
   }
 }
 
-/// The interface as a Robin condition: what the structure would answer to the pressure that the equation finds, w is
-/// moved off the velocity w^k that the structure gave for p_b^k. A side of its own, with its mass per area m, Z = m/dt:
+/// Interface as a Robin condition: w follows from the structure's expected response, relative to the velocity
+/// w^k that it gave for p_b^k. A single side with mass m per area and Z = m/dt has
 ///   Z (w - w^k) = p_b - p_b^k,   p_b = p_P + s - D (w - w^n),  D = rho S/(g dt),  normal to the wall
-/// so that its flux S w is that of w^k and S (p_P + q)/(Z + D), q = s - D (w^k - w^n) - p_b^k [badia2008]. Where the
-/// iteration stands p_b = p_b^k and w = w^k, whatever Z. Faces that lie opposite each other through a thin body, of the
-/// common area S', are driven by the difference of their pressures and have both masses:
+/// so its flux is that of w^k plus S (p_P + q)/(Z + D), q = s - D (w^k - w^n) - p_b^k [badia2008]. At
+/// convergence p_b = p_b^k and w = w^k for any Z. Opposite faces of a thin body with the common area S'
+/// respond to their pressure difference with both masses:
 ///   +- S' [(p_P + q) - (p_P + q)']/(Z + Z' + D + D')
-/// which couples the cells of the two sides in the matrix, symmetric and positive as before.
+/// This couples the cells of both sides in the matrix, which remains symmetric and positive.
 template <int D>
 class YieldingWalls final : public Term<D> {
  public:
@@ -133,14 +133,14 @@ class YieldingWalls final : public Term<D> {
         sides_[b].resistance = (m + scene_.fluid.rho * at.area[f].norm() / at.conductance[f]) / step_.dt;
     }
   }
-  /// Updates the copies of faces that lie opposite on other ranks.
+  /// Updates the copies of opposite faces on other ranks.
   void share() { opposite_.map().update_ghosts(std::as_writable_bytes(std::span(sides_)), sizeof(Side)); }
   /// S'/(Z + Z' + D + D') [m^4 s/kg].
   double answer_of(const OppositeFaces::Pair& pair) const {
     const Side &here = sides_[std::size_t(pair.face)], &there = sides_[std::size_t(pair.other)];
     return here.resistance > 0 && there.resistance > 0 ? pair.area / (here.resistance + there.resistance) : 0;
   }
-  /// The walls' velocities and fluxes move by what the pressures of their sides do to them.
+  /// Adds the response of walls to the pressures on their sides to velocities and fluxes.
   void add_answers(Projected<D>& out) {
     const Placement<D>& at = *step_.to;
     share();

@@ -15,12 +15,12 @@ namespace couplet::fluid {
 namespace {
 
 constexpr double parallel_cosine = 0.9999;  // of two faces
-// Obliqueness and skewness (in distances of the cells) up to which a face lies straight across its line.
+// Largest non-orthogonality and skewness (in cell distances) for a face to be straight across its line.
 constexpr double straight = 0.02;
 constexpr double along_axis = 1e-12;  // of the cosine
 constexpr double smooth = 2;          // ratio of the distances on the two sides of a cell
 
-/// A face as one of its cells sees it.
+/// A face from the point of view of one of its cells.
 struct Side {
   Index face, other;
   bool outward;  ///< S points out of the cell
@@ -33,7 +33,7 @@ bool is_straight(const Placement<D>& at, Index f) {
   return !at.skewed() || at.skew[f].norm() * at.conductance[f] <= straight * size;
 }
 
-/// The sides of each owned cell that has as many faces as a quadrilateral or a hexahedron.
+/// Sides of each owned cell with as many faces as a quadrilateral or hexahedron.
 template <int D>
 std::vector<std::vector<Side>> sides_of(const mesh::Mesh& mesh, const Placement<D>& at) {
   const Index owned = mesh.cells.n_owned();
@@ -75,7 +75,7 @@ Lines<D>::Lines(const mesh::Mesh& mesh, const Placement<D>& at) {
       for (std::size_t j = i + 1; j < sides[c].size(); ++j) {
         Side first = sides[c][i], second = sides[c][j];
         if (outward(at, first).dot(outward(at, second)) > -parallel_cosine) continue;
-        // S of `face` points from before to after: out of the cell through `second`, or into it through `first`.
+        // S of `face` points from before to after: outward at `second`, or inward at `first`.
         if (!second.outward && first.outward) std::swap(first, second);
         const double before = at.conductance[first.face], after = at.conductance[second.face];
         if (std::max(before, after) > smooth * std::min(before, after)) continue;
@@ -108,9 +108,9 @@ std::shared_ptr<const Placement<D>> Lines<D>::seen(const mesh::Mesh& mesh, const
 
 namespace {
 
-/// A flux e through `before`, `after`, and back through the cell in the middle, with the mean velocities of each two: no momentum
-/// and no energy comes of it. e = -U/6, U = (u - Du/6).S makes the fluxes of second order beside it those of fourth. Friction
-/// likewise: q = nu (g_1 x - g_2 y)/6 out of the middle, to each side by its conductance.
+/// Circulates a flux e through `before`, `after` and back through the middle cell, with the mean velocities
+/// of each two. It conserves momentum and energy. e = -U/6 with U = (u - Du/6).S raises the fluxes to fourth
+/// order. Friction likewise: q = nu (g_1 x - g_2 y)/6 out of the middle, to each side by its conductance.
 template <int D>
 COUPLET_PROCESSOR_CLONES void circulate(std::span<const Link> links, const Vec<D>* area, double nu,
                                         const Vec<D>* u, Vec<D>* rate) {
@@ -135,7 +135,7 @@ COUPLET_PROCESSOR_CLONES void circulate(std::span<const Link> links, const Vec<D
   }
 }
 
-/// to -= n (n.Du)/(6 V) of each link; V null: 1.
+/// to -= n (n.Du)/(6 V) for each link; V = 1 if nullptr.
 template <bool Weighted, int D>
 [[gnu::always_inline]] inline void subtract_differences(std::span<const Link> links, const Vec<D>* area,
                                                         const double* volume, const Vec<D>* u, Vec<D>* to) {

@@ -17,7 +17,7 @@ namespace {
 constexpr double least_cosine = 0.05;
 // Skewness, in distances of the cells, below which it is round-off.
 constexpr double least_skewness = 1e-6;
-// A cell whose gradient cannot be cured: too few of its faces say something.
+// A cell whose gradient cannot be corrected has too few informative faces.
 constexpr double least_determinant = 0.1;
 
 template <int D>
@@ -33,8 +33,8 @@ void set_face(Placement<D>& p, Index f, const Vec<D>& d) {
   if (oblique > p.obliqueness * p.obliqueness * square) p.obliqueness = std::sqrt(oblique / square);
 }
 
-/// B of each cell. The Gauss gradient takes its values where the weights lead to on the line between the
-/// cells: (1 - w) d from the owner, -w d from the neighbour.
+/// B of each cell. The Gauss gradient uses values at the interpolation points on the line between the cells:
+/// (1 - w) d from the owner, -w d from the neighbor.
 template <int D>
 void cure_gradients(const mesh::Mesh& mesh, Placement<D>& p) {
   p.gradient_cure.assign(mesh.cells.n_local(), Tensor<D>::Zero());
@@ -56,7 +56,7 @@ void cure_gradients(const mesh::Mesh& mesh, Placement<D>& p) {
   }
 }
 
-/// All that follows from volumes, centres and S; `centre_of(f)`: centre of a flux face.
+/// Sets data that follow from volumes, centers and S. `centre_of(f)`: center of a flux face.
 template <int D, class FaceCentre>
 void set_faces(const mesh::Mesh& mesh, const FaceCentre& centre_of, Placement<D>& p) {
   const Index n_faces = mesh.n_flux_faces();
@@ -90,8 +90,8 @@ void set_faces(const mesh::Mesh& mesh, const FaceCentre& centre_of, Placement<D>
   if (p.obliqueness <= orthogonal) Vectors<D>().swap(p.oblique);
 }
 
-/// Cell by cell, counter-clockwise, which writes every value once. Triangles from the mean of the points keep
-/// round-off small far from the origin.
+/// Computed cell by cell in counter-clockwise order, with one write per value. Triangles from the mean of the
+/// points keep round-off small far from the origin.
 void set_cells(const mesh::Mesh& mesh, std::span<const Vec3> points, Placement<2>& p) {
   p.volume.resize(mesh.cells.n_local());
   p.centre.resize(mesh.cells.n_local());
@@ -130,7 +130,7 @@ std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, const
   return placement;
 }
 
-/// In two dimensions without the arrays of a Geometry. Periodic cells do not have all points of their faces.
+/// 2-D version without the arrays of a Geometry. Periodic cells lack some points of their faces.
 template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::span<const Vec3> points) {
   if constexpr (D == 2) {
@@ -224,7 +224,7 @@ template <bool Corrects, int D>
   const double* weight = at.weight.data();
   const Vec<D>* area = at.area.data();
   Vec<D>* of = sum.data();
-  // Faces stand owner by owner: what is the owner's is read and written once.
+  // Faces are sorted by owner, so that owner data are accessed once.
   for (Index f = 0; f < mesh.n_interior;) {
     const Index o = owner[f];
     const double own = p[o];

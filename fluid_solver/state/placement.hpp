@@ -18,7 +18,7 @@ namespace couplet::fluid {
 template <int D>
 using Vectors = std::vector<Vec<D>>;
 
-/// The doubles of an array of vectors, for halo updates, output and checkpoints.
+/// Flat view of an array of vectors, for halo updates, output and checkpoints.
 template <int D>
 std::span<double> flat(Vectors<D>& values) {
   return {values.empty() ? nullptr : values.front().data(), values.size() * D};
@@ -28,41 +28,41 @@ std::span<const double> flat(const Vectors<D>& values) {
   return {values.empty() ? nullptr : values.front().data(), values.size() * D};
 }
 
-/// Data of one placement of the points for the face loops. Faces are the flux faces of the mesh (interior,
-/// then the boundary of owned cells).
+/// Geometry of one placement of the points for face loops, per flux face of the mesh (interior faces, then
+/// the boundary of owned cells) unless stated otherwise.
 template <int D>
 struct Placement {
   std::vector<double> volume;  ///< V [m^3], per local cell
   Vectors<D> area;             ///< S [m^2], out of the owner
-  /// g = |S|^2 / (S.d) [m], over-relaxed; d from owner to neighbour (or face) centre.
+  /// g = |S|^2/(S.d) [m], over-relaxed; d from the owner to the neighbor (or face) center.
   std::vector<double> conductance;
   Vectors<D> oblique;          ///< k = S - g d [m^2], tangential; empty on orthogonal meshes
   std::vector<double> weight;  ///< of the owner in the linear interpolation to the face, per interior face
   Vectors<D> centre;           ///< per local cell [m]
   std::vector<Vec3> boundary_centre;  ///< per owned boundary face [m]
   double obliqueness = 0;             ///< largest |k|/|S| on this rank
-  /// From where the weights lead to the face's centre, per interior face [m]; empty if the mesh is not skewed.
+  /// Vector from the interpolation point to the face center, per interior face [m]; empty if not skewed.
   Vectors<D> skew;
-  /// Per local cell, with `skew`: B that makes the Gauss gradient G of values at the weights' places exact
-  /// for linear fields: G B of vectors (du_i/dx_j), B^T G of scalars.
+  /// Per local cell, with `skew`: matrix B that makes the Gauss gradient G of values at the interpolation
+  /// points exact for linear fields: G B for vectors (du_i/dx_j), B^T G for scalars.
   std::vector<Tensor<D>> gradient_cure;
   bool skewed() const { return !skew.empty(); }
-  /// From the middle between the cells to the face's centre, skewed meshes only [m].
+  /// Vector from the midpoint between the cells to the face center, skewed meshes only [m].
   Vec<D> offset(Index f) const {
     return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique_of(f));
   }
-  /// Placements that are translations of each other share it; nullptr if nothing is known.
+  /// Shared by placements that are translations of each other; nullptr if unknown.
   std::shared_ptr<const char> shape{};
-  /// k of a face [m^2], whether or not there is the array.
+  /// k of a face [m^2], zero on orthogonal meshes.
   Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }
 };
-/// Error of a value linear between the cells at an interior face of a skewed mesh.
+/// Correction of a value interpolated linearly between the cells at an interior face of a skewed mesh.
 template <int D>
 double skew_part(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& gradient, Index f) {
   const double weight = at.weight[f];
   return (weight * gradient[mesh.owner[f]] + (1 - weight) * gradient[mesh.neighbour[f]]).dot(at.skew[f]);
 }
-/// |k|/|S| up to which a mesh counts as orthogonal.
+/// Limit of |k|/|S| for a mesh to count as orthogonal.
 constexpr double orthogonal = 1e-9;
 
 /// Collective.
@@ -70,28 +70,28 @@ template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::span<const Vec3> points);
-/// Moves a placement: only the centres differ. `from` must have a shape.
+/// Translates a placement: only the centers differ. `from` must have a shape.
 template <int D>
 std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by);
 
-/// Placement with values at the marked interior faces that are means of the cells' values, wherever the face lies between them.
+/// Placement in which values at marked interior faces are means of the cell values, wherever the face lies.
 template <int D>
 std::shared_ptr<const Placement<D>> in_the_middle(const mesh::Mesh& mesh, const Placement<D>& from,
                                                   std::span<const char> faces);
 
-/// Largest side of the box around points [m]. Collective.
+/// Largest side of the bounding box of points [m]. Collective.
 double largest_extent(const mesh::Mesh& mesh, std::span<const Vec3> points);
 
-/// The cell of all ranks in which something is largest.
+/// Cell with the largest value over all ranks.
 struct LargestCell {
   double value = 0;
-  GlobalIndex id = -1;        ///< as the mesh file numbers it; -1: no rank has a cell
+  GlobalIndex id = -1;        ///< number in the mesh file; -1 if no rank has a cell
   Vec3 place = Vec3::Zero();  ///< [m]
-  int rank = 0;               ///< that owns it
-  Index here = -1;            ///< of the owned cells of that rank
+  int rank = 0;               ///< owner
+  Index here = -1;            ///< local number on that rank; -1 elsewhere
 };
 
-/// `value`: of an owned cell; what is not a number counts as larger than all. Collective; all but `here` is the same on all ranks.
+/// `value`: function of an owned cell; NaN counts as largest. Collective; only `here` differs between ranks.
 template <int D, class Value>
 LargestCell find_largest(const mesh::Mesh& mesh, const Placement<D>& at, const Value& value) {
   struct {
@@ -121,7 +121,7 @@ LargestCell find_largest(const mesh::Mesh& mesh, const Placement<D>& at, const V
   return found;
 }
 
-/// Says where an equation that cannot be solved asks for most: "Its right-hand side is largest, 3e+200, in cell 7 at
+/// Describes the largest entry of a failed equation: "Its right-hand side is largest, 3e+200, in cell 7 at
 /// (0.1, 0.5, 0) m."
 inline std::string largest_entry(const LargestCell& of) {
   return fmt::format("Its right-hand side is {}, in cell {} at ({:.6g}, {:.6g}, {:.6g}) m.",
@@ -129,12 +129,12 @@ inline std::string largest_entry(const LargestCell& of) {
                      of.place.x(), of.place.y(), of.place.z());
 }
 
-// Sums over the interior faces of each cell, in the instructions of the processor at hand.
+// Sums over the interior faces of each cell, compiled for several instruction sets.
 
-/// sum -= factor times what flows out by phi; gives the sum of the squares of phi.
+/// sum -= factor times the outflow of phi; returns the sum of squares of phi.
 double subtract_outflow(const mesh::Mesh& mesh, double factor, std::span<const double> phi,
                         std::span<double> sum);
-/// sum += what flows out by phi through all faces, those of the boundary included.
+/// sum += outflow of phi through all faces, including the boundary.
 void add_outflow(const mesh::Mesh& mesh, std::span<const double> phi, std::span<double> sum);
 /// phi -= factor g (p_N - p_P).
 struct FluxCorrection {
@@ -142,7 +142,7 @@ struct FluxCorrection {
   const double* conductance;  ///< g
   double* phi;
 };
-/// sum += p_f S, p_f linear between the cells; `correction`: made in the same pass; nullptr for none.
+/// sum += p_f S, p_f linear between the cells. `correction`: computed in the same pass; nullptr for none.
 template <int D>
 void add_pressure(const mesh::Mesh& mesh, const Placement<D>& at, std::span<const double> p,
                   const FluxCorrection* correction, Vectors<D>& sum);

@@ -15,7 +15,7 @@ std::span<double> doubles_of(std::vector<T>& values) {
     return {values.empty() ? nullptr : values.front().data(), values.size() * T::SizeAtCompileTime};
 }
 
-/// Saves or loads what a visit names. Fields have their full size where they are said to be there, and are empty elsewhere.
+/// Saves or loads the visited data. Fields have full size if they exist, else they are empty.
 struct StateFile {
   io::CheckpointWriter* out;
   io::CheckpointReader* in;
@@ -132,7 +132,7 @@ void visit(State<D>& s, bool moving, bool compressible, StateFile f) {
 
 template <int D>
 void write_state(io::CheckpointWriter& file, const State<D>& s, bool compressible) {
-  // A visit that writes changes nothing.
+  // Writing does not change the state.
   visit(const_cast<State<D>&>(s), !s.points.empty() || !s.mesh_flux.empty(), compressible,
         {&file, nullptr, nullptr});
 }

@@ -48,7 +48,7 @@ void check_waves(const FluidParameters& parameters) {
     refuse("the stages of runge-kutta", "'scheme: runge-kutta'");
 }
 
-/// `auto` becomes second order where fourth is not possible.
+/// `auto` becomes second order if fourth is not possible.
 void check_order(FluidParameters& parameters, bool moving) {
   const auto [with, remove] = moving ? std::pair("a mesh that moves", "'motion' or the mesh mover")
                               : !parameters.bodies.empty() ? std::pair("immersed bodies", "'bodies'")
@@ -133,12 +133,12 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
 template void check_together<2>(const mesh::Mesh&, const Boundary<2>&, FluidParameters&, bool);
 template void check_together<3>(const mesh::Mesh&, const Boundary<3>&, FluidParameters&, bool);
 
-// Fluids without an outlet whose walls move.
+// Fluids without an outlet and with moving walls.
 
 namespace {
 
-// Share of an interface's area that faces one way. Up to here it surrounds a body, which is clamped elsewhere; beyond, it is the
-// wall of a cavity.
+// Largest share of an interface's area that faces one way for it to enclose a body; above, it is a cavity
+// wall.
 constexpr double largest_open_share = 0.3;
 
 /// Share of the interface's area that faces one way, and the area [m^2].
@@ -157,7 +157,7 @@ std::pair<double, double> open_share(const Fluid<D>& fluid) {
   return {Vec3(sums[0], sums[1], sums[2]).norm() / sums[3], sums[3]};
 }
 
-/// Through the faces of given velocity but the interface's, into the fluid [m^3/s]; this rank's part.
+/// Inflow through faces of given velocity except the interface's [m^3/s]; this rank's part.
 template <int D>
 double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
   const Boundary<D>& boundary = fluid.boundary();

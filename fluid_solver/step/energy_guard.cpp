@@ -14,16 +14,16 @@
 namespace couplet::fluid {
 namespace {
 
-// Share of what passes the boundaries that may be wrong: their rates are means of two levels.
+// Tolerated share of the boundary fluxes, because their rates are means of two levels.
 constexpr double boundary_share = 0.25;
-// Share of the pressure's level that a solver whose tolerance is relative to it may leave. It moves the fluid.
+// Relative error of the pressure level allowed to the solver, which moves the fluid.
 constexpr double level_share = 1e-4;
-// Excess, in kinetic energies, that is called a blow-up.
+// Excess over the kinetic energy that counts as divergence.
 constexpr double largest_excess = 0.5;
-// omega h^2/nu from which friction no longer holds what a turning frame makes (docs/theory.md, frame that turns).
+// omega h^2/nu above which friction no longer stabilizes a rotating frame (docs/theory.md).
 constexpr double fast_frame = 4;
-// Share of the reference energy that remains after a sub-step. A flow that turns back is at rest for some steps, where its own
-// energy is no measure.
+// Decay of the reference energy per sub-step. A reversing flow is at rest briefly, so its current energy is
+// no measure.
 constexpr double remembered = 0.85;
 
 /// sum V |u|^2, in four partial sums, so that additions do not wait for each other.
@@ -64,7 +64,7 @@ double EnergyGuard<D>::elastic(const Placement<D>& at, const std::array<const Pr
   return 0.25 / bulk_ * sum;
 }
 
-/// About which the work of the pressure is counted. Collective.
+/// Reference pressure for the work. Collective.
 template <int D>
 double EnergyGuard<D>::level_of(const EnergyStep<D>& s) const {
   if (s.from.ledger.energy >= 0) return s.from.ledger.level;
@@ -77,7 +77,7 @@ double EnergyGuard<D>::level_of(const EnergyStep<D>& s) const {
   return sums[0] / sums[1];
 }
 
-/// About which the work of the pressure is counted when no step before says it. Collective.
+/// Reference pressure for the work without a previous step. Collective.
 template <int D>
 double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
   double sums[2] = {};
@@ -91,9 +91,9 @@ double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
   return sums[1] > 0 ? sums[0] / sums[1] : 0;
 }
 
-/// Kinetic energy [J] that the pressure's solver may leave in a fluid at rest: the sum of rho V u^2 / 2 over the cells, of
-/// the velocity u = tolerance p dt / (rho h) that the pressure p on the boundary gives in a step where it differs by its
-/// tolerance from cell to cell. Collective.
+/// Kinetic energy [J] from pressure solver errors in a fluid at rest: sum of rho V u^2/2 over the cells with
+/// u = tolerance p dt/(rho h), the velocity if the boundary pressure p varies by its tolerance between cells.
+/// Collective.
 template <int D>
 double EnergyGuard<D>::energy_at_rest(const EnergyStep<D>& s) const {
   double sums[3] = {0, double(s.p.size()), 0};
@@ -104,7 +104,7 @@ double EnergyGuard<D>::energy_at_rest(const EnergyStep<D>& s) const {
   return 0.5 * impulse * impulse / rho_ * sums[2];
 }
 
-/// sums: work, what passed, p |phi|, |phi|.
+/// sums: work, total flux, p |phi|, |phi|.
 template <int D>
 void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
   const bool moving = !s.swept.empty();
@@ -119,11 +119,11 @@ void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
     const double t = rows.friction(s.to, static_cast<Index>(b), f);
     const Vec<D>&before = s.from.u_boundary[b], &after = s.w[b];
     const Vec<D> on_face = 0.5 * (before + after);
-    // Through faces of given velocity and of given pressure.
+    // Contribution of faces of given velocity and of given pressure.
     const double convection = -rho_ * through * (t * (on_face.dot(inside) - 0.5 * inside.squaredNorm())) -
                               rho_ * through * rows.pressure[b] *
                                   ((through < 0 ? rows.inflow[b] : 1.0) - 0.5) * inside.squaredNorm();
-    // At most, at either level: a stiff layer changes within the step, its mean says nothing.
+    // The larger value of both levels: a stiff layer changes within the step, so its mean is no bound.
     const double friction =
         t * mu_ * s.to.conductance[f] *
         std::max(before.norm() * (before - s.from.u[p]).norm(), after.norm() * (after - s.u[p]).norm());

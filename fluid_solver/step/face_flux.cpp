@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predicted face fluxes and what they remember of the mean velocities.
+// Predicted face fluxes and their memory of the mean velocities.
 #include "fluid_solver/step/stages.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace couplet::fluid {
 namespace {
 
-// Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
+// Largest decay of the flux memory per step for which AB2 is stable without overshoot.
 constexpr double largest_decay = 2.0 / 3;
 
 /// Weights for add_memory().
@@ -19,7 +19,7 @@ struct MemoryWeights {
   double dt, now, before;  // a step, and delta at its middle from that of two levels
 };
 
-/// sum nu g + |phi - moved|/2 of each cell; `moved`: flux of the mesh, not looked at if it rests.
+/// sum nu g + |phi - moved|/2 of each cell. `moved`: flux of the mesh, not read at rest.
 template <bool Moving>
 [[gnu::always_inline]] inline void sum_evening(const mesh::Mesh& mesh, double nu, const double* conductance,
                                                const double* phi, const double* moved, double* sums) {
@@ -40,8 +40,8 @@ COUPLET_PROCESSOR_CLONES void evening_pass(const mesh::Mesh& mesh, double nu, co
     sum_evening<false>(mesh, nu, conductance, phi, nullptr, sums);
 }
 
-/// phi += delta - min(decay, largest) delta_mid. Faces whose decay is larger than that go to `far`, which has room for all; gives their
-/// number.
+/// phi += delta - min(decay, largest) delta_mid. Appends faces with a larger decay to `far`, which has room
+/// for all, and returns their number.
 COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryWeights& w, const double* rate,
                                            const double* memory, const double* old, double* phi, Index* far) {
   const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
@@ -64,7 +64,7 @@ template <int D>
 void FaceFlux<D>::predict(const State<D>& from, const Vectors<D>& u) {
   const Placement<D>& now = *step_.to;
   phi_.resize(mesh_.n_flux_faces());
-  // Without the pressure the velocity at a wall is still that of level n: its change comes with grad p.
+  // Without pressure the wall velocity is still that of level n; its change comes with grad p.
   if (now.skewed()) scene_.boundary.close(mesh_, now, u, from.w, u_boundary_);
   gradient_.number = 0;
   mean_flux<D>(mesh_, now, scene_.flux_velocity(now, increment_of_fourth() ? without_pressure(u) : u),
@@ -81,8 +81,8 @@ void FaceFlux<D>::predict(const State<D>& from, const Vectors<D>& u) {
   scene_.obstacles->block(step_, phi_);
 }
 
-/// Rate at which friction and convection even out a difference in the cells, per local cell [1/s]. Fluxes
-/// relative to the mesh: the same in every frame.
+/// Smoothing rate of cell-to-cell differences by friction and convection, per local cell [1/s]. Uses fluxes
+/// relative to the mesh, which are equal in every frame.
 template <int D>
 void FaceFlux<D>::set_relaxation(const State<D>& from) {
   relaxation_.assign(mesh_.cells.n_local(), 0.0);
@@ -94,12 +94,11 @@ void FaceFlux<D>::set_relaxation(const State<D>& from) {
   mesh_.cells.update_ghosts(relaxation_);
 }
 
-/// d delta/dt = e - a delta: e is what the pressure does to the flux and not to the mean velocity, O(h^2); a
-/// is the rate at which friction and convection would even it out, as in an implicit momentum interpolation.
-/// Without a the memory would grow for ever in a steady flow, without the memory the steady flow would depend
-/// on dt. The decay is AB2 while a dt is small. Where it is large the projection's own dt e is too much: with
-/// the e of the step before delta goes to (delta + dt e)/(1 + a dt), so that a steady flow keeps e/a whatever
-/// the step.
+/// d delta/dt = e - a delta. e is the effect of the pressure on the flux beyond that on the mean velocity,
+/// O(h^2). a is the rate of smoothing by friction and convection, as in implicit momentum interpolation.
+/// Without a, the memory would grow forever in a steady flow; without the memory, the steady flow would
+/// depend on dt. The decay uses AB2 for small a dt. For large a dt, the projection's dt e would be too much,
+/// so with the previous e delta becomes (delta + dt e)/(1 + a dt), and a steady flow keeps e/a for any step.
 template <int D>
 void FaceFlux<D>::add_memory(const State<D>& from) {
   set_relaxation(from);
@@ -118,10 +117,10 @@ void FaceFlux<D>::add_memory(const State<D>& from) {
   }
 }
 
-/// Incremental projection: with delta' = -dt e^{n-1/2} the equation for p is that of the increment
-/// p - p^{n-1/2}, and the flux keeps dt (e^{n+1/2} - e^{n-1/2}), of second order in time. What the start
-/// leaves between flux and mean velocity is not taken away at once, which would be an impulse that p never
-/// forgets on its checkerboard modes, but fades at the rate a.
+/// Incremental projection: delta' = -dt e^{n-1/2} gives the equation of the increment p - p^{n-1/2}, and the
+/// flux keeps dt (e^{n+1/2} - e^{n-1/2}), second order in time. The initial difference of flux and mean
+/// velocity decays at the rate a. Removing it at once would be an impulse that stays in checkerboard modes of
+/// p.
 template <int D>
 void FaceFlux<D>::add_increment(const State<D>& from) {
   set_relaxation(from);
@@ -137,7 +136,7 @@ void FaceFlux<D>::add_increment(const State<D>& from) {
   }
 }
 
-/// In a flux of fourth order the part of the old pressure that its gradient makes is in the mean velocity already.
+/// A fourth-order flux already contains the old pressure's gradient in its mean velocity.
 template <int D>
 bool FaceFlux<D>::increment_of_fourth() const {
   return scene_.fourth && scene_.parameters.projection == Projection::incremental && step_.by.pressure[0];
@@ -164,8 +163,8 @@ double FaceFlux<D>::pressure_flux(const State<D>& from, Index f) const {
   return flux + (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
 }
 
-/// e of the last step: what its pressure does to the flux and not to the mean velocity [m^3/s^2]. `gradient`: of that pressure, as
-/// it changes the flux velocity.
+/// e of the last step: effect of its pressure on the flux beyond that on the mean velocity [m^3/s^2].
+/// `gradient`: of that pressure, as applied to the flux velocity.
 template <int D>
 double FaceFlux<D>::pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const {
   const Vec<D> mean = 0.5 * (gradient[mesh_.owner[f]] + gradient[mesh_.neighbour[f]]);

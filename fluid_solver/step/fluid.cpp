@@ -12,7 +12,7 @@
 namespace couplet::fluid {
 namespace {
 
-// An interface faster than so many times all that moved so far (at the very start: than this [m/s]) diverges.
+// An interface diverges above this factor times all previous speeds, or initially this speed [m/s].
 constexpr double most_times_faster = 1e4, most_speed = 1e8;
 
 }  // namespace
@@ -30,9 +30,9 @@ Fluid<D>::Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Fl
   start(geometry, start_time);
 }
 
-/// The first two stages of Heun's scheme, each a step from level n with its own pressure,
-///   u' = P(u^n + dt/3 R(u^n)),  u'' = P(u^n + 2/3 dt R(u')),  u^{n+1} = P(u^n + dt [R(u^n) + 3 R(u'')]/4),
-/// and what the last one needs. `done`: time into the coupling step at the begin of the sub-step.
+/// First two stages of Heun's scheme, each a step from level n with its own pressure:
+///   u' = P(u^n + dt/3 R(u^n)),  u'' = P(u^n + 2/3 dt R(u')),  u^{n+1} = P(u^n + dt [R(u^n) + 3 R(u'')]/4).
+/// `done`: time within the coupling step at the start of the sub-step.
 template <int D>
 void Fluid<D>::run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity) {
   Vectors<D> rate, shear;
@@ -90,8 +90,8 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
   return w;
 }
 
-// The implicit predictor and the non-orthogonal part need the pressure of the step before: at the very first
-// step it comes from a trial of the step.
+// The implicit predictor and the non-orthogonal part require the previous pressure. In the first step it
+// comes from a trial of the step.
 template <int D>
 void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
   History<D> probe = history_;
@@ -128,7 +128,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     SubStep<D> sub_step = path_.sub_step(level(), dt, end / dt_, accepted_.points, points, time_);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
     if (history_.start == Start::after_impulse) {
-      // The pressure of a compressible fluid is no impulse, but its state.
+      // The pressure of a compressible fluid is part of its state, not an impulse.
       if (!parameters_.is_compressible()) history_.pressure = {};
       history_.start = Start::flowing;
     }
@@ -162,7 +162,7 @@ void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity, double answer) {
       if (boundary_.is_interface(b)) last_w_[b] = wall_velocity[b];
   check_wall_velocity();
   step_.project(level(), last_w_, answer);
-  // Once a prediction: what a repetition changes is the potential flow of a bounded wall velocity.
+  // Once per prediction, because repetitions only change the potential flow of a bounded wall velocity.
   if (!judged_) step_.complete(level());
   judged_ = true;
   ++statistics_.pressure_solves;
@@ -208,9 +208,8 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
       expressions[c].evaluate(at.boundary_centre, time, flat<D>(s.u_boundary), D, c);
     }
   }
-  // Without an initial velocity the fluid is at rest, its boundaries too: what they do from then on is an
-  // impulse in the first step, which an elastic wall must feel. A given field is made to fit its boundaries
-  // instead.
+  // Without an initial velocity, fluid and boundaries are at rest. Later boundary motion is an impulse in the
+  // first step, which an elastic wall must feel. A given field is fitted to its boundaries instead.
   s.start = parameters_.initial_velocity.empty() ? Start::at_rest : Start::flowing;
   if (s.start == Start::flowing) {
     boundary_.velocity_at(time, at.boundary_centre, s.w);
@@ -247,8 +246,8 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   step_.keep();
 }
 
-/// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
-/// loop, see docs/theory.md.
+/// The layer dragged by a wall within a step is rho sqrt(nu dt) thick, a mass that acts on w* in the loop,
+/// see docs/theory.md.
 template <int D>
 double Fluid<D>::unseen_share(const Vectors<D>& w) const {
   const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
@@ -267,8 +266,8 @@ double Fluid<D>::unseen_share(const Vectors<D>& w) const {
   return load > 0 ? std::sqrt(sums[0] / load) : 0;
 }
 
-/// A structure that fails gives velocities that no fluid can follow. What moves less than the height of the cell
-/// beside it in the step is none of these, however still the fluid was; nor are bodies that move as prescribed.
+/// Rejects velocities of a failing structure that no fluid can follow. Motion by less than the adjacent
+/// cell's height per step is accepted even in a fluid at rest, and so are bodies with prescribed motion.
 template <int D>
 void Fluid<D>::check_wall_velocity() const {
   double worst = 0;
@@ -300,7 +299,7 @@ void Fluid<D>::check_wall_velocity() const {
       time_ + dt_, place.x(), place.y(), place.z());
 }
 
-/// Mean of the step's begin and end.
+/// Mean of the start and the end of the step.
 template <int D>
 void Fluid<D>::add_turning() {
   if (!boundary_.walls_turn()) return;

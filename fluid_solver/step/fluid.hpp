@@ -21,63 +21,62 @@ struct FluidStatistics {
   long all_sub_steps = 0, pressure_iterations = 0, viscous_iterations = 0, pressure_solves = 0;
 };
 
-/// The fluid through whole coupling steps: cuts them into stable sub-steps, moves the mesh and the walls
-/// linearly within them. The accepted state changes when the step is accepted only: a step that fails, is
-/// repeated or begun again leaves nothing to be put back.
+/// Advances the fluid by whole coupling steps. Cuts each into stable sub-steps, within which mesh and walls
+/// move linearly. The accepted state changes only in accept(), so a failed or repeated step needs no
+/// rollback.
 ///
 ///   begin_step; prepare(points, w); solve_pressure(w') ...; accept
 ///
-/// prepare() does all but the last pressure equation with the wall velocity w (predicted). solve_pressure(w')
-/// then costs one pressure equation and may be repeated. The impulse of the added mass is exact for any
-/// number of sub-steps: each contributes rho mu dw, and the dw add up to w'^{n+1} - w^n.
+/// prepare() does all but the last pressure equation, with the predicted wall velocity w. solve_pressure(w')
+/// solves that equation and may be repeated. The impulse of the added mass is exact for any number of
+/// sub-steps: each contributes rho mu dw, and the dw add up to w'^{n+1} - w^n.
 template <int D>
 class Fluid {
  public:
-  /// `geometry`: of the mesh at rest; of it the points alone are kept.
+  /// `geometry`: geometry of the mesh at rest; only its points are kept.
   Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters,
         bool moving_mesh, double start_time = 0);
 
   void begin_step(double time, double dt);
-  /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
-  /// the interface faces count; empty if they rest. Collective.
+  /// `points`: at t^{n+1}, empty if the mesh is at rest. `wall_velocity`: per boundary face at t^{n+1} [m/s],
+  /// read only at interface faces; empty if they are at rest. Collective.
   void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
-  /// Before prepare() and solve_pressure(): the pressure that gave the interface its velocity, per boundary face [Pa].
-  /// Walls of a known mass then answer to what the pressure differs from it (see yielding_walls.cpp).
+  /// Sets the pressure that gave the interface its velocity, per boundary face [Pa]. Walls of known mass then
+  /// respond to the change of pressure (see yielding_walls.cpp). Call before prepare() and solve_pressure().
   void yield_from(std::vector<double> load) {
     yields_ = boundary_.yields();
     boundary_.set_wall_load(std::move(load));
   }
-  /// Before yield_from(): Boundary::set_wall_mass. Collective.
+  /// Calls Boundary::set_wall_mass(). Call before yield_from(). Collective.
   void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
     if (parallel::any(mesh_.comm, boundary_.set_wall_mass(boundary_faces, masses))) step_.forget_walls();
   }
-  /// At the boundary faces, of the last solve_pressure() [Pa].
+  /// Pressure at the boundary faces from the last solve_pressure() [Pa].
   const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }
-  /// Before solve_pressure(): the turn of the interface's and the bodies' faces at the step's end, see turn_of();
-  /// empty if they do not turn. Zero at the faces of other walls.
+  /// Sets the turn (see turn_of()) of interface and body faces at the end of the step; zero at other walls.
+  /// Empty if they do not rotate. Call before solve_pressure().
   void set_turn(Vectors<D> turn) { given_turn_ = std::move(turn); }
-  /// Throws SolveFailure if the flow that follows is not valid; everything that can fail is here and in prepare().
-  /// `answer`: PressureEquation::solve(), of a pass of a coupling that iterates.
+  /// Throws SolveFailure if the resulting flow is not valid. Only this function and prepare() can fail.
+  /// `answer`: see PressureEquation::solve(); used in the passes of an iterative coupling.
   void solve_pressure(const Vectors<D>& wall_velocity, double answer = 0);
-  /// Force that friction would add if it saw the wall velocity w instead of w*, that of prepare(),
-  /// rho sqrt(nu dt) |w - w*| S / dt, over the load of the last solve_pressure() (less a uniform pressure),
-  /// both as root mean square over the interface. Collective.
+  /// Change of the friction force if it used the wall velocity w instead of w* of prepare(): rho sqrt(nu dt)
+  /// |w - w*| S/dt, relative to the load of the last solve_pressure() less a uniform pressure. Both are root
+  /// mean squares over the interface. Collective.
   double unseen_share(const Vectors<D>& w) const;
-  /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
-  /// The step becomes level n. Cannot fail.
+  /// Makes the step level n. Cannot fail.
   void accept();
 
   const State<D>& state() const { return accepted_; }
-  /// The pressure of the accepted state; nullptr before the first step. In a frame that turns that of the state lacks the centrifugal part.
+  /// Pressure of the accepted state, which itself lacks the centrifugal part. nullptr before the first step.
   std::shared_ptr<const PressureLevel<D>> pressure() const;
-  /// Placement at the end of the step that was prepared.
+  /// Placement at the end of the prepared step.
   const Placement<D>& end() const { return step_.to(); }
-  /// For checkpoints: replaces the accepted state.
+  /// Replaces the accepted state, for checkpoints.
   void restore(State<D> state);
-  /// For its save() and load(): what the solvers remember of earlier steps; load() comes after restore().
+  /// Memory of the solvers, for save() and load(). Call load() after restore().
   FractionalStep<D>& solvers() { return step_; }
-  /// Time means over the coupling step of the forces on what is outside, per boundary face [N].
+  /// Time means over the coupling step of the forces on the surroundings, per boundary face [N].
   const Vectors<D>& pressure_force() const { return pressure_force_; }
   const Vectors<D>& viscous_force() const { return viscous_force_; }
 
@@ -90,15 +89,15 @@ class Fluid {
   SubStepSize<D>& sizes() { return sizes_; }
   bool moving() const { return path_.moves(); }
 
-  /// nullptr without immersed bodies.
+  /// nullptr if there are no immersed bodies.
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
   /// nullptr if the order is second everywhere.
   const FourthOrder<D>* fourth() const { return step_.fourth(); }
-  /// nullptr without gaps that may close.
+  /// nullptr if there are no gaps that may close.
   const Gaps<D>* gaps() const { return step_.gaps(); }
 
  private:
-  /// State that the sub-step under way starts from.
+  /// State from which the current sub-step starts.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(const mesh::Geometry& geometry, double time);
@@ -115,39 +114,40 @@ class Fluid {
   Boundary<D> boundary_;
   FractionalStep<D> step_;
   SubStepSize<D> sizes_;
-  State<D> accepted_;    // level n: accept() and restore() alone change it
-  History<D> begin_;     // how the step under way sees level n
-  State<D> trial_;       // after the last finished sub-step of the step under way
-  History<D> history_;   // how the sub-step under way sees level()
-  bool split_ = false;   // a sub-step of the step under way is finished: it goes on from trial_
-  bool judged_ = false;  // the prediction under way has given a sound level n+1
-  bool yields_ = false;  // the walls, in the last sub-step
+  State<D> accepted_;    // level n: only accept() and restore() change it
+  History<D> begin_;     // how the current step sees level n
+  State<D> trial_;       // after the last finished sub-step of the current step
+  History<D> history_;   // how the current sub-step sees level()
+  bool split_ = false;   // a sub-step of the current step is finished; the next starts from trial_
+  bool judged_ = false;  // the current prediction has given a valid level n+1
+  bool yields_ = false;  // walls respond to the pressure in the last sub-step
   double time_ = 0, dt_ = 0;
-  Vectors<D> guess_;                         // given velocities at the step's end as prepare() had them
+  Vectors<D> guess_;                         // given velocities at the end of the step, from prepare()
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
   Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_
   Vectors<D> pressure_force_, viscous_force_;
-  Vectors<D> given_turn_, turn_;  // at the step's end: what set_turn() gave; of all walls. Empty: none
+  // At the end of the step: from set_turn(), and of all walls. Empty if none rotates.
+  Vectors<D> given_turn_, turn_;
   FluidStatistics statistics_;
 };
 
 /// Resolves `surface: auto` of bodies. Throws Error if two bodies differ.
 FluidParameters with_surfaces(FluidParameters parameters, bool moving);
 
-/// Throws Error for effects that do not go together; where one leaves a single choice of another, sets it. `moving`: the
-/// mesh will move. Collective.
+/// Throws Error for incompatible effects. Where one effect leaves a single choice for another, sets it.
+/// `moving`: the mesh will move. Collective.
 template <int D>
 void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
                     bool moving);
 
-/// An incompressible fluid without an outlet lets no wall move that would change its volume, unless something sets
-/// its pressure level (`volume-level`). Throws Error for a fluid whose volume is trapped, or that asks for a level it
-/// does not need. Collective.
+/// Throws Error for an incompressible fluid with a trapped volume, or with a `volume-level` that it does not
+/// need. Without an outlet, walls may change the volume only if something sets the pressure level.
+/// Collective.
 template <int D>
 void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
 
-/// Shares by area of the interface's faces in the inflow of the given velocities at t^{n+1} and t^n [m^3/s], two values per face. Their
-/// sums are the inflows. Collective.
+/// Area shares of the interface faces in the inflow of the given velocities [m^3/s], two values per face: at
+/// t^{n+1} and t^n. They sum to the inflows. Collective.
 template <int D>
 std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
                                   double dt);

@@ -13,11 +13,11 @@
 
 namespace couplet::fluid {
 
-/// At an interface the viscous flux is that of the current wall velocity, F - a mu g (c_t + 4 c_n) with the tangential and the normal
-/// part of c = w - w*: left at the guess w* the slip c would come as a force one step late, at a two-step oscillation a mass of
-/// -mu g dt. The factor of c_n is found by trial: a wall of a fortieth of its added mass (nu dt/h^2 = 100) diverges with a half and less,
-/// zigzags by 0.32 with one, 0.16 with two and 0.08 with four; 0.15 is smooth. c vanishes with the square of the step. The
-/// explicit branch takes the flux of level n, which knows its wall velocity.
+/// At an interface the viscous flux uses the current wall velocity, F - a mu g (c_t + 4 c_n) with tangential
+/// and normal parts of c = w - w*. With the guess w*, c would act as a force one step late, for a two-step
+/// oscillation like a mass of -mu g dt. The factor of c_n is empirical. A wall with a fortieth of its added
+/// mass (nu dt/h^2 = 100) diverges with 0.5 or less, and oscillates by 0.32 with 1, 0.16 with 2 and 0.08 with
+/// 4; 0.15 is smooth. c decreases with the square of the step. The explicit branch uses the flux of level n.
 template <int D>
 void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
                    const Projected<D>& projected, const State<D>& from) {
@@ -45,8 +45,8 @@ template struct Loads<3>;
 
 namespace {
 
-constexpr double least_share_of_lines =
-    0.5;                           // of cells and directions that have lines, for which fourth order pays
+// Share of cells and directions with lines above which fourth order pays off.
+constexpr double least_share_of_lines = 0.5;
 constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
 
 COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, double factor,
@@ -54,7 +54,7 @@ COUPLET_PROCESSOR_CLONES void velocity_pass(std::span<const double> predicted, d
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = predicted[i] - factor * gradient[i];
 }
 
-/// Infinity if one is not finite.
+/// Largest speed; infinity if one is not finite.
 template <int D>
 COUPLET_PROCESSOR_CLONES double largest_square(std::span<const Vec<D>> u) {
   double largest = 0, all = 0;
@@ -105,7 +105,7 @@ std::shared_ptr<const Placement<D>> FractionalStep<D>::raise_order(std::shared_p
   return seen;
 }
 
-/// The obstacles at the end of the step.
+/// Updates the obstacles to the end of the step.
 template <int D>
 void FractionalStep<D>::mark(double time) {
   using Changed = typename Obstacles<D>::Changed;
@@ -157,9 +157,8 @@ void FractionalStep<D>::mark_level(State<D>& s) {
   s.blocked = scene_.obstacles->marks();
 }
 
-/// u = u0 - grad psi with phi free of divergence: the same equation with dt = 1 s, rho = 1. Where the given
-/// wall velocity differs from u0 at the wall (an inlet that starts at once) the field becomes the potential
-/// flow.
+/// u = u0 - grad psi with divergence-free phi: the same equation with dt = 1 s, rho = 1. If the given wall
+/// velocity differs from u0 at the wall (an impulsively started inlet), the field becomes the potential flow.
 template <int D>
 void FractionalStep<D>::project_initial(State<D>& s) {
   scene_.oblique = parallel::max(mesh_.comm, s.placement->obliqueness) > orthogonal ||
@@ -215,7 +214,7 @@ void FractionalStep<D>::keep_initial(State<D>& s) {
   flux_.remember(s);
 }
 
-/// phi at t^{n+1} in the place of phi^p, which the next project() makes anew, and u beside u^p.
+/// Replaces phi^p by phi at t^{n+1}, which the next project() recomputes, and adds u beside u^p.
 template <int D>
 std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   const Placement<D>& now = *step_.to;
@@ -311,8 +310,8 @@ typename FractionalStep<D>::Judgement FractionalStep<D>::judge(const State<D>& f
   return j;
 }
 
-/// Much faster than all that moved so far and all that is given now, and so that the flow crosses a cell in the step:
-/// what begins to move in a fluid that was at rest, but for round-off, is no divergence.
+/// True if the flow is much faster than all previous and given speeds, and crosses a cell in the step. Motion
+/// starting in a fluid at rest except for round-off is no divergence.
 template <int D>
 bool FractionalStep<D>::too_fast() const {
   if (!(speed_scale_ > 0) || !(judgement_.speed > explosion * std::max(speed_scale_, judgement_.given_speed)))
@@ -323,7 +322,7 @@ bool FractionalStep<D>::too_fast() const {
   return parallel::any(mesh_.comm, crosses);
 }
 
-/// Where it went wrong: the fastest cell if that is out of bounds, else the one that gained most energy.
+/// Finds the location of a failure: the fastest cell if out of bounds, else the one that gained most energy.
 template <int D>
 void FractionalStep<D>::check(const State<D>& from) {
   const bool finite = std::isfinite(judgement_.speed);

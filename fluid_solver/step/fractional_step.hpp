@@ -14,14 +14,14 @@
 
 namespace couplet::fluid {
 
-/// Forces on what is outside the fluid, per boundary face [N]: the momentum that the fluid's own equation lets through the wall,
-/// +p_b S^{n+1/2} with the scheme's wall pressure and the whole viscous flux mu g (u_P - w) with its weights in time. A pressure
-/// extrapolated from the cells and the tangential flux alone differ from it by a layer of the splitting, of first order in the step and
-/// the mesh.
+/// Forces on the surroundings of the fluid, per boundary face [N], equal to the momentum flux of the fluid's
+/// own equation through the wall. They are +p_b S^{n+1/2} with the wall pressure of the scheme, and the whole
+/// viscous flux mu g (u_P - w) with its weights in time. An extrapolated pressure and the tangential flux
+/// alone would differ from this by a splitting layer of first order in step and mesh size.
 template <int D>
 struct Loads {
-  Vectors<D> pressure;  ///< and the normal part of the viscous flux
-  Vectors<D> viscous;   ///< its tangential part
+  Vectors<D> pressure;  ///< pressure and the normal part of the viscous flux
+  Vectors<D> viscous;   ///< tangential part of the viscous flux
 
   /// Sets the forces of a step from a level, after its projection.
   void set(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
@@ -29,14 +29,13 @@ struct Loads {
 };
 
 // clang-format off
-/// One step of the non-incremental projection method on a moving mesh, in three stages, so that a semi-implicit coupling can repeat the
-/// second one. Each makes a result that the next one reads:
+/// One step of the non-incremental projection method on a moving mesh. It has three stages, so that a
+/// semi-implicit coupling can repeat the second one. Each stage computes a result for the next one.
 ///   predict   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~
 ///                      - (dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1})                   Prediction, FaceFlux
 ///   project   sum g (p_N - p_P) = (rho/dt) sum phi^p,    p = p^{n+1/2}                    Projected, Loads
 ///   complete  phi = phi^p - (dt/rho) g dp,    u^{n+1} = u^p - dt/(rho V') sum p_f S^{n+1}
-/// with r = dt/dt_old and u~ = (1 + r/2) u^n - r/2 u^{n-1}. These are (4.5)-(4.8) of the thesis with its errata (density, sign of
-/// diffusion).
+/// Here r = dt/dt_old and u~ = (1 + r/2) u^n - r/2 u^{n-1}. See (4.5)-(4.8) of the thesis with errata.
 // clang-format on
 template <int D>
 class FractionalStep {
@@ -45,54 +44,55 @@ class FractionalStep {
   FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3>& points_at_rest, const Boundary<D>& boundary,
                  const FluidParameters& parameters, bool moving);
 
-  /// Fourth order along the lines of a mesh at rest, from now on (`auto`: if they are half of it); gives the placement to use. Collective.
+  /// Switches to fourth order along the lines of a mesh at rest; `auto` does so if they cover half of it.
+  /// Returns the placement to use. Collective.
   std::shared_ptr<const Placement<D>> raise_order(std::shared_ptr<const Placement<D>> at);
   /// nullptr if the order is second everywhere.
   const FourthOrder<D>* fourth() const { return scene_.fourth.get(); }
 
-  /// `by`: how the step sees the level it starts from; `w`: given velocity per boundary face at t^{n+1}, as
+  /// `by`: how the step sees the level it starts from. `w`: given velocity per boundary face at t^{n+1}, as
   /// far as it is known. Collective.
   void predict(const State<D>& from, const History<D>& by, SubStep<D> step, const Vectors<D>& w);
   /// R of a state, explicit, and its viscous force on the boundary faces. Collective.
   void rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear);
   /// May be called again with another w after one predict(). Collective.
   void project(const State<D>& from, const Vectors<D>& w, double answer = 0);
-  /// Makes level n+1 of the last project(), beside level n, and judges it. Throws SolveFailure naming time
-  /// and place if its velocity is not finite. Collective.
+  /// Computes and checks level n+1 of the last project(), beside level n. Throws SolveFailure with time and
+  /// place if its velocity is not finite. Collective.
   void complete(const State<D>& from);
-  /// Puts level n+1 in the place of the level n it was made from, by swapping; makes it first if complete()
-  /// was not called since the last project(). Cannot fail. Collective.
+  /// Replaces level n by level n+1 by swapping. Computes it first if complete() was not called since the last
+  /// project(). Cannot fail. Collective.
   void commit(State<D>& state);
-  /// Makes the initial velocity divergence-free: state.u, w and u_boundary (u at the faces) are given, phi is
-  /// filled.
+  /// Makes the initial velocity divergence-free. Reads state.u, w and u_boundary (u at the faces), sets phi.
   void project_initial(State<D>& state);
-  /// Sets what the terms of the pressure keep in a state that no step made. Collective.
+  /// Sets the data of the pressure terms in a state that no step computed. Collective.
   void start_terms(State<D>& state) const {
     for (const auto& term : projection_.terms()) term->start(state);
   }
 
-  /// state.blocked, of a level that no step made: the first, or one from a checkpoint. Collective.
+  /// Sets state.blocked of a level that no step computed: the first one or one from a checkpoint. Collective.
   void mark_level(State<D>& state);
   /// nullptr if there are none.
   const Gaps<D>* gaps() const { return gaps_; }
-  /// The result of the last project() as a level of history. Collective.
+  /// Returns the result of the last project() as a level of history. Collective.
   std::shared_ptr<PressureLevel<D>> pressure_level() const { return projection_.pressure_level(); }
-  /// Fills what follows from p and boundary in a level that no step made. Collective.
+  /// Fills the data that follow from p and boundary in a level that no step computed. Collective.
   void start_level(const Placement<D>& at, PressureLevel<D>& level) const { projection_.start(at, level); }
-  /// Forces on what is outside the fluid after the last project() [N], see Loads.
+  /// Forces on the surroundings after the last project() [N], see Loads.
   const Vectors<D>& pressure_force() const { return loads_.pressure; }
   const Vectors<D>& viscous_force() const { return loads_.viscous; }
   /// state.eddy, if there is a turbulence model. Collective.
   void set_eddy_viscosity(State<D>& state);
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
-  /// nullptr if the frame rests.
+  /// nullptr if the frame is at rest.
   const RotatingFrame<D>* frame() const { return scene_.frame ? &*scene_.frame : nullptr; }
-  /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
+  /// Discards the pressure matrix after the masses of such walls have changed; it is rebuilt when next
+  /// needed.
   void forget_walls() { projection_.forget_matrix(); }
   /// Pressure of the last project() per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return projected_.boundary; }
-  /// State of the solvers beside the level they start from, as of the last keep(). load() is collective.
+  /// State of the solvers in addition to the level, as of the last keep(). load() is collective.
   void keep() { projection_.accept(); }
   void save(io::CheckpointWriter& file) const { projection_.save(file); }
   void load(io::CheckpointReader& file) { projection_.load(file); }
@@ -102,19 +102,19 @@ class FractionalStep {
   double size() const { return step_.dt; }
   /// Placement at the end of the step.
   const Placement<D>& to() const { return *step_.to; }
-  /// Points at the end; empty if the mesh rests.
+  /// Points at the end of the step; empty if the mesh is at rest.
   const std::vector<Vec3>& points() const { return step_.points; }
   /// Largest speed of the accepted steps [m/s].
   double largest_speed() const { return speed_scale_; }
-  /// The mesh is not orthogonal, or may become so.
+  /// True if the mesh is not orthogonal or may become so.
   bool oblique() const { return scene_.oblique; }
 
  private:
   std::shared_ptr<PressureLevel<D>> correct();
   struct Judgement {
     EnergyJudgement energy;
-    double speed = 0;        // largest [m/s]; infinity where one is not finite
-    double given_speed = 0;  // largest of the boundaries [m/s]
+    double speed = 0;        // largest [m/s]; infinity if one is not finite
+    double given_speed = 0;  // largest at the boundaries [m/s]
   };
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
@@ -129,7 +129,7 @@ class FractionalStep {
   Prediction<D> prediction_;
   Projected<D> projected_;
   KnownGradient<D> gradient_;
-  const ImmersedBodies<D>* bodies_ = nullptr;  // of the scene's obstacles; nullptr: none
+  const ImmersedBodies<D>* bodies_ = nullptr;  // owned by the scene as obstacles; nullptr if there are none
   const Gaps<D>* gaps_ = nullptr;              // likewise
   Predictor<D> predictor_;
   FaceFlux<D> flux_;
@@ -139,7 +139,7 @@ class FractionalStep {
   Vectors<D> u_;                             // u^{n+1} with level_
   std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; nullptr after project()
   Judgement judgement_;                      // of level_
-  std::uint64_t states_ = 0;                 // numbered so far
+  std::uint64_t states_ = 0;                 // number of states so far
   double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything before the face fluxes and the pressure equation.
+// All parts before the face fluxes and the pressure equation.
 #include "fluid_solver/step/stages.hpp"
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 namespace couplet::fluid {
 namespace {
 
-// Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, and it damps
-// stiff modes.
+// Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, damps stiff
+// modes.
 constexpr double c_modified = 1.0 / 16;
 
-/// u + (a R + b R_old)/V, what an explicit step on a mesh at rest without forces comes to; R_old null: without.
+/// u + (a R + b R_old)/V, an explicit step on a fixed mesh without forces. `old`: nullptr if there is none.
 template <int D>
 COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, const Vectors<D>& u, double a,
                                             const Vec<D>* rate, double b, const Vec<D>* old, Vectors<D>& to) {
@@ -108,7 +108,7 @@ void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   scene_.obstacles->clear(out_.rates.viscous);
 }
 
-// Volume-integrated at t^{n+1/2}, where the pressure lives that may balance it.
+// Volume-integrated at t^{n+1/2}, the time of the pressure that may balance it.
 template <int D>
 void Predictor<D>::add_body_force(const State<D>& from, double e0, double e1) {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
@@ -121,8 +121,8 @@ void Predictor<D>::add_body_force(const State<D>& from, double e0, double e1) {
   for (std::size_t c = 0; c < places.size(); ++c) side_[c] += step_.dt * step_.to->volume[c] * out_.force[c];
 }
 
-// sum dV_f u~_f with u~ extrapolated to n+1/2: with the rates of a mesh held still this is the "split" ALE
-// form, second order in time and exact for a uniform flow.
+// sum dV_f u~_f with u~ extrapolated to n+1/2. With rates on a fixed mesh this is the "split" ALE form,
+// second order in time and exact for uniform flow.
 template <int D>
 void Predictor<D>::add_swept(const State<D>& from, double e0, double e1) {
   for (Index f = 0; f < mesh_.n_interior; ++f) {
@@ -140,9 +140,9 @@ void Predictor<D>::add_swept(const State<D>& from, double e0, double e1) {
   }
 }
 
-// Explicit viscous term: -(dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1}), which makes the pressure force
-// second order in time on a moving mesh. Implicit: -(dt/rho) sum p_f^{n-1/2} S^{n+1/2}, so that the wall
-// velocity is the right boundary value of the predictor; add_back_old_pressure() returns the part on S^{n+1}.
+// Explicit viscous term: -(dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1}) makes the pressure force second
+// order in time on a moving mesh. Implicit: -(dt/rho) sum p_f^{n-1/2} S^{n+1/2} makes the wall velocity the
+// correct boundary value of the predictor; add_back_old_pressure() returns the part on S^{n+1}.
 template <int D>
 void Predictor<D>::add_old_pressure(const State<D>& from, bool implicit) {
   if (!step_.by.pressure[0]) return;

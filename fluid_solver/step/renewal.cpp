@@ -10,11 +10,11 @@
 namespace couplet::fluid {
 namespace {
 
-// An oscillation that grows is held down to what this share of the load makes of it. Heavy structures, of whose
-// change of velocity a third pass leaves little, do not begin to swing: only a coarse guess is mended.
+// Limits of the unseen share of the load: for growing oscillations, and for heavy structures, whose velocity
+// hardly changes in a third pass. The latter do not oscillate, so only a poor guess is corrected.
 constexpr double largest_unseen_share = 0.001, largest_of_heavy = 0.05, slow = 0.1;
-// In the third pass of a prediction w is better than the guess. After a renewal already in the second if the gap
-// has shrunk by this: quasi-Newton methods end there, while in the passes of a relaxation w is not good yet.
+// In the third pass w is better than the guess. After a renewal this holds in the second pass if the gap has
+// decreased by this factor, as with quasi-Newton methods but not with relaxation.
 constexpr int enough_passes = 3;
 constexpr double shrunk = 0.7;
 constexpr int most = 4;  // then the whole step might as well be iterated
@@ -40,7 +40,7 @@ void Renewal<D>::start(const Vectors<D>& w) {
   count_ = 0;
 }
 
-/// How much w changed since the pass before, over what it did then.
+/// Ratio of the last change of w to the one before.
 template <int D>
 double Renewal<D>::contraction(MPI_Comm comm, const Vectors<D>& w) {
   double square = 0;
@@ -81,7 +81,7 @@ template <int D>
 bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen) {
   ++passes_;
   const double left = contraction(comm, w);
-  // Quasi-Newton methods hide how heavy the structure is as soon as they know it: the slowest step counts.
+  // Quasi-Newton methods hide the weight of the structure once they know it, so the slowest step is used.
   if (count_ == 0 && passes_ == enough_passes && unseen > largest_unseen_share)
     slowest_ = std::max(slowest_, left);
   const double allowed = slowest_ > slow ? largest_unseen_share : largest_of_heavy;

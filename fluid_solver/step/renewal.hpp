@@ -7,21 +7,21 @@
 
 namespace couplet::fluid {
 
-/// When a step of the semi-implicit scheme repeats its first part, and with which wall velocity. What friction
-/// makes of the wall's motion knows the guess w* only: a mass E beside the mass M of the loop. Repetitions are a
-/// fixed point of their own, g -> w(g), which contracts by E/M: relaxed by Aitken's factor from the second on.
-/// Structures whose passes never converged slowly are heavy beside the fluid and left alone.
+/// Decides when a semi-implicit step repeats its prediction, and with which wall velocity. Friction uses the
+/// guessed wall velocity w*, which acts like an unseen mass E beside the mass M of the loop. Repeated
+/// predictions are a fixed-point iteration g -> w(g) with contraction E/M, relaxed by Aitken's factor from
+/// the second one on. Cases whose passes never converged slowly have heavy structures and need no repetition.
 template <int D>
 class Renewal {
  public:
-  /// First pass of a step, whose prediction is made with w.
+  /// Starts the first pass of a step, whose prediction uses w.
   void start(const Vectors<D>& w);
-  /// A further pass with w. `unseen`: force that friction makes of w - guess(), over the load. True: the
-  /// prediction is to be made anew with guess(). Collective.
+  /// Takes a further pass with w. `unseen`: friction force due to w - guess(), relative to the load. Returns
+  /// true if the prediction must be repeated with guess(). Collective.
   bool wanted(MPI_Comm comm, const Vectors<D>& w, double unseen);
   const Vectors<D>& guess() const { return guess_; }
   int count() const { return count_; }
-  /// Largest share that a third pass left of the second one's change, over the run: for checkpoints.
+  /// Largest contraction from a second to a third pass over the run, for checkpoints.
   double slowest() const { return slowest_; }
   void restore(double slowest) { slowest_ = slowest; }
 
@@ -31,10 +31,10 @@ class Renewal {
   void move_guess(MPI_Comm comm, const Vectors<D>& w);
 
   Vectors<D> guess_, gap_;  // gap_: w - guess at the last renewal
-  Vectors<D> last_;         // w of the pass before
+  Vectors<D> last_;         // w of the previous pass
   double factor_ = 1, slowest_ = 0, last_change_ = 0;
-  int passes_ = 0;  // of the prediction
-  int count_ = 0;   // of renewals in the step
+  int passes_ = 0;  // with the current prediction
+  int count_ = 0;   // renewals in the step
 };
 
 }  // namespace couplet::fluid

@@ -11,11 +11,11 @@
 
 namespace couplet::fluid {
 
-/// The gradient of the velocity of a state that was needed last, on skewed meshes.
+/// Velocity gradient computed last, with the state it belongs to; skewed meshes only.
 template <int D>
 struct KnownGradient {
   std::vector<Tensor<D>> values;
-  std::uint64_t number = 0;  ///< State::number; 0: of no state
+  std::uint64_t number = 0;  ///< State::number; 0 if it belongs to no state
   const std::vector<Tensor<D>>* of(const State<D>& state) const {
     return number != 0 && number == state.number ? &values : nullptr;
   }
@@ -23,17 +23,17 @@ struct KnownGradient {
 
 /// The first stage of a fractional step:
 ///   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~ - (dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1})
-/// r = dt/dt_old; u~ = (1 + r/2) u^n - r/2 u^{n-1}; with an implicit viscous term modified Crank-Nicolson.
+/// Here r = dt/dt_old and u~ = (1 + r/2) u^n - r/2 u^{n-1}. Modified Crank-Nicolson if implicit.
 template <int D>
 class Predictor {
  public:
-  /// `result`: filled here, but for w, which is given.
+  /// `result`: filled here except for w, which is given.
   Predictor(const Scene<D>& scene, const Step<D>& step, const KnownGradient<D>& gradient,
             Prediction<D>& result);
 
-  /// u^p in the owned cells and the viscous force of the walls. Collective.
+  /// Computes u^p in the owned cells and the viscous force of the walls. Collective.
   void predict(const State<D>& from);
-  /// R of a state and its viscous force on the boundary faces, into the prediction. Collective.
+  /// Sets R of a state and its viscous force on the boundary faces in the prediction. Collective.
   void set_rates(const State<D>& from, bool implicit);
   RateOperator<D>& rate_operator() { return rate_operator_; }
   int iterations() const { return friction_.iterations(); }
@@ -55,12 +55,12 @@ class Predictor {
   ImplicitFriction<D> friction_;
   std::vector<fv::Expression> body_force_;
   Vectors<D> side_;          // right-hand side
-  Vectors<D> u_boundary_;    // of u^p
-  Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}, of an implicit predictor on a moving mesh
+  Vectors<D> u_boundary_;    // at the boundary, from u^p
+  Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}; implicit predictor on a moving mesh only
 };
 
-/// Predicted volume fluxes through the faces, phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k, and what
-/// becomes of delta = phi - (mean u).S from step to step, by `projection` (README).
+/// Predicts the volume fluxes phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k. Also updates delta
+/// = phi - (mean u).S from step to step, as `projection` selects (README).
 template <int D>
 class FaceFlux {
  public:
@@ -68,10 +68,10 @@ class FaceFlux {
   FaceFlux(const Scene<D>& scene, const Step<D>& step, KnownGradient<D>& gradient)
       : scene_(scene), mesh_(scene.mesh), step_(step), gradient_(gradient) {}
 
-  /// phi^p of a predicted velocity without the part of the pressure, per flux face [m^3/s]. Collective.
+  /// Predicts phi^p without the pressure part, per flux face [m^3/s]. Collective.
   void predict(const State<D>& from, const Vectors<D>& u);
   const std::vector<double>& phi() const { return phi_; }
-  /// delta^{n+1} of the state from its u and phi. Collective.
+  /// Sets delta^{n+1} of the state from its u and phi. Collective.
   void remember(State<D>& state);
 
  private:
@@ -88,11 +88,11 @@ class FaceFlux {
   const Step<D>& step_;
   KnownGradient<D>& gradient_;
   std::vector<double> phi_;
-  Vectors<D> u_boundary_;           // of the predicted velocity
+  Vectors<D> u_boundary_;           // from the predicted velocity
   std::vector<double> relaxation_;  // [1/s]
-  std::vector<Index> far_;          // faces whose decay is large
+  std::vector<Index> far_;          // faces with a large decay
   Vectors<D> without_pressure_;
-  std::vector<double> fading_;  // incremental: of the start's delta, at t^{n+1}
+  std::vector<double> fading_;  // incremental: factor of the initial delta, at t^{n+1}
 };
 
 }  // namespace couplet::fluid

@@ -18,18 +18,17 @@
 namespace couplet::fluid {
 namespace {
 
-// AB2 is not quite stable on the imaginary axis: growth per step that the scheme's own damping elsewhere
-// makes up for.
+// AB2 is slightly unstable on the imaginary axis: tolerated growth per step, balanced by damping elsewhere.
 constexpr double tolerated_growth = 5e-4;
-// Limit of cells with few faces, in limits of the explicit term, see StepSize.
+// Limit of cells with few faces, as a multiple of the explicit limit, see StepSize.
 constexpr double longest_implicit = 16;
-// Largest eigenvalues of the operators of fourth order over those of second: of (8 sin k - sin 2k)/6, and 16/3 over 4.
+// Ratio of largest eigenvalues, fourth to second order: of (8 sin k - sin 2k)/6, and 16/3 over 4.
 constexpr double fourth_convection = 1.3722, fourth_friction = 4. / 3;
-constexpr double largest_courant =
-    1;  // accuracy: beyond it the explicit convection is no longer resolved in time
+// Beyond this, explicit convection is no longer resolved in time.
+constexpr double largest_courant = 1;
 
-// Roots of (1 + a d) z^2 - (1 - b d + 3/2 i k) z + (c d + i k / 2) = 0, the pair at constant step, a = 9/16,
-// b = 3/8, c = 1/16.
+// Roots of (1 + a d) z^2 - (1 - b d + 3/2 i k) z + (c d + i k/2) = 0, the pair at constant step with a =
+// 9/16, b = 3/8, c = 1/16.
 bool stable(double k, double d) {
   using namespace std::complex_literals;
   const std::complex<double> p = 1 + 9.0 / 16 * d, q = -(1 - 3.0 / 8 * d + 1.5i * k), r = d / 16 + 0.5i * k;
@@ -52,7 +51,7 @@ double compute_implicit_limit(double q) {
   return low;
 }
 
-// The limit over log10(q) in [-2, 2].
+// Table of the limit over log10(q) in [-2, 2].
 class LimitTable {
  public:
   LimitTable() {
@@ -85,8 +84,7 @@ const LimitTable& implicit_table() {
 constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90},
     adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25}, runge_kutta{2.51, 2.37, 2.5, 2.4, 2.1, 1.73};
 
-/// Lower bound of the limit: cells that this keeps from deciding are passed over, which spares most of them
-/// the angle.
+/// Lower bound of the limit. Cells that cannot be decisive by it are skipped, without computing the angle.
 double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) {
   const bool rk = scheme == ExplicitScheme::runge_kutta;
   if (convection <= diffusion) return rk ? 2.37 : 0.96;
@@ -136,8 +134,8 @@ void StepSize<D>::add_eddies(const State<D>& s) {
   }
 }
 
-/// sum |phi - dV/dt| / 2 and 2 nu sum g of each cell; with `peclet` also the largest |phi - dV/dt| / (nu g)
-/// of its faces. Gives the largest of all on this rank.
+/// sum |phi - dV/dt|/2 and 2 nu sum g of each cell; with `peclet` also the largest |phi - dV/dt|/(nu g) of
+/// its faces. Returns the largest on this rank.
 template <int D>
 double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   const Placement<D>& at = *s.placement;
@@ -170,7 +168,7 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   return largest;
 }
 
-/// No friction damps what the frame makes of the fluid as a whole.
+/// Limit by the Coriolis force on uniform motion, which friction does not damp.
 template <int D>
 double StepSize<D>::frame_limit() const {
   return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : base::infinity;
@@ -276,7 +274,7 @@ template class StepSize<3>;
 namespace {
 
 constexpr int most_sub_steps = 100000;
-// The implicit viscous term costs about this much more a sub-step.
+// Relative cost of a sub-step with the implicit viscous term.
 constexpr double implicit_cost = 1.5;
 
 double parts(double dt, double limit) {
@@ -300,8 +298,8 @@ void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, d
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment(level, begin);
 }
 
-// With a step of its own the fluid keeps it whatever the treatment: implicit if the explicit one would not be
-// stable. Else the cheaper one; a change starts the multi-step schemes anew, so it needs a clear gain.
+// A prescribed step is kept for either treatment: implicit if explicit would be unstable. Otherwise the
+// cheaper one is chosen. A change restarts the multi-step schemes and so requires a clear gain.
 template <int D>
 void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>& begin) {
   bool implicit = begin.implicit;
@@ -321,7 +319,7 @@ void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>&
   begin.dt_old = 0;
 }
 
-/// Limit by stability, and by accuracy where the case asks for it.
+/// Limit by stability, and on request by accuracy.
 template <int D>
 double SubStepSize<D>::implicit_limit(const StepLimits& limits) const {
   if (!parameters_.implicit_stretch) return limits.implicit_viscous;

@@ -11,7 +11,7 @@
 namespace couplet::plate {
 namespace {
 
-/// Error of the balance of the energies, thesis (4.29)-(4.31), against the largest energy or work of the loads.
+/// Error of the energy balance, thesis (4.29)-(4.31), relative to the largest energy or work of the loads.
 class BalanceOfEnergies final : public diagnostics::Diagnostic {
  public:
   explicit BalanceOfEnergies(const PlateView& view) : view_(view) {}

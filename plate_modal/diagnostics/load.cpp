@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that faces, steps and modes see the prescribed pressures, and that faces and steps resolve them.
+// Checks that faces, steps and modes receive the prescribed pressures and resolve them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 namespace couplet::plate {
 namespace {
 
-/// A load that the run has looked at less often says nothing before the end: one jump among few steps is no error.
+/// Minimum number of load samples for a finding before the end: one jump in few steps is no error.
 constexpr long least_looks = 16;
 
-/// Sixteen points of equal weight: centres of the pieces that two halvings make.
+/// Sixteen points of equal weight: centers of the pieces after two bisections.
 std::vector<Vec3> points_within(const modes::ModalModel& model, std::span<const Index> face) {
   std::vector<Vec3> points;
   const auto at = [&](std::size_t i) -> const Vec3& { return model.vertices[face[i]]; };
@@ -30,7 +30,7 @@ std::vector<Vec3> points_within(const modes::ModalModel& model, std::span<const 
       }
     return points;
   }
-  // Rows of a triangle cut into quarters of its edges: pieces that stand and pieces that hang.
+  // Rows of a triangle with its edges cut into quarters: upright and inverted pieces.
   const auto add = [&](double x, double y) {
     points.push_back(at(0) + x * (at(1) - at(0)) + y * (at(2) - at(0)));
   };
@@ -48,7 +48,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   void observe(diagnostics::Report&) override {
     has_acted_ = has_acted_ || view_.pressure_acts;
     if (const auto t = time_to_look(view_)) look_at_faces(*t);
-    // A load that differs from place to place costs an expression for each face, so it is not looked at in each step.
+    // A nonuniform load needs an expression per face, so it is not sampled in each step.
     const GlobalIndex steps = view_.step.number + 1;
     if (view_.is_dynamic() && view_.pressure->changes_in_time() &&
         (view_.pressure->is_uniform() || steps <= 16 || steps % 16 == 0))
@@ -67,7 +67,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
                     apart),
         "the step does not resolve the load: use ten or more steps per load period");
   }
-  // A load that does nothing yet may come, so it is judged at the end.
+  // A load without effect so far may change, so it is judged at the end.
   void conclude(diagnostics::Report& report) override {
     if (fine_ > 0) report.errors.mesh += within_faces();  // NaN with modes of a file
     if (!has_acted_ && (view_.pressure->changes_in_time() || !view_.pressure->is_uniform()))
@@ -76,7 +76,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
           "the prescribed pressures were 0 at every face centre in every step",
           "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face "
           "or a step with the same resultant");
-    // Rounding remains where the modes do not move along the forces, or where these cancel.
+    // Only round-off remains if modes do not move along the forces, or forces cancel.
     const double part = std::sqrt(part_ / most_);
     if (part < 1e-9)
       report_neglected(
@@ -93,8 +93,8 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
 
  private:
   double within_faces() const { return fine_ > 0 ? std::sqrt(within_ / fine_) : unknown; }
-  /// Adds what the pressures at t do to the modes: with one force in the middle of each face, if each force lay along the
-  /// motion of its face, and with sixteen points per face.
+  /// Adds the modal loads of the pressures at t: with one force at the center of each face, with each force
+  /// along the motion of its face, and with sixteen points per face.
   void look_at_faces(double t) {
     const modes::ModalModel& model = view_.model();
     const PressureLoad& pressure = *view_.pressure;
@@ -129,7 +129,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     }
     if (!pressure.is_uniform()) fine_ += std::max(of_fine, of_middle);
   }
-  /// Compares the load in the middle of the step with its mean over some samples of the step.
+  /// Compares the load at mid-step with its mean over samples of the step.
   void look_within_step(int samples) {
     const double start = view_.step.time, dt = view_.step.dt;
     std::vector<double> middle(view_.surface.omega().size()), mean(middle.size(), 0), one(middle);
@@ -154,9 +154,9 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   PlateView view_;
   bool has_acted_ = false;
   double part_ = 0, most_ = 0;  // squares over all modes of the loads, and of these along the motion
-  double within_ = 0,
-         fine_ = 0;  // the same of what the faces miss and of the loads, each over (omega^2 + omega_1^2)
-  // Squares over all modes of the load in the middle of a step less its mean over the step, and of the load.
+  // Likewise of the part missed by the faces and of the loads, each over (omega^2 + omega_1^2).
+  double within_ = 0, fine_ = 0;
+  // Squared difference of the mid-step load from its mean over the step, summed over modes, and squared load.
   double apart_ = 0, size_ = 0;
   long samples_ = 0;
 };

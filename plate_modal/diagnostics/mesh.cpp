@@ -18,8 +18,8 @@ double along(const modes::ModalModel& model, const std::vector<double>& shape, s
   return Vec3(u[0], u[n], u[2 * n]).dot(direction);
 }
 
-/// For each mode: how far the mean of a cell's corners is from the cell's mean deflection, rms over that of the latter. In
-/// each direction of a wave with n cells in half of it that is (pi / n)^2 / 12.
+/// Per mode: difference of the mean over a cell's corners from the cell's mean deflection, RMS relative to
+/// the latter. With n cells per half wave it is (pi/n)^2/12 in each direction.
 std::vector<double> mesh_gaps(const modes::ModalModel& model, std::size_t cells, const Vec3& normal) {
   const std::vector<Vec3> areas = modes::face_areas(model);
   std::vector<double> gaps(model.n_modes(), 0);
@@ -46,10 +46,10 @@ class MeshOfModes final : public diagnostics::Diagnostic {
     if (!view.parameters.modes_file)
       gaps_ = mesh_gaps(view.model(), view.n_cells(), view.parameters.placement.normal());
   }
-  /// At the end only: a mean over the first steps is one of the load's start, whose waves are short.
+  /// Evaluated only at the end, because the first steps show the short waves of the load's start.
   void conclude(diagnostics::Report& report) override {
     report.errors.mesh = mesh_gap();
-    // 0.1 is four cells in half a wave in both directions.
+    // 0.1 corresponds to four cells per half wave in both directions.
     report_neglected(
         report, "mesh that resolves the modes", mesh_gap(), 0.1,
         fmt::format("deflection of cell centres against their corners = {:.2g} (rms over the motion)",
@@ -59,7 +59,7 @@ class MeshOfModes final : public diagnostics::Diagnostic {
   }
 
  private:
-  /// Mean over the modes by their share of the motion; of a modal analysis that of the highest mode.
+  /// Mean over the modes weighted by their motion; in a modal analysis that of the highest mode.
   double mesh_gap() const {
     if (gaps_.empty()) return unknown;
     if (view_.parameters.analysis == Parameters::Analysis::modal)

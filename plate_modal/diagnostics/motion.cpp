@@ -8,12 +8,12 @@
 namespace couplet::plate {
 namespace {
 
-/// Steps a period from which a mode counts as resolved: the trapezoidal rule makes its period longer by
-/// (omega dt)^2 / 12, 3 % with ten and 0.8 % with twenty, which is what is recommended.
+/// Steps per period for a resolved mode. The trapezoidal rule lengthens its period by (omega dt)^2/12: 3 %
+/// with ten steps and 0.8 % with twenty, the recommended number.
 constexpr double least_steps = 10, good_steps = 20;
-/// One jump among fewer steps says nothing about the load.
+/// Minimum number of samples: one jump in fewer steps gives no information about the load.
 constexpr double least_samples = 16;
-/// A load that has turned less often is no vibration.
+/// Minimum number of reversals for a load to count as a vibration.
 constexpr double least_turns = 8;
 
 }  // namespace
@@ -24,11 +24,11 @@ Motion::Motion(std::span<const double> omega) : modes_(omega.size()) {
     if (w > 0 && longest_period_ == 0) longest_period_ = 2 * std::numbers::pi / w;
 }
 
-// Trapezoidal rule, phase theta = 2 atan(omega dt / 2) a step: a swing of amplitude A has in the middle of a step
-// the displacement A cos(theta / 2) cos(phi) = - acceleration / omega^2. A mode that follows a slow load without
-// inertia has no acceleration, and nothing is seen of it here. Steps of half a period and more meet the swing at the same
-// phases again and again, its middle at rest: there its ends, A sin(theta / 2) sin(phi) apart from the middle, count as
-// much, less what the load itself moves them.
+// Trapezoidal rule with the phase theta = 2 atan(omega dt/2) per step: an oscillation of amplitude A has the
+// mid-step displacement A cos(theta/2) cos(phi) = -acceleration/omega^2. A mode that follows a slow load
+// without inertia has no acceleration and is not seen here. Steps of half a period or more sample the
+// oscillation at the same phases, with mid-steps at rest. There its ends, A sin(theta/2) sin(phi) from the
+// middle, are used, less the motion by the load.
 void Motion::accepted(const ModalState& before, const ModalState& after, std::span<const double> load,
                       double dt) {
   time_ += dt;
@@ -56,10 +56,10 @@ void Motion::accepted(const ModalState& before, const ModalState& after, std::sp
   }
 }
 
-/// A load that changes, as the displacement that it would make without inertia. Steps in which it hardly does (a
-/// constant load, a pulse that is over) say nothing: the mode is free then.
+/// A changing load as its static displacement. Steps with hardly any change (a constant load, a pulse that
+/// has ended) give no information, because the mode is then free.
 void Motion::follow(Mode& mode, double rate, double load, double dt) {
-  // Rounding of a load that stays is no change.
+  // Round-off of a constant load is no change.
   const double moved = load - mode.last_load;
   const double signed_change = std::abs(moved) < 1e-9 * std::abs(load) ? 0 : moved / dt;
   const double change = std::abs(signed_change);
@@ -78,8 +78,8 @@ void Motion::follow(Mode& mode, double rate, double load, double dt) {
   mode.driven += 1;
 }
 
-/// Near its own frequency a mode answers as 1 / (omega^2 - load^2): an error e of omega is 2 e D of the answer, D the
-/// amplification over what the load does without inertia.
+/// Near its own frequency a mode responds as 1/(omega^2 - load^2): an error e of omega gives the relative
+/// error 2 e D, D the amplification over the static response.
 void Motion::find_resonance(Evidence& e, double all) const {
   for (std::size_t m = 0; m < modes_.size(); ++m) {
     const Mode& mode = modes_[m];
@@ -96,7 +96,7 @@ void Motion::find_resonance(Evidence& e, double all) const {
   }
 }
 
-// Turns alone would take noise for a vibration, the rms of the change alone a jump.
+// Reversals alone would mistake noise for a vibration, the RMS change alone a jump.
 void Motion::find_load(Evidence& e) const {
   double change = 0, square = 0, largest = 0;
   std::size_t first = 0;
@@ -113,7 +113,7 @@ void Motion::find_load(Evidence& e) const {
   e.load_over_last = e.load_omega / modes_.back().omega;
 }
 
-/// Integral of its square over mass and time: modes are orthonormal there. Rigid motions count for their rounding.
+/// Integral of the square over mass and time (orthonormal modes). Rigid motions count by their round-off.
 double Motion::displacement() const {
   double sum = 1e-12 * rigid_;
   for (const Mode& mode : modes_) sum += mode.moved;

@@ -9,43 +9,43 @@
 
 namespace couplet::plate {
 
-/// Collects, step by step, which modes move, how well the steps resolve them and how fast the load swings. It keeps sums
-/// of each mode alone.
+/// Collects over the steps which modes move, how well the steps resolve them, and how fast the load
+/// oscillates. Stores only sums per mode.
 class Motion final {
  public:
-  /// The share of coarse modes that matters: docs/plate.md.
+  /// Limit of the share of coarse modes: docs/plate.md.
   static constexpr double coarse_limit = 0.1;
-  /// NaN: nothing can be said.
+  /// Results; NaN if not available.
   struct Evidence {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    /// Root mean square over mass and time of the swings of modes with less than ten steps per period, over that of
-    /// the displacement without rigid motions.
+    /// Root mean square over mass and time of the oscillations of modes with less than ten steps per period,
+    /// relative to the displacement without rigid motions.
     double coarse_share = unknown;
-    int coarse_mode = 0;          ///< the one that swings most of them, from 1
-    double steps_a_period = 0;    ///< of that mode
+    int coarse_mode = 0;          ///< mode with the largest such oscillation, from 1
+    double steps_a_period = 0;    ///< for that mode
     double recommended_step = 0;  ///< twenty steps per period of the highest mode that matters [s]
-    /// Error of a mode that a changing load drives, by the step's error of its frequency: 2 (error of the frequency)
-    /// (amplification of the load's motion), times the mode's share of the displacement.
+    /// Error of a mode near resonance due to its frequency error: 2 (error of the frequency) (amplification
+    /// of the load's motion), times the mode's share of the displacement.
     double resonance_error = unknown;
     int resonant_mode = 0;
     double amplification = 0;          ///< of that mode
-    double resonant_step = 0;          ///< that brings the error to a fifth of the limit [s]
+    double resonant_step = 0;          ///< step that reduces the error to a fifth of the limit [s]
     double last_mode_omega = unknown;  ///< highest mode with 1 % of the motion [1/s]
-    /// Angular frequency of a load that goes up and down: the lesser of pi times its turns per second and of its rms
-    /// change over its rms [1/s]; and that over the highest mode's.
+    /// Angular frequency of an oscillating load [1/s]: the smaller of pi times its reversals per second and
+    /// of its rms rate of change over its rms. The second value is relative to the highest mode.
     double load_omega = unknown, load_over_last = unknown;
   };
 
   explicit Motion(std::span<const double> omega);
 
-  /// A step of length `dt` has been accepted; `load`: in it, on each mode, without gravity and seat.
+  /// Adds an accepted step of length `dt`. `load`: on each mode in the step, without gravity and seat.
   void accepted(const ModalState& before, const ModalState& after, std::span<const double> load, double dt);
-  /// `at_end`: nothing comes after. Before a quarter of the longest period nothing is said: the slow modes have
-  /// not answered yet, and the fast ones carry what there is.
+  /// `at_end`: nothing follows. Empty before a quarter of the longest period, because slow modes have not
+  /// responded yet and fast ones dominate.
   Evidence evidence(bool at_end) const;
-  /// Integral over time of the square of its displacement [kg m^2 s].
+  /// Integral over time of the squared modal displacement [kg m^2 s].
   double moved(std::size_t mode) const { return modes_[mode].moved; }
-  /// For checkpoints.
+  /// Data for checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(time_, steps_, rigid_, modes_);
@@ -54,14 +54,14 @@ class Motion final {
  private:
   struct Mode {
     double omega = 0;
-    // Integrals over time: square of the displacement, of the swing about what the load holds, and of the part of the
-    // latter in steps that were too long for it [kg m^2 s]; the longest of these steps [s].
+    // Integrals over time [kg m^2 s]: squared displacement, squared oscillation about the static response,
+    // and the part of the latter in steps too long for it; longest of these steps [s].
     double moved = 0, swung = 0, coarse = 0, longest_step = 0;
-    // While a changing load drives it, integrals over time: square of the rate, of the rate that the load has without
-    // inertia, time step^2 times the former; steps; the load's displacement in the last step; largest change.
+    // During a changing load, integrals over time: squared rate, squared rate of the static response, time
+    // step^2 times the former; number of steps; static displacement in the last step; largest change.
     double rate = 0, drive = 0, rate_step = 0, driven = 0, last_load = 0, largest_change = 0;
-    // Displacement that the load has without inertia, over all steps: its integral, integral of the square and of
-    // the square of its change, times that it turned, and the last change that counted.
+    // Static response over all steps: its integral, integrals of its square and of its squared change, number
+    // of reversals, last counted change.
     double load = 0, load_square = 0, change = 0, turns = 0, last_change = 0;
     template <class Numbers>
     void visit(Numbers& numbers) {
@@ -76,8 +76,8 @@ class Motion final {
   void find_load(Evidence& evidence) const;
 
   std::vector<Mode> modes_;
-  double longest_period_ = 0;    // of a mode that is no rigid motion
-  double time_ = 0, rigid_ = 0;  // [s]; integral over time of the square of rigid motions
+  double longest_period_ = 0;    // of a mode that is not a rigid motion
+  double time_ = 0, rigid_ = 0;  // [s]; integral over time of squared rigid motions
   long steps_ = 0;
 };
 

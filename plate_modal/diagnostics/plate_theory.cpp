@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects that modes of a thin plate neglect: large motions, motion in the plane, stretch, shear and rotary inertia.
+// Effects neglected by modes of a thin plate: large and in-plane motion, stretch, shear and rotary inertia.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,9 +48,9 @@ class PlateTheory final : public diagnostics::Diagnostic {
  private:
   bool moves_freely() const { return view_.surface.omega().front() == 0; }
 
-  // A body that moves as a whole may go far, but it must not rotate far: a mode moves it along its tangent, so that
-  // 0.25 rad stretch it by 1 / cos, 3 %. A clamped strip whose tip has moved by a quarter of its length has rotated there
-  // by about 20 degrees: the foreshortening that modes do not know is 0.6 x 0.25^2 of the length, 4 %.
+  // A free body may translate far but not rotate far: a mode moves it along the tangent, so that 0.25 rad
+  // stretch it by 1/cos, 3 %. A clamped strip with a tip deflection of a quarter of its length has rotated
+  // there by about 20 degrees; the neglected foreshortening is 0.6 x 0.25^2 of the length, 4 %.
   void look_at_rotation(diagnostics::Report& report, double displacement) const {
     if (moves_freely())
       report_neglected(report, "large rotation", rotation_, 0.25,
@@ -65,7 +65,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
           0.6 * displacement * displacement);
   }
 
-  // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
+  // Stretch stiffens a plate with held edges by about 1 + 0.5 (w/h)^2, depending on the edges.
   void look_at_stretch(diagnostics::Report& report, double deflection) const {
     const double stiffening = 0.5 * deflection * deflection;
     report_neglected(
@@ -76,7 +76,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
         stiffening / (1 + stiffening));
   }
 
-  /// The largest share in the plane of what pushes or moves the whole plate: modes of bending do not answer it.
+  /// Largest in-plane share of loads and base motion, to which bending modes do not respond.
   void look_at_plane(diagnostics::Report& report) const {
     const Parameters& p = view_.parameters;
     const Vec3 normal = p.placement.normal();
@@ -84,7 +84,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
       return all.norm() > 0 ? (all - all.dot(normal) * normal).norm() / all.norm() : 0;
     };
     double share = share_of(p.initial_velocity);
-    // Supports hold the weight along a plate; nothing holds a plate that may fall as a whole.
+    // Supports carry in-plane weight; a free plate has none.
     if (!p.gravity.empty() && moves_freely()) share = std::max(share, share_of(Vec3(p.gravity.data())));
     report_neglected(
         report, "motion in the plane", share, 0.01,
@@ -95,8 +95,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
         share);
   }
 
-  // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu))) of it,
-  // omega by 2 % where half a wave, pi / k, is ten thicknesses long.
+  // Mindlin's plate compared with Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5
+  // (1 - nu))), omega by 2 % if half a wave, pi/k, is ten thicknesses long.
   void look_at_shear(diagnostics::Report& report) const {
     const double omega =
         motion_ ? motion_->evidence(view_.step.is_last).last_mode_omega : view_.surface.omega().back();
@@ -107,8 +107,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
                      "shear and rotary inertia soften such modes: keep fewer, or use a volume model",
                      4 * ratio * ratio);  // twice the 2 % of omega at 0.1, in the motion
   }
-  /// Thickness over half the length of a bending wave of this frequency in the thickest part of the plate:
-  /// D k^4 = rho h omega^2. NaN for a frequency that is not known.
+  /// Thickness over half the bending wavelength at this frequency in the thickest part of the plate: D k^4 =
+  /// rho h omega^2. NaN for an unknown frequency.
   double thickness_over_wave(double omega) const {
     const Parameters& p = view_.parameters;
     if (std::isnan(omega)) return omega;
@@ -129,8 +129,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
   std::shared_ptr<const Motion> motion_;
   double size_ = 0;
   std::vector<Vec3> rotations_;  // of each rigid mode [1/(sqrt(kg) m)], 0 for the others
-  double displacement_ = 0,
-         rotation_ = 0;  // largest of any vertex [m]; of the body as a whole [rad]
+  // Largest of any vertex [m]; of the body as a whole [rad].
+  double displacement_ = 0, rotation_ = 0;
 };
 
 }  // namespace

@@ -12,12 +12,12 @@
 namespace couplet::plate {
 namespace {
 
-/// An impact that moves less of the energy is not counted: a structure that rests on its seat trembles.
+/// Minimum share of the energy for an impact to be counted, because a structure resting on its seat vibrates.
 constexpr double least_work = 0.02;
 
-/// The shortest impact on the seat in steps, and whether the structure met its seat at all. A body on a seat: the time of
-/// an impact is wrong by a third of a step and its speed after it by as much of the impact; twenty steps in a contact give
-/// 1 % (docs/plate.md).
+/// Shortest impact on the seat in steps, and whether there was contact. The error of the impact time is a
+/// third of a step, and that of the speed after it a corresponding share. Twenty steps per contact give 1 %
+/// (docs/plate.md).
 class ImpactOnSeat final : public diagnostics::Diagnostic {
  public:
   explicit ImpactOnSeat(const PlateView& view) : view_(view) {}

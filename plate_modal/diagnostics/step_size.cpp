@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that the time step resolves the modes that move, and estimates its error.
+// Checks that the time step resolves the moving modes, and estimates its error.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace couplet::plate {
 namespace {
 
-/// Ten steps in a period make the trapezoidal rule's period 3 % too long, and a mode that swings at another frequency than
-/// its own answers a load as another structure would.
+/// With ten steps per period the trapezoidal rule lengthens the period by 3 %, and a mode at a wrong
+/// frequency responds to a load like another structure.
 class StepSize final : public diagnostics::Diagnostic {
  public:
   StepSize(const PlateView& view, std::shared_ptr<Motion> motion) : view_(view), motion_(std::move(motion)) {}
@@ -51,7 +51,7 @@ double norm_of(std::span<const double> amplitudes) {
   return std::sqrt(std::inner_product(amplitudes.begin(), amplitudes.end(), amplitudes.begin(), 0.0));
 }
 
-/// Error of all steps so far, of modes of unit mass.
+/// Error of all steps so far, for modes of unit mass.
 class StepError final : public diagnostics::Diagnostic {
  public:
   explicit StepError(const PlateView& view) : view_(view), errors_(view.parameters.time_scheme) {}
@@ -67,13 +67,13 @@ class StepError final : public diagnostics::Diagnostic {
   }
 
  private:
-  /// Rate at which the damping takes away what moves as the modes do now [1/s].
+  /// Decay rate of the present motion by damping [1/s].
   double rate_of_decay() const {
     const std::span<const double> c = view_.oscillators.damping();
     const std::vector<double>&omega = view_.surface.omega(), &v = view_.state.v;
     double lost = 0, all = 0;
     for (std::size_t m = 0; m < c.size(); ++m) {
-      // The slower of two rates beyond the critical damping.
+      // Above critical damping, the slower of two rates.
       lost += v[m] * v[m] * (c[m] <= 2 * omega[m] ? 0.5 * c[m] : omega[m] * omega[m] / c[m]);
       all += v[m] * v[m];
     }

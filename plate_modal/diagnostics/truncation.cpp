@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates what the truncated modes would contribute.
+// Estimates the contribution of the truncated modes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,9 +18,9 @@
 namespace couplet::plate {
 namespace {
 
-/// Judges the truncated modes of a dynamic analysis by static correction: the compliance f (K + s M)^-1 f of the plate
-/// against that of its modes, sum (phi . f)^2 / (omega^2 + s), summed over the times at which the loads are looked at. s is
-/// 0 for a plate that is held, and the square of its first frequency above 0 otherwise.
+/// Judges the truncation of modes in a dynamic analysis by static correction: compliance f (K + s M)^-1 f of
+/// the plate relative to that of its modes, sum (phi . f)^2/(omega^2 + s), summed over sampled times. s is 0
+/// for a held plate, otherwise the square of its first nonzero frequency.
 class TruncatedModes final : public diagnostics::Diagnostic {
  public:
   TruncatedModes(const PlateView& view, std::shared_ptr<const Motion> motion)
@@ -42,7 +42,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     report_neglected(report, "deflection beyond the modes", share, 0.05,
                      fmt::format("compliance of the loads in truncated modes = {:.2g}", share),
                      "the loads excite truncated modes: keep more modes ('modes.number')", share);
-    // A load without any part in the truncated modes does not move them at any frequency.
+    // A load without a component in the truncated modes does not excite them at any frequency.
     if (!(share < 1e-6)) look_at_load_frequency(report);
     look_at_velocity(report);
   }
@@ -99,8 +99,8 @@ class TruncatedModes final : public diagnostics::Diagnostic {
         "more modes ('modes.number')",
         apart);
   }
-  // A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
-  // what the static measure counts, and near it without limit.
+  // A mode responds to a load of frequency f by 1/(1 - (f/f_mode)^2): at two thirds of its frequency 1.8
+  // times the static measure, and near it without bound.
   void look_at_load_frequency(diagnostics::Report& report) const {
     const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
     report_neglected(
@@ -109,7 +109,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
                     seen.load_omega / (2 * std::numbers::pi), seen.load_over_last),
         "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
   }
-  /// Share of the energy of the initial velocity that no mode has.
+  /// Share of the initial kinetic energy that is in no mode.
   void look_at_velocity(diagnostics::Report& report) const {
     const Vec3& v = view_.parameters.initial_velocity;
     if (!(v.norm() > 0)) return;
@@ -127,7 +127,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   std::shared_ptr<const Motion> motion_;
   double shift_;                   // s [1/s^2]
   double left_out_ = 0, all_ = 0;  // compliance
-  // On rank 0, from the first load on.
+  // On rank 0, created with the first load.
   std::optional<linalg::SparseMatrix> matrix_;
   std::unique_ptr<linalg::LinearSolver> solver_;
 };

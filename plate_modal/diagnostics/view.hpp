@@ -16,7 +16,7 @@
 
 namespace couplet::plate {
 
-/// Everything that diagnostics may read of a structure, as it is after the last accepted step.
+/// State of a structure after the last accepted step, as diagnostics see it.
 struct PlateView {
   const Parameters& parameters;
   MPI_Comm comm;
@@ -30,28 +30,28 @@ struct PlateView {
   const std::vector<double>& displacement;  ///< of the vertices [m], 3 each
   const std::optional<Deflection>& deflection;
   const std::vector<double>& fluid_force;  ///< pressure forces on the faces [N], 3 each; may be empty
-  const bool& pressure_acts;               ///< a prescribed pressure was not 0 somewhere in the step
+  const bool& pressure_acts;               ///< a prescribed pressure was not zero in the step
 
   bool is_dynamic() const { return parameters.analysis == Parameters::Analysis::dynamic; }
   const modes::ModalModel& model() const { return surface.model(); }
   /// Square of the first angular frequency above 0 [1/s^2]; 1 if there is none.
   double first_elastic() const;
-  /// Cells of the mid-surface, which are the first faces of the surface.
+  /// Number of cells of the mid-surface, which are the first faces of the surface.
   std::size_t n_cells() const;
 };
 
-/// The time at which to look at the loads of the accepted step: its middle in a dynamic analysis, at ever longer
-/// intervals; its end in a static analysis, where the answer changes.
+/// Time at which to examine the loads of the accepted step. In a dynamic analysis it is mid-step, at growing
+/// intervals. In a static analysis it is the end, if the result changes.
 std::optional<double> time_to_look(const PlateView& view);
 
 /// Adds all diagnostics of a structure.
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all);
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Reports what is neglected, unless its number is unknown. `share` of the answer that this changes, see diagnostics::Finding.
+/// Reports a neglected effect unless its number is unknown. `share`: see diagnostics::Finding.
 void report_neglected(diagnostics::Report& report, const char* effect, double number, double limit,
                       std::string what, std::string advice, double share = unknown);
-/// Reports on an effect that the scene has, unless its number is unknown.
+/// Reports an effect of the case unless its number is unknown.
 void report_present(diagnostics::Report& report, const char* effect, double number, double limit,
                     std::string what, std::string advice,
                     double wrong_from = std::numeric_limits<double>::infinity());

@@ -20,10 +20,10 @@
 namespace couplet::plate {
 namespace {
 
-/// To be counted up when the same data would give other modes.
+/// Increment when the same input would produce different modes.
 constexpr int model_version = 3;
 
-/// FNV-1a over all that the modes depend on.
+/// FNV-1a hash of all data that affect the modes.
 class Key final {
  public:
   void add(const void* data, std::size_t bytes) {
@@ -49,9 +49,9 @@ std::vector<Support> supports(const Midsurface& surface, const Parameters& p) {
   return result;
 }
 
-/// The stretch of a plate whose edges cannot move in its plane stiffens it by about an eighth at these deflections: of a
-/// clamped circle as 1 + 0.49 (w/h)^2, of a hinged one as 1 + 1.85 (w/h)^2 [Timoshenko and Woinowsky-Krieger 1959, section
-/// 97], of hinged strips as 1 + 3 (w/h)^2.
+/// Membrane stretching stiffens a plate with fixed edges by about an eighth at these deflections: a clamped
+/// circle as 1 + 0.49 (w/h)^2, a hinged one as 1 + 1.85 (w/h)^2 [Timoshenko and Woinowsky-Krieger 1959,
+/// section 97], hinged strips as 1 + 3 (w/h)^2.
 double stretch_limit(const std::vector<Support>& patches) {
   const auto n = [&](Support s) { return std::ranges::count(patches, s); };
   if (n(Support::free) > 0 && n(Support::clamped) + n(Support::simply_supported) < 2) return 0;
@@ -109,7 +109,7 @@ void check_names(const Midsurface& s, const Parameters& p, const std::string& na
           name, patch);
 }
 
-/// The file of the mid-surface, meshed if it is a drawing.
+/// File of the mid-surface; a drawing is meshed first.
 std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / *p.mesh;
   if (!std::filesystem::is_regular_file(file))
@@ -127,7 +127,7 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
   return kind == ".geo" ? mesh::mesh_geo(file, 2, p.mesh_parameters) : file;
 }
 
-/// The mid-surface of the mesh that the parameters name, its lengths times their scale.
+/// Mid-surface of the mesh in the parameters, with scaled lengths.
 Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = mesh_file(p, folder);
   mesh::RawMesh raw = mesh::read_msh(file);
@@ -144,10 +144,10 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   return surface;
 }
 
-/// Rigid motions come with the rounding of the stiffness: below this eigenvalue they are none [1/s^2].
+/// Largest eigenvalue of a rigid motion, due to round-off of the stiffness [1/s^2].
 double rigid_limit(const PlateModel& plate) { return 1e-6 * plate.frequency_scale(); }
 
-/// A plate that may fall and turn in some ways must be able to do so in all of them.
+/// Throws Error if only some of a free plate's rigid motions were found.
 void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) {
   if (!(modes.next < rigid_limit(plate))) return;
   const modes::EigenModes first = plate.modes(3);  // there are no more: a fall and two turns
@@ -159,7 +159,7 @@ void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) 
       rigid, modes.eigenvalue.size(), rigid);
 }
 
-/// The key of the data with a digest of what was made of them: a file whose values were edited is not used again.
+/// Key of the input with a digest of the results, so that a file with edited values is not reused.
 std::string key_with_content(const std::string& key, const modes::ModalModel& model) {
   Key content;
   content.add(model.vertices);
@@ -172,7 +172,7 @@ std::string key_with_content(const std::string& key, const modes::ModalModel& mo
   return key + "-" + content.text();
 }
 
-/// Takes the modes of an earlier run if they belong to the same mesh and data and are as they were written.
+/// Reuses the modes of an earlier run if they belong to the same mesh and data and are unmodified.
 bool reuse_modes(Built& built, const std::filesystem::path& file, const std::string& key) {
   const std::string kept = modes::key_of_modes(file);
   if (!kept.starts_with(key + "-")) return false;
@@ -189,7 +189,7 @@ bool reuse_modes(Built& built, const std::filesystem::path& file, const std::str
   return false;
 }
 
-/// Notes what a user who draws a curved edge by straight lines should know.
+/// Adds notes about curved edges drawn as straight lines.
 void look_at_corners(Built& built, const Midsurface& surface, const std::vector<Support>& support) {
   const std::vector<OutlinePoint> outline = outline_of(surface);
   const std::vector<Index> corners = blunt_corners(surface, outline, support);
@@ -228,7 +228,7 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
   const double least = std::sqrt(rigid_limit(plate)) / (2 * std::numbers::pi);
   for (double& f : built.model.frequency)
     if (f < least) f = 0;
-  // Without the key they are found again, and what was noted is said again.
+  // Without the key, modes are recomputed and their notes are repeated.
   if (!context.output_folder.empty())
     modes::write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
 }

@@ -11,42 +11,41 @@
 
 namespace couplet::plate {
 
-/// Where a structure runs.
+/// Communicator, name, folders and time step of a structure.
 struct PlateContext {
   MPI_Comm comm = MPI_COMM_SELF;
   std::string name = "plate";
-  std::filesystem::path case_folder, output_folder;  ///< output empty: nothing is written
+  std::filesystem::path case_folder, output_folder;  ///< output empty: no files are written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
-  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< of the run; NaN: not known
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< of the run; NaN if unknown
 };
 
-/// Structure that the configuration describes.
+/// Structure described by the configuration.
 struct Built {
   modes::ModalModel model;
-  std::unique_ptr<PlateModel> plate;  ///< of a mesh, but for a modal analysis; on rank 0
-  bool reused = false;                ///< modes of an earlier run
-  /// Deflection over thickness from which the stretch of a plate with two held edges matters; 0 if there are none.
+  std::unique_ptr<PlateModel> plate;  ///< from a mesh, except in a modal analysis; on rank 0
+  bool reused = false;                ///< modes come from an earlier run
+  /// Ratio of deflection to thickness at which stretching of a plate with two held edges matters; 0 if none.
   double stretch_limit = 0;
   std::vector<double> kinks;  ///< at blunt corners of hinged edges [rad]
-  std::string outline;        ///< what the user should know of the outline, or nothing
-  std::string note;           ///< something the user should know, or nothing
+  std::string outline;        ///< information about the outline for the user; may be empty
+  std::string note;           ///< information for the user; may be empty
 };
 
-/// Cells of the mid-surface with their materials, supports of its patches. Throws Error naming zones and
-/// patches that the mesh does not have, or that have no entry.
+/// Assigns materials to cells and supports to patches of the mid-surface. Throws Error with zones and patches
+/// that are missing in the mesh or have no entry.
 PlateModel plate_of(Midsurface surface, const Parameters& parameters, const std::string& name);
 
-/// Modes of the mesh (from modes.h5 of the output folder if they belong to the same mesh and data), or those
-/// of the file that the parameters name. `raw`: mesh on rank 0 in place of that of the parameters.
-/// Collective.
+/// Computes modes of the mesh, or reads them from modes.h5 of the output folder if mesh and data match, or
+/// from the file of the parameters. `raw`: mesh on rank 0 instead of that of the parameters. Collective.
 Built build_model(const Parameters& parameters, const PlateContext& context,
                   const mesh::RawMesh* raw = nullptr);
 
-/// For --check: modes that are missing, broken or of no structure.
+/// Mode files that are missing, corrupt or of no structure, for --check.
 std::vector<app::ProblemOfKey> problems_of_files(const Parameters& parameters,
                                                  const std::filesystem::path& case_folder);
 
-/// Modes of another program, whose surface says by its faces alone where its outside is. Throws Error.
+/// Modes of another program, with face orientations that define the outside. Throws Error.
 modes::ModalModel modes_of_file(const Parameters& parameters, const std::filesystem::path& file);
 
 /// kappa / S of thesis (4.33) for f_SI = 1: bulk modulus over thickness [N/m^3].

@@ -19,8 +19,8 @@ std::array<Vec2, 3> coordinate_gradients(const Triangle& x) {
   return g;
 }
 
-/// Slopes (two rows) at the middle of the edge opposite to vertex k: along the edge those of the cubic
-/// through the deflections and slopes of its ends, across it the mean of the ends [batoz1980].
+/// Slopes (two rows) at the midpoint of the edge opposite to vertex k: along the edge those of the cubic
+/// through its ends, across it the mean of the ends [batoz1980].
 Eigen::Matrix<double, 2, 9> middle_slopes(const Triangle& x, int k) {
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   const double length = (x[j] - x[i]).norm();
@@ -36,7 +36,7 @@ Eigen::Matrix<double, 2, 9> middle_slopes(const Triangle& x, int k) {
   return t * along + n * across;
 }
 
-/// Curvatures (w,xx  w,yy  2 w,xy) at the place with these area coordinates.
+/// Curvatures (w,xx  w,yy  2 w,xy) at the point with these area coordinates.
 Eigen::Matrix<double, 3, 9> curvature(const std::array<Vec2, 3>& gradient,
                                       const std::array<Eigen::Matrix<double, 2, 9>, 3>& middle,
                                       const std::array<double, 3>& l) {
@@ -56,8 +56,7 @@ Eigen::Matrix<double, 3, 9> curvature(const std::array<Vec2, 3>& gradient,
   return b;
 }
 
-// Powers of the area coordinates in the cubic Bernstein basis: corners, edges (two at i, one at j), the
-// middle.
+// Powers of the area coordinates in the cubic Bernstein basis: corners, edges (two at i, one at j), center.
 constexpr std::array<std::array<int, 3>, 10> powers{{{3, 0, 0},
                                                      {0, 3, 0},
                                                      {0, 0, 3},
@@ -82,7 +81,7 @@ Eigen::Matrix<double, 10, 9> cubic(const Triangle& x) {
     if (j < 0) continue;
     for (int d = 0; d < 2; ++d) c(a, 3 * i + 1 + d) = (x[j] - x[i])[d] / 3;
   }
-  // The middle coefficient for which quadratic w are exact.
+  // Center coefficient for exact quadratic w.
   c.row(9) = c.middleRows(3, 6).colwise().sum() / 4 - c.topRows(3).colwise().sum() / 6;
   return c;
 }
@@ -118,7 +117,7 @@ TriangleMatrix bending_stiffness(const Triangle& x, double rigidity, double nu) 
   const auto gradient = coordinate_gradients(x);
   const std::array middle{middle_slopes(x, 0), middle_slopes(x, 1), middle_slopes(x, 2)};
   TriangleMatrix k = TriangleMatrix::Zero();
-  // Curvatures are linear: the middles of the edges integrate their products exactly.
+  // Curvatures are linear, so edge midpoints integrate their products exactly.
   for (const std::array<double, 3>& l :
        {std::array{0., .5, .5}, std::array{.5, 0., .5}, std::array{.5, .5, 0.}}) {
     const auto b = curvature(gradient, middle, l);

@@ -18,8 +18,7 @@ namespace {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Twice the area of the smallest corner triangle, positive if the cell turns counter-clockwise and bulges
-/// everywhere.
+/// Twice the area of the smallest corner triangle; positive for a convex counter-clockwise cell.
 double least_corner(const Midsurface& s, std::span<const Index> cell) {
   double least = std::numeric_limits<double>::infinity();
   const std::size_t n = cell.size();
@@ -30,11 +29,11 @@ double least_corner(const Midsurface& s, std::span<const Index> cell) {
   return least;
 }
 
-/// The model lies in the plane of the mesh's x and y, and 'placement' says where that is in space: a mesh that stands
-/// in another plane, or is no plane, would be seen from above only.
+/// The model is in the x-y plane of the mesh, and 'placement' gives its position in space. A mesh in another
+/// plane, or a curved one, would only be seen from above.
 void refuse_out_of_plane(const mesh::RawMesh& raw) {
-  constexpr double tolerance =
-      1e-6;  // of the mesh's size: coordinates of a file have no more digits than this
+  // Relative to the mesh size: coordinates in a file have no more digits.
+  constexpr double tolerance = 1e-6;
   std::vector<Index> used;
   for (Index c = 0; c < raw.cell_points.size(); ++c)
     for (const Index p : raw.cell_points[c]) used.push_back(p);
@@ -100,7 +99,7 @@ std::map<std::pair<Index, Index>, Index> element_of_edges(const mesh::RawMesh& r
   return element;
 }
 
-/// Edges of a patch that are not on the outline would hold nothing, whatever their entry says.
+/// Rejects edges of a patch inside the outline, which would have no effect.
 void refuse_inside(const Midsurface& s, const mesh::RawMesh& raw,
                    const std::map<std::pair<Index, Index>, Index>& elements,
                    const std::map<std::pair<Index, Index>, int>& uses) {
@@ -152,7 +151,7 @@ Midsurface midsurface_of(const mesh::RawMesh& raw, std::span<const int> curves) 
 namespace {
 
 constexpr double sharp = 55 * base::degree, least = 0.5 * base::degree, least_share = 0.6;
-// Below it a corner is told: right angles have 2.
+// Order below which a corner is reported; right angles have 2.
 constexpr double least_order = 1.9;
 
 struct Neighbours {
@@ -163,29 +162,29 @@ Vec2 along(const Midsurface& s, int edge) {
   return s.points[s.edges[edge].to] - s.points[s.edges[edge].from];
 }
 
-/// Angle from one edge to the next, to the left positive.
+/// Angle from one edge to the next, positive to the left.
 double turn_between(const Midsurface& s, int first, int second) {
   const Vec2 a = along(s, first), b = along(s, second);
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
 }
 
-/// Angle by which a curve turns between the middle of its last edge and its end, from the turn before that edge. Where nothing is
-/// known of that (the curve has one edge, or a sharp corner lies there) the curve goes on as a circle over a point within it, and as a
-/// line up to a point between two curves.
+/// Turn of a curve between the midpoint of its last edge and its end, from the turn before that edge. If this
+/// is unknown (the curve has one edge, or a sharp corner is there), the curve continues as a circle at an
+/// inner point, and as a line up to a point between two curves.
 double turn_to_end(const Midsurface& s, int edge, int beyond, int other, double turn_here) {
   const bool is_after = beyond >= 0 && s.edges[edge].to == s.edges[beyond].from;
   const double here = along(s, edge).norm();
   if (beyond >= 0 && s.edges[edge].curve == s.edges[beyond].curve)
     if (const double turn = is_after ? turn_between(s, edge, beyond) : turn_between(s, beyond, edge);
         std::abs(turn) <= sharp)
-      // No more than the turn itself: a corner next to this point is none of the curve's own.
+      // At most the turn itself: a corner next to this point is not part of the curve.
       return std::clamp(turn * here / (here + along(s, beyond).norm()), -std::abs(turn_here),
                         std::abs(turn_here));
   const bool within = std::abs(turn_here) <= sharp && s.edges[edge].curve == s.edges[other].curve;
   return within ? turn_here * here / (here + along(s, other).norm()) : 0;
 }
 
-/// The direction `a`, turned to the left.
+/// Direction `a` rotated to the left.
 Vec2 turned(const Vec2& a, double angle) { return Eigen::Rotation2Dd(angle) * a.normalized(); }
 
 }  // namespace

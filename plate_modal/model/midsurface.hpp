@@ -13,53 +13,52 @@ using Vec2 = Eigen::Vector2d;
 
 enum class Support { free, clamped, simply_supported, symmetry };
 
-/// The mid-surface of a plate, whole, on one rank: a plane mesh of triangles and quadrilaterals.
+/// Complete mid-surface of a plate on one rank: a plane mesh of triangles and quadrilaterals.
 struct Midsurface {
   std::vector<Vec2> points;  ///< [m]
   mesh::Csr cells;           ///< points of each cell, counter-clockwise
   std::vector<int> zone;     ///< per cell, index into `zones`
   std::vector<std::string> zones;
   struct Edge {
-    Index from, to;  ///< counter-clockwise about the plate: the outside lies to the right
+    Index from, to;  ///< counter-clockwise about the plate: the outside is to the right
     Index cell;
     int patch;       ///< index into `patches`
-    int curve = -1;  ///< of the drawing, if that is known
+    int curve = -1;  ///< of the drawing, if known
   };
-  std::vector<Edge> edges;  ///< the whole outline, each once
+  std::vector<Edge> edges;  ///< the whole outline, each edge once
   std::vector<std::string> patches;
 };
 
-/// Turns cells counter-clockwise, drops points that no cell uses and finds the patch of every edge of the
-/// outline. Throws Error naming the place of an edge without a patch, of two patches or of one inside the plate, of a
-/// cell without area, or of a point out of the plane. `curves`: of each boundary element the curve of the drawing; empty:
-/// not known.
+/// Orients cells counter-clockwise, removes unused points and finds the patch of every outline edge. Throws
+/// Error with the place for an edge without a patch, with two, or inside the plate, for a cell without area,
+/// or a point out of the plane. `curves`: curve of the drawing per boundary element; empty if unknown.
 Midsurface midsurface_of(const mesh::RawMesh& raw, std::span<const int> curves = {});
 
-/// The outline at each point of the mid-surface. Within a curve edges turn by as much as the mesh is coarse, at a corner by
-/// the same angle in any mesh: `kink` is what the tangents of the two sides, each continued to the point from the middles of
-/// its last two edges (exact on a straight line and on a circle), leave of the turn. A curve of the drawing with one edge is
-/// straight, and a turn of more than 55 degrees is a corner: no mesh resolves that.
+/// Outline at each point of the mid-surface. Edges of a curve turn in proportion to the mesh size, those at a
+/// corner by a fixed angle. `kink` is the rest of the turn after extrapolating the tangents of both sides to
+/// the point from the midpoints of their last two edges (exact for lines and circles). A curve of the drawing
+/// with one edge is straight. A turn of more than 55 degrees is a corner, because no mesh resolves it.
 struct OutlinePoint {
-  bool known = false;  ///< one edge ends here and one starts
-  double turn = 0;     ///< between these two, to the left positive [rad]
-  double kink = 0;     ///< of the curves themselves [rad]; 0: there is no corner
-  Vec2 before = Vec2::Zero(),
-       after = Vec2::Zero();  ///< unit tangents of the two sides at the point; alike without a corner
+  bool known = false;  ///< one edge ends and one starts here
+  double turn = 0;     ///< between these two, positive to the left [rad]
+  double kink = 0;     ///< of the curves themselves [rad]; 0 if there is no corner
+  /// Unit tangents of the two sides at the point, equal without a corner.
+  Vec2 before = Vec2::Zero(), after = Vec2::Zero();
 };
 std::vector<OutlinePoint> outline_of(const Midsurface& surface);
 
-/// Order in h to which a mesh finds the deflection of a plate with a corner between two hinged edges that turns by `kink`
-/// [rad], 2 at most: there it is as smooth as r^mu only, mu the least of k pi / angle and 2 - k pi / angle above 1
-/// [blum1980], and the error falls as h^(2 (mu - 1)).
+/// Convergence order in h, at most 2, of the deflection at a corner between two hinged edges that turns by
+/// `kink` [rad]. The deflection is only as smooth as r^mu, mu the smallest of k pi/angle and 2 - k pi/angle
+/// above 1 [blum1980], so the error decreases as h^(2 (mu - 1)).
 double order_at_corner(double kink);
 
-/// Error that a mesh leaves in the deflection, over the deflection: `gap` where the outline is smooth or rectangular, h^2 in kind;
-/// at corners, `kinks`, as much more as their order is less. Within a factor of 2 of the errors of a hexagon (5 and 10 edges a
-/// side), a rhombus of 30 degrees and polygons of 12 sides; corners of less than 20 degrees count by their turn.
+/// Relative mesh error of the deflection. `gap`: error for a smooth or rectangular outline, of order h^2; it
+/// grows at corners, `kinks`, of lower order. Within a factor of 2 for a hexagon (5 and 10 edges per side), a
+/// rhombus of 30 degrees and polygons of 12 sides. Corners below 20 degrees are weighted by their turn.
 double with_corners(double gap, std::span<const double> kinks);
 
-/// Points of the outline between two simply supported edges that are corners of an order below 2; where straight lines
-/// stand for a curved edge it is another plate (Babuska's paradox). `support`: one a patch.
+/// Outline points between two simply supported edges that are corners of an order below 2. Straight lines
+/// instead of a curved edge describe another plate there (Babuska's paradox). `support`: one per patch.
 std::vector<Index> blunt_corners(const Midsurface& surface, const std::vector<OutlinePoint>& outline,
                                  const std::vector<Support>& support);
 

@@ -15,7 +15,7 @@ config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3").plausible
 config::Key& as_modulus(config::Key&& key) { return key.unit("Pa").plausible(1, 2e12); }
 config::Key& as_thickness(config::Key&& key) { return key.unit("m").plausible(1e-7, 10); }
 
-/// Material and thickness.
+/// Declares material and thickness.
 void declare_layers(config::Section& s, Parameters& p) {
   s.section(
       "material",
@@ -80,7 +80,7 @@ void declare_place(config::Section& s, Parameters& p) {
             .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
         q.check(
             [&]() -> std::string {
-              // Scaled by their largest components first: the square of a small length is 0.
+              // Scaled by their largest components first, because the square of a small length underflows.
               const Vec3 x = p.placement.x.stableNormalized(), y = p.placement.y.stableNormalized();
               return x.norm() > 0.5 && y.norm() > 0.5 && std::abs(x.dot(y)) < 1e-9
                          ? ""
@@ -173,7 +173,7 @@ void declare_loads(config::Section& s, Parameters& p) {
       "a rigid seat under the structure, for dynamic analyses only");
 }
 
-/// Keys that describe a plate say nothing about the modes of a file, which have their own surface, place and mass.
+/// Rejects keys of a plate for modes from a file, which have their own surface, position and mass.
 void check_file_alone(config::Section& s, const Parameters& p) {
   const auto of_no_use = [&](const char* key, const char* why, auto&& is_given) {
     s.check(

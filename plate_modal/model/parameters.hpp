@@ -27,17 +27,17 @@ struct Edge {
   Support support = Support::free;
 };
 
-/// A zone of the mesh that differs from the rest of the plate.
+/// Zone of the mesh that differs from the rest of the plate.
 struct Zone {
   std::optional<double> thickness, density, youngs_modulus;
 };
 
-/// Damping of every mode, over the critical one: ratio + (mass / omega + stiffness omega) / 2.
+/// Damping ratio of each mode: ratio + (mass / omega + stiffness omega) / 2.
 struct Damping {
   double ratio = 0, mass = 0, stiffness = 0;
 };
 
-/// Pressures on the two sides in a run without a fluid [Pa]; each pushes into the plate.
+/// Pressures on both sides in a run without a fluid [Pa]; each pushes into the plate.
 struct Load {
   std::optional<config::ExpressionText> upper, lower;
 };
@@ -57,18 +57,18 @@ struct Parameters {
   std::optional<std::string> mesh, modes_file;  // one of the two
   bool cavity = false;                          // the file's surface encloses the outside
   std::map<std::string, double> mesh_parameters;
-  double mesh_scale = 1;  // all lengths of the mesh file times this
+  double mesh_scale = 1;  // scale of all lengths of the mesh file
   Material material;
   double thickness = 0;
   std::map<std::string, Zone> zones;
   std::map<std::string, Edge> boundaries;
   Placement placement;
   Wetted wetted = Wetted::both;
-  std::optional<double> number;  // of modes of a mesh
+  std::optional<double> number;  // number of modes of a mesh
   int n_modes() const { return number ? static_cast<int>(*number) : 15; }
   time::TimeSchemeParameters time_scheme;
   std::optional<Damping> damping;
-  std::vector<double> gravity;  // [m/s^2]; empty: none
+  std::vector<double> gravity;  // [m/s^2]; empty if there is none
   std::optional<Load> load;
   std::optional<ContactParameters> contact;
   bool surface_density = false;  // given at the faces, for a Robin interface
@@ -78,17 +78,17 @@ struct Parameters {
   PlateOutput output;
 };
 
-/// The keys of `participants.<name>` of a plate_modal.
+/// Declares the keys of `participants.<name>` of a plate_modal.
 void declare(config::Section& section, Parameters& parameters);
 
-/// Scene of the effect cards: the parameters, and whether a coupler gives the forces of a fluid.
+/// Input of the effect cards: the parameters, and whether a coupler gives fluid forces.
 struct PlateScene {
   Parameters parameters;
   bool coupled = false;
-  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN if unknown
 };
 using PlateCard = diagnostics::EffectCard<PlateScene>;
-/// The effects that a modal structure can simulate beside its modes, for --explain and docs/effects.md.
+/// Effects that a modal structure can simulate beyond its modes, for --explain and docs/effects.md.
 std::span<const PlateCard> plate_effect_cards();
 
 }  // namespace couplet::plate

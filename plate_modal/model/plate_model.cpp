@@ -14,14 +14,14 @@
 namespace couplet::plate {
 namespace {
 
-/// Two supports of a point hold its slope in two directions if these are further apart than this: two edges of one kind, which
-/// meet in a blunt corner, or of two kinds, whose tangents a coarse mesh knows less well. At a blunt corner of simply supported
-/// edges both slopes are 0 in the limit, too, but the deflection there is as smooth as r^1.1 only: with both held the middle of a
-/// plate of 20 sides with 7 edges each is 47 % too stiff, where it is 15 % too soft with one.
+/// Minimum angle at which two supports of a point hold its slope in two directions: for edges of one type
+/// that meet in a blunt corner, and of two types, whose tangents are less accurate on a coarse mesh. At a
+/// blunt corner of simply supported edges both slopes vanish in the limit, but the deflection is only
+/// as smooth as r^1.1. A plate of 20 sides with 7 edges is 47 % too stiff with both held, else 15 % too soft.
 constexpr double blunt = 25 * base::degree, unlike = 10 * base::degree, rounding = 1e-6;
 
-/// The direction in which a support holds the slope at an edge with this tangent: w = 0 along an edge leaves no slope along it,
-/// symmetry leaves none across it.
+/// Direction of the slope held by a support at an edge with this tangent: w = 0 along an edge holds the
+/// tangential slope, symmetry the normal one.
 Vec2 held_direction(Support kind, const Vec2& tangent) {
   return kind == Support::symmetry ? Vec2(tangent.y(), -tangent.x()) : tangent;
 }
@@ -35,7 +35,7 @@ Triangle corners(const Midsurface& s, const std::array<Index, 3>& p) {
   return {s.points[p[0]], s.points[p[1]], s.points[p[2]]};
 }
 
-/// Calls f(points, triangle, share, cell) for every piece of every cell.
+/// Calls f(points, triangle, share, cell) for each piece of each cell.
 template <class F>
 void for_pieces(const Midsurface& s, F&& f) {
   for (Index c = 0; c < s.cells.size(); ++c) {
@@ -213,7 +213,7 @@ modes::EigenModes PlateModel::modes(int n) const {
         n, free);
   modes::EigenModes modes = modes::lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
   for (std::vector<double>& shape : modes.shape) {
-    // One of the two signs: the first of the largest deflections is positive.
+    // Fixes the sign: the first of the largest deflections is positive.
     double largest = 0;
     for (std::size_t r = 0; r < shape.size(); r += 3) largest = std::max(largest, std::abs(shape[r]));
     for (std::size_t r = 0; r < shape.size(); r += 3) {

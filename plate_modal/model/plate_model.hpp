@@ -23,11 +23,11 @@ struct PlateCell {
 };
 
 /// K and M of a Kirchhoff plate on one rank, thesis (4.24) with its erratum (inertia rho h). Unknown 3 p + c
-/// of point p: deflection, then the slopes about axes that are turned at supported points, so that each
-/// support is a row of its own. Supported rows hold a one in K and nothing in M.
+/// of point p: deflection, then slopes about axes that are rotated at supported points, so that each support
+/// is one row. Supported rows have a one in K and zeros in M.
 class PlateModel final {
  public:
-  /// `support`: one a patch. Throws Error.
+  /// `support`: one per patch. Throws Error.
   PlateModel(Midsurface surface, std::vector<PlateCell> cells, const std::vector<Support>& support);
 
   const Midsurface& surface() const { return surface_; }
@@ -39,20 +39,20 @@ class PlateModel final {
   std::size_t n_unknowns() const { return 3 * surface_.points.size(); }
   bool is_supported(std::size_t unknown) const { return fixed_[unknown]; }
 
-  /// Deflection and slopes w, w,x, w,y of each point (3 a point) from the unknowns, and the other way round.
+  /// Converts between unknowns and deflection and slopes w, w,x, w,y (3 per point).
   std::vector<double> to_points(std::span<const double> unknowns) const;
   std::vector<double> to_unknowns(std::span<const double> points) const;
-  /// Right-hand side of a pressure [Pa], one value a cell, that pushes to positive w.
+  /// Right-hand side of a pressure [Pa], one value per cell, in the direction of positive w.
   std::vector<double> load_of(std::span<const double> pressure) const;
-  /// Mean deflection over each cell from w, w,x, w,y of the points.
+  /// Mean deflection over each cell from w, w,x, w,y at the points.
   std::vector<double> cell_means(std::span<const double> points) const;
   std::vector<double> cell_areas() const;
-  /// The least square of a frequency this plate could have [1/s^2], in size: where to look from.
+  /// Order of magnitude of the smallest squared frequency [1/s^2], to start the search.
   double frequency_scale() const;
 
-  /// The plate's lowest modes.
+  /// Lowest modes of the plate.
   modes::EigenModes modes(int n) const;
-  /// K u = load. Throws Error if the supports leave it free, SolveFailure. In unknowns.
+  /// Solves K u = load, in unknowns. Throws Error if the supports leave it free, and SolveFailure.
   std::vector<double> deflect(std::span<const double> load) const;
 
  private:

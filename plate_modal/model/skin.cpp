@@ -59,7 +59,7 @@ class Shapes {
         for (int c = 0; c < 3; ++c) model.vertex_shape[first + (3 * p + c) * n_ + m] = u[c];
       }
   }
-  /// In place of the means of the corners: the exact mean of the deflection.
+  /// Replaces the means of the corners by the exact mean deflection.
   void refine_side(Index first_face, modes::ModalModel& model) const {
     const Vec3 normal = placement_.normal();
     for (std::size_t c = 0; c < means_.front().size(); ++c)

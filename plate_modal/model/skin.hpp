@@ -8,10 +8,10 @@
 
 namespace couplet::plate {
 
-/// Which sides of a plate its surface has.
+/// Sides of a plate included in its surface.
 enum class Wetted { both, upper, lower };
 
-/// Where the mid-surface lies in space: its plane's origin and its axes x and y; the normal is x cross y.
+/// Position of the mid-surface in space: origin and axes x and y of its plane; the normal is x cross y.
 struct Placement {
   Vec3 origin = Vec3::Zero(), x = Vec3::UnitX(), y = Vec3::UnitY();
   Vec3 normal() const { return x.cross(y); }
@@ -20,12 +20,11 @@ struct Placement {
   }
 };
 
-/// The two-sided surface of a plate and its modes there. A point at height z over the mid-surface moves by
-/// w n - z grad w, thesis (4.25). The faces are the cells' upper and lower sides and, between them, one
-/// quadrilateral for every edge of the outline whose patch is in `open` (both sides wetted): a clamped edge
-/// sits in its wall. The thickness at a point is the mean of the cells around it, by area. Shapes are means
-/// over the faces: those of the sides exact for the plate's cubic deflection, those of the rim the mean of
-/// the corners.
+/// Two-sided surface of a plate and its modes there. A point at height z above the mid-surface moves by w n -
+/// z grad w, thesis (4.25). The faces are the upper and lower sides of the cells, and between them one
+/// quadrilateral per outline edge whose patch is in `open` (both sides wetted); a clamped edge is inside its
+/// wall. The thickness at a point is the area-weighted mean of its cells. Shapes are means over the faces:
+/// exact for the cubic deflection on the sides, means of the corners on the rim.
 modes::ModalModel skin_of(const PlateModel& plate, const modes::EigenModes& modes, const Placement& placement,
                           Wetted wetted, const std::vector<bool>& open);
 

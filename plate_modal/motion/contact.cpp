@@ -12,7 +12,7 @@
 namespace couplet::plate {
 namespace {
 
-/// A face looks at the seat when its normal is within 60 degrees of the way to it.
+/// A face is oriented towards the seat if its normal is within 60 degrees of the direction.
 constexpr double least_cosine_to_seat = 0.5;
 
 }  // namespace
@@ -42,8 +42,8 @@ Contact::Contact(const Surface& surface, const ContactParameters& p, const Vec3&
   refuse_sliding(surface, direction, faces);
 }
 
-/// A seat pushes along its direction. Faces that the modes move across it alone (the rim of a plate that looks at a
-/// seat beside it) would sink through it without a force that anything feels.
+/// A seat acts along its direction. Faces that modes only move across it (the rim of a plate next to a seat)
+/// would penetrate it without any effective force.
 void Contact::refuse_sliding(const Surface& surface, const Vec3& direction,
                              std::span<const std::size_t> faces) const {
   double moves[2] = {0, 0};  // along the direction, in all
@@ -91,7 +91,7 @@ double Contact::largest_stiffness() const {
   for (std::size_t f = 0; f < gap_.size(); ++f)
     all.selfadjointView<Eigen::Lower>().rankUpdate(
         Eigen::Map<const Eigen::VectorXd>(shape_.data() + f * n_modes_, n_modes_), kappa_[f]);
-  // Power iteration: a percent is enough, and it comes from below by less.
+  // Power iteration; one percent suffices, and it converges from below.
   Eigen::VectorXd x = Eigen::VectorXd::Ones(n_modes_).normalized();
   double value = 0;
   for (int i = 0; i < 50; ++i) {

@@ -12,7 +12,7 @@ namespace couplet::plate {
 namespace {
 
 constexpr int most_iterations = 60;
-/// Residual over the terms that it is made of, which is their rounding.
+/// Tolerance of the residual relative to its terms, near round-off.
 constexpr double newton_tolerance = 1e-13;
 
 }  // namespace
@@ -55,7 +55,7 @@ ModalState Oscillators::start(std::vector<double> q, std::vector<double> v) cons
   return state;
 }
 
-/// The part of a combination that does not depend on the unknown.
+/// Part of a linear combination that does not depend on the unknown.
 double Oscillators::known(const time::Levels& l, const ModalState& at, std::size_t m) const {
   double value = l.u * at.q[m] + l.v * at.v[m];
   if (!at.a.empty()) value += l.a * at.a[m];
@@ -74,7 +74,7 @@ void Oscillators::step(const ModalState& now, double dt, const LoadAt& load, Mod
     advance(stage, work_, next);
     add_energies(stage, work_, next);
     if (i + 1 == stages.size()) break;
-    // The second part of a Bathe step looks back over the first.
+    // The second stage of a Bathe step uses the first as its old level.
     next.q_old = work_.q, next.v_old = work_.v;
     std::swap(work_, next);
   }
@@ -87,7 +87,7 @@ void Oscillators::step(const ModalState& now, double dt, const LoadAt& load, Mod
   finish(next);
 }
 
-/// One stage for all modes: acceleration + c rate + omega^2 x = load, each a combination of levels of x.
+/// One stage of all modes: acceleration + c rate + omega^2 x = load, each a combination of levels of x.
 void Oscillators::advance(const time::Stage& stage, const ModalState& at, ModalState& next) {
   const std::size_t n = omega_.size();
   for (std::size_t m = 0; m < n; ++m) {
@@ -106,8 +106,8 @@ void Oscillators::advance(const time::Stage& stage, const ModalState& at, ModalS
   next.energies = at.energies;
 }
 
-/// Newton's method on diagonal x - rhs - impact(x) = 0. The impact is the slope of a convex energy, so a step
-/// that makes the residual smaller always exists along the correction.
+/// Newton's method for diagonal x - rhs - impact(x) = 0. The impact derives from a convex energy, so some
+/// step along the correction always reduces the residual.
 void Oscillators::solve_contact(const time::Stage& stage, const ModalState& at) {
   const std::size_t n = omega_.size();
   const time::Levels shown = scheme_.type == time::TimeScheme::trapezoidal && contact_->is_conserving()
@@ -142,7 +142,7 @@ void Oscillators::solve_contact(const time::Stage& stage, const ModalState& at) 
       part *= 0.5;
     }
     iterations_ = std::max(iterations_, i + 1);
-    // At rounding level Newton's method stands still.
+    // Newton's method has stalled at round-off.
     if (size >= before && size <= 1e3 * newton_tolerance * scale) break;
   }
 }

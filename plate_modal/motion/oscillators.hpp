@@ -12,65 +12,65 @@
 
 namespace couplet::plate {
 
-/// Energies since the start of the run [J]: thesis (4.29)-(4.31) and the works that go with them.
+/// Energies since the start of the run [J]: thesis (4.29)-(4.31) and the corresponding works.
 struct Energies {
   double kinetic = 0, strain = 0, gravity = 0, contact = 0;  ///< at the accepted time
-  double initial = 0;                                        ///< their sum at the start
+  double initial = 0;                                        ///< total at the start
   double load_work = 0;    ///< done by the fluid and by prescribed pressures
   double impact_work = 0;  ///< done by the seat
   double damping_loss = 0;
-  double largest =
-      0;  ///< that the scheme did not make, or work of the loads: the most that the structure had so far
+  double largest = 0;  ///< largest own() so far
   double total() const { return kinetic + strain + gravity + contact; }
-  /// Energy that the scheme made or lost, of the structure together with the seat's springs.
+  /// Energy created or lost by the scheme, for the structure with the seat's springs.
   double mismatch() const { return total() - initial - load_work + damping_loss; }
-  /// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
+  /// The larger of the work of the loads and of the energy without gravity and the scheme's contribution.
   double own() const {
     return std::max(kinetic + strain + contact - std::max(0.0, mismatch()), std::abs(load_work));
   }
-  /// For checkpoints.
+  /// Data for checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(kinetic, strain, gravity, contact, initial, load_work, impact_work, damping_loss, largest);
   }
 };
 
-/// Generalised coordinates of the modes, thesis (4.26)-(4.27), at an accepted or a tried time.
+/// Generalized coordinates of the modes, thesis (4.26)-(4.27), at an accepted or trial time.
 struct ModalState {
   std::vector<double> q, v, a;       ///< displacement, rate, acceleration
-  std::vector<double> q_old, v_old;  ///< one level further back, for schemes that use it
-  double dt = 0;                     ///< of the last step [s]; 0: none yet
-  std::vector<double> partner;  ///< loads of a partner in the last step, where the scheme looks back at them
+  std::vector<double> q_old, v_old;  ///< one more level back, for schemes that use it
+  double dt = 0;                     ///< of the last step [s]; 0 if none
+  std::vector<double> partner;       ///< loads of a partner in the last step, for schemes that use them
   Energies energies;
-  /// For checkpoints.
+  /// Data for checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(q, v, a, q_old, v_old, dt, partner, energies);
   }
 };
 
-/// Static analysis: largest deflections of the plate itself and by its modes, largest difference [m].
+/// Static analysis: largest deflections of the plate itself and by its modes, and their largest difference
+/// [m].
 struct Deflection {
   double direct = 0, by_modes = 0, apart = 0;
 };
 
-/// Integrates q'' + c q' + omega^2 q = Q + impact of all modes over one step. Without a seat every mode is a
-/// number of its own; with one the modes meet in its forces and Newton's method solves for all at once.
+/// Integrates q'' + c q' + omega^2 q = Q + impact of all modes over one step. Without a seat the modes are
+/// independent; with one they are coupled by its forces and solved together by Newton's method.
 class Oscillators final {
  public:
-  /// `damping`: c of each mode [1/s]; `gravity`: its load on each mode; `contact`: null without a seat.
+  /// `damping`: c of each mode [1/s]. `gravity`: its load on each mode. `contact`: nullptr without a seat.
   Oscillators(std::vector<double> omega, std::vector<double> damping, std::vector<double> gravity,
               time::TimeSchemeParameters scheme, const Contact* contact);
 
-  /// A state at rest with these displacements and rates.
+  /// State with these displacements and rates and no acceleration.
   ModalState start(std::vector<double> q, std::vector<double> v) const;
-  /// From `now` over dt to `next`; `load(t, Q)` fills the loads on the modes at t within the step. Throws
-  /// SolveFailure if Newton's method does not end.
+  /// Advances `now` over dt to `next`; `load(t, Q)` sets the modal loads at t within the step. Throws
+  /// SolveFailure if Newton's method does not converge.
   using LoadAt = std::function<void(double, std::span<double>)>;
   void step(const ModalState& now, double dt, const LoadAt& load, ModalState& next);
 
-  int newton_iterations() const { return iterations_; }  ///< of the last step, most of its stages
-  /// Fluid and prescribed pressures on each mode, in the last stage of the last solve.
+  int newton_iterations() const { return iterations_; }  ///< of the last step, maximum over its stages
+  /// Load of fluid and prescribed pressures on each mode in the last stage of the last solve.
   std::span<const double> load() const { return load_; }
   std::span<const double> damping() const { return damping_; }
   const Contact::Result& seat() const { return seat_; }  ///< at the end of the last step

@@ -9,9 +9,9 @@
 namespace couplet::plate {
 namespace {
 
-/// A side of the plate: faces whose normal is within 60 degrees of that of the plate.
+/// Side of the plate: faces with normals within 60 degrees of that of the plate.
 constexpr double least_cosine = 0.5;
-/// Beyond the pressure in any structure (the centre of the earth has 4e11 Pa), and far from what doubles overflow at.
+/// Above any real pressure (4e11 Pa in the center of the earth), and far below the overflow of doubles.
 constexpr double largest_pressure = 1e15;
 
 bool is_on(const Vec3& area, const Vec3& normal, double sign) {

@@ -13,25 +13,25 @@
 
 namespace couplet::plate {
 
-/// Prescribed pressures on the two sides of a structure, as loads on its modes. A pressure that is the same
-/// everywhere is a number times what 1 Pa does, found once.
+/// Prescribed pressures on the two sides of a structure, as modal loads. A uniform pressure uses the load of
+/// 1 Pa, which is computed once.
 class PressureLoad final {
  public:
-  /// A side are the faces whose normal is within 60 degrees of `normal` (upper) or of its opposite (lower). Throws Error
-  /// if a side with a pressure has no face. `name`: of the participant, for messages.
+  /// A side consists of the faces with normals within 60 degrees of `normal` (upper) or its opposite (lower).
+  /// Throws Error if a side with a pressure has no face. `name`: of the participant, for messages.
   PressureLoad(const Surface& surface, const Load& load, const Vec3& normal, std::string name = "plate");
 
   const std::optional<fv::Expression>& upper() const { return upper_; }
   const std::optional<fv::Expression>& lower() const { return lower_; }
   bool changes_in_time() const;
-  bool is_uniform() const;  ///< in space: cheap to ask for
-  /// Loads on the modes at t [N/sqrt(kg)]. Throws Error with key, time and place where a pressure has no value or one that
-  /// no structure sees.
+  bool is_uniform() const;  ///< in space, so inexpensive
+  /// Modal loads at t [N/sqrt(kg)]. Throws Error with key, time and place where a pressure is undefined or
+  /// unrealistically large.
   void at(double t, std::span<double> load) const;
 
-  /// Pressure of one of the two sides at a place and time [Pa]. Throws as at().
+  /// Pressure of one side at a place and time [Pa]. Throws as at().
   double value(const fv::Expression& side, const Vec3& x, double t) const;
-  /// Pressures at x on a face of this area, those that push against its normal [Pa].
+  /// Pressures at x on a face of this area that act against its normal [Pa].
   double push(const Vec3& area, const Vec3& x, double t) const;
 
  private:
@@ -41,12 +41,12 @@ class PressureLoad final {
   Vec3 normal_;
   std::string name_;
   std::optional<fv::Expression> upper_, lower_;
-  std::array<std::vector<double>, 2>
-      of_one_pascal_;  // on this rank's faces: upper, lower; empty: not uniform
+  /// On this rank's faces: upper, lower; empty if not uniform.
+  std::array<std::vector<double>, 2> of_one_pascal_;
 };
 
-/// Pressures on the cells of a plate at t, along its normal, its weight included [Pa]. `load` may be nullptr. On rank 0.
-/// Throws Error where a pressure has no value.
+/// Pressures on the cells of a plate at t along its normal, including its weight [Pa]. `load` may be nullptr.
+/// On rank 0. Throws Error where a pressure is undefined.
 std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,
                                    const PressureLoad* load, double t);
 

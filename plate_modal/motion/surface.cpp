@@ -19,7 +19,7 @@ std::vector<double> Surface::participation(const Vec3& direction) const {
   return result;
 }
 
-// The midpoint rule of thesis 4.5.1: the force of a face on the mode at the face.
+// Midpoint rule of thesis 4.5.1: the force of a face acts on the mode at the face.
 void Surface::add_load(std::span<const double> force, std::span<double> load) const {
   const std::size_t n = omega_.size();
   for (std::size_t i = 0; i < force.size(); ++i) {

@@ -9,8 +9,8 @@
 
 namespace couplet::plate {
 
-/// A modal model as loads and motion see it. Every rank holds all of it and computes alike, so that no value depends on the
-/// number of ranks: forces come from rank 0 and displacements leave through it, which costs more than the sums between.
+/// Modal model as loads and motion see it. Every rank stores all of it and computes the same, so that results
+/// do not depend on the number of ranks. The cost is dominated by rank 0, which distributes forces.
 class Surface final {
  public:
   explicit Surface(modes::ModalModel model);
@@ -18,7 +18,7 @@ class Surface final {
   const modes::ModalModel& model() const { return model_; }
   int n_modes() const { return static_cast<int>(omega_.size()); }
   const std::vector<double>& omega() const { return omega_; }
-  /// Integral of rho phi dV . direction, a mode each.
+  /// Integral of rho phi dV . direction, per mode.
   std::vector<double> participation(const Vec3& direction) const;
 
   std::size_t n_faces() const { return centres_.size(); }
@@ -30,11 +30,11 @@ class Surface final {
     return {model_.face_shape.data() + face * n, n};
   }
 
-  /// Adds the sum of force . phi over the faces to `load` (modes); `force`: 3 a face [N].
+  /// Adds the sum of force . phi over the faces to `load` (modes); `force`: 3 values per face [N].
   void add_load(std::span<const double> force, std::span<double> load) const;
   /// sum q_m phi_m at the vertices, 3 each.
   std::vector<double> motion(std::span<const double> q) const;
-  /// Places and areas; takes and gives stay empty.
+  /// Places and areas; takes and gives remain empty.
   coupling::Interface describe() const;
 
  private:

@@ -8,21 +8,21 @@
 
 namespace couplet::solid {
 
-/// How stiff the strains of a quadrilateral's four faces make it beside their mean. Over n cells across a bar that bends, the second
-/// moment of area is 1 + 1/(2 n^2) of the right one by the faces' strains and 1 - 1/n^2 by the cells' mean: a third of what they
-/// differ is what the symmetric gradient with the volume strain of faces errs, in energy and so in displacement. The difference of
-/// two face gradients does not see it. In space x-, y- and z-faces cancel.
+/// Stiffness that the strains of a quadrilateral's four faces add to that of their mean. Over n cells across
+/// a bent bar, face strains give a second moment of area of 1 + 1/(2 n^2) times the exact one, and cell means
+/// 1 - 1/n^2. A third of the difference is the relative error of the symmetric gradient with face volume
+/// strains, in energy and so in displacement. Two face gradients do not detect it. It cancels in 3-D.
 class InnerVariation {
  public:
-  /// Keeps both by reference.
+  /// Keeps references to both.
   InnerVariation(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
-  /// The plane, isotropic or not, where the operator takes the volume strain of faces.
+  /// True in 2-D, isotropic or not, if the operator uses the volume strain of faces.
   static bool is_needed(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
-  /// Strain of a flux face; those of partition faces on both ranks.
+  /// Adds the strain of a flux face; add those of partition faces on both ranks.
   void add(Index face, const Tensor3& strain);
-  /// Over the strain energy of all cells; 0 where there is none. Collective.
+  /// Missed part relative to the strain energy of all cells; 0 if there is none. Collective.
   double missed() const;
-  /// What is missed of twice the strain energy [J]: a square of the strains. Collective.
+  /// Missed part of twice the strain energy [J], quadratic in the strains. Collective.
   double energy() const;
 
  private:
@@ -31,7 +31,7 @@ class InnerVariation {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
-  std::vector<double> energy_;   // of owned cells: sum V_fP e : C : e
+  std::vector<double> energy_;   // per owned cell: sum V_fP e : C : e
   std::vector<Tensor3> strain_;  // sum V_fP e
   std::vector<double> volume_;   // sum V_fP
 };

@@ -14,7 +14,7 @@ namespace couplet::solid {
 
 namespace {
 
-// Over the sum of the weights; in units of the scale a well-placed sample adds some 0.1 to each.
+// Relative to the sum of the weights; in units of the scale, a good sample contributes about 0.1.
 constexpr double least_curvature = 1e-4, least_slope = 1e-12;
 
 }  // namespace
@@ -83,7 +83,7 @@ void QuadraticFit::solve() {
 
 namespace {
 
-/// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
+/// Weight of the mean over vertices in the volume mean: exact for simplices and boxes.
 double share_of_vertices(mesh::CellType type) {
   switch (type) {
     case mesh::CellType::triangle:

@@ -12,21 +12,21 @@
 
 namespace couplet::solid {
 
-/// Least squares of `components` quadratics in the plane or in space,
-///   f_k(x) = sum_i c_ik phi_i(x),   phi = 1, x_a, x_a x_b (a <= b),   x = (place - centre) / scale,
-/// through weighted samples and rows between the components. Where they leave curvature open, the least is taken.
+/// Least-squares fit of `components` quadratics in 2-D or 3-D,
+///   f_k(x) = sum_i c_ik phi_i(x),   phi = 1, x_a, x_a x_b (a <= b),   x = (place - center) / scale,
+/// to weighted samples and rows that couple the components. Undetermined curvature is minimized.
 class QuadraticFit {
  public:
   static constexpr int most_terms = 10, most_components = 6;
   using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_terms, 1>;
-  /// Column a: derivatives along the place's component a [1/m].
+  /// Column a contains the derivatives along axis a [1/m].
   using Slopes = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, most_terms, 3>;
 
-  /// `scale` [m]: the reach of the samples.
+  /// `scale` [m]: extent of the samples.
   void start(int dim, int components, const Vec3& centre, double scale);
-  /// f(place) = values; `moment` [m^2]: the mean of (x - place) (x - place)^T over the cell that `values` are the mean of.
+  /// f(place) = values; `moment` [m^2]: mean of (x - place)(x - place)^T over the cell of a mean value.
   void add_sample(const Vec3& place, const Tensor3& moment, std::span<const double> values, double weight);
-  /// sum_ik row(i, k) c_ik = value.
+  /// Adds the row sum_ik row(i, k) c_ik = value.
   using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_terms, most_components>;
   void add_row(const Row& row, double value, double weight);
   void solve();
@@ -34,7 +34,7 @@ class QuadraticFit {
   Terms terms(const Vec3& place) const { return terms(place, Tensor3::Zero()); }
   Slopes slopes(const Vec3& place) const;
   int n_terms() const { return dim_ == 2 ? 6 : 10; }
-  /// c(i, k), after solve().
+  /// Coefficients c(i, k), after solve().
   const Eigen::MatrixXd& coefficients() const { return coefficients_; }
 
  private:
@@ -43,7 +43,7 @@ class QuadraticFit {
   int dim_ = 3;
   Vec3 centre_ = Vec3::Zero();
   double scale_ = 1, weights_ = 0;
-  bool coupled_ = false;                    // some row was added
+  bool coupled_ = false;                    // a row was added
   Eigen::MatrixXd of_samples_, right_;      // terms x terms, terms x components
   Eigen::MatrixXd of_rows_, coefficients_;  // (components terms)^2
   Eigen::VectorXd right_of_rows_;
@@ -51,21 +51,21 @@ class QuadraticFit {
 
 /// Mean of (x - x_c) (x - x_c)^T over a local cell [m^2], from its vertices: exact for simplices and boxes.
 Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell);
-/// Appends the local cells that share a vertex with `cell` and have its material, itself among them. `mark`: per local cell for which
-/// cell it was last gathered, at first -1.
+/// Appends `cell` and the local cells of its material that share a vertex with it. `mark`: per local cell,
+/// the cell it was last gathered for; initially -1.
 void gather_cells(const mesh::Mesh& mesh, const mesh::Csr& cells_of_point, Index cell,
                   std::vector<Index>& mark, std::vector<Index>& cells);
-/// Boundary faces of each local cell, counted among all faces.
+/// Boundary faces of each local cell, numbered among all faces.
 mesh::Csr boundary_faces_of_cells(const mesh::Mesh& mesh);
 
-/// One of several numbers that belong to a point.
+/// One of several values at a point.
 struct PointShare {
   GlobalIndex point;  ///< Mesh::point_id
   double share;
 };
 
-/// Of each `wanted` local point the median of the shares that all ranks found for it; NaN of other points and where there are none.
-/// Few points. Collective.
+/// Median over all ranks of the shares at each `wanted` local point. NaN at other points and where there are
+/// none. Intended for few points. Collective.
 std::vector<double> medians(const mesh::Mesh& mesh, const std::vector<PointShare>& shares,
                             std::span<const std::uint8_t> wanted);
 

@@ -16,10 +16,10 @@
 namespace couplet::solid {
 namespace {
 
-/// Of the gradients without an energy: beyond it they only lock.
+/// Largest Poisson's ratio of the gradients without an energy, which lock beyond it.
 constexpr double most_poissons_ratio = 0.499;
 
-/// A face has a vertex that is free in a direction which the face knows.
+/// True if a face has a vertex that is free in a direction known at the face.
 bool has_loose_vertex(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic) {
   for (const Index f : elastic.known_faces()) {
     const Tensor3& known = elastic.at(f).known;
@@ -29,7 +29,7 @@ bool has_loose_vertex(const mesh::Mesh& mesh, const elastic::ElasticOperator& el
   return false;
 }
 
-/// Left to the program, the symmetric gradient steps aside where it would lose a part of the reaction.
+/// With `automatic`, the symmetric gradient is not used if it would lose a part of the reaction.
 elastic::FaceGradientScheme scheme_for(const mesh::Mesh& mesh, const SolidParameters& parameters,
                                        const elastic::ElasticOperator& elastic) {
   const elastic::FaceGradientScheme scheme = face_gradient_scheme(parameters);
@@ -269,7 +269,7 @@ std::vector<double> SolidBody::unknowns_of(std::span<const double> cells,
   return unknowns;
 }
 
-/// Directions in which a point's value is not free, and the known faces.
+/// Prescribed directions of points, and known faces.
 std::vector<double> SolidBody::known_of(const BodyField& field) const {
   const int dim = mesh_.dim;
   const elastic::VertexConstraints& constraints = elastic_.constraints();

@@ -18,87 +18,87 @@
 
 namespace couplet::solid {
 
-/// A displacement (or velocity, ...) in all local cells, boundary faces and points, `dim` values each.
+/// A displacement, velocity etc. in all local cells, boundary faces and points, `dim` values each.
 struct BodyField {
   std::span<const double> cells, faces, points;
 };
 
-/// What is deformed and how it resists: mesh, material law, operator, boundary rows, loads that do not come
-/// through the interface. It has no time of its own.
+/// Deformable body: mesh, material law, operator, boundary rows and loads except those of the interface. Has
+/// no time.
 class SolidBody final {
  public:
-  /// Throws Error for a scene that cannot be. Collective over mesh.comm.
+  /// Throws Error for an invalid case. Collective over mesh.comm.
   SolidBody(mesh::LoadedMesh body, SolidParameters parameters);
   SolidBody(const SolidBody&) = delete;
   SolidBody& operator=(const SolidBody&) = delete;
 
   const mesh::Mesh& mesh() const { return mesh_; }
-  /// Of the undeformed body.
+  /// Geometry of the undeformed body.
   const mesh::Geometry& geometry() const { return geometry_; }
   const SolidParameters& parameters() const { return parameters_; }
   const std::vector<SolidMaterial>& materials() const { return materials_; }
   const SolidBoundaries& boundaries() const { return boundaries_; }
   const elastic::ElasticOperator& elastic() const { return elastic_; }
-  /// The rows of elastic() with the face gradient that was chosen.
+  /// Rows of elastic() with the selected face gradient.
   const elastic::ElasticKernel& kernel() const { return kernel_; }
-  /// How it resists, at small strain by kernel().
+  /// Equilibrium equations; at small strain they use kernel().
   Equilibrium& equilibrium() const { return *equilibrium_; }
   /// Patches that move as rigid bodies.
   const RigidPatches& rigid() const { return rigid_; }
-  /// What its faces may meet; null: nothing.
+  /// Rigid seat that its faces may touch; nullptr if there is none.
   const Seat* seat() const { return seat_.get(); }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
-  /// Temperature and the load it makes; nullptr if the scene has no temperature.
+  /// Temperature and its load; nullptr if the case has no temperature.
   ThermalStrain* thermal() const { return thermal_.get(); }
-  /// The kernel has its own mass, and all its nodes inertia.
+  /// True if the kernel has its own mass, so that all its nodes have inertia.
   bool has_mass() const { return has_mass_; }
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
   bool is_corrected() const { return kernel_.scheme() == elastic::FaceGradientScheme::corrected; }
-  /// The acceleration is written or watched, so that it is kept.
+  /// True if the acceleration is written or probed and must be stored.
   bool wants_acceleration() const;
   /// [kg/m^3]
   double density(Index cell) const { return materials_[mesh_.material_of(cell)].density; }
 
-  /// Takes the elastic constants that the temperature has changed; true if all that was made for the old ones is
-  /// of no use any more. Collective.
+  /// Sets the temperature-dependent elastic constants. Returns true if data made for the old ones are
+  /// invalid. Collective.
   bool apply_stiffness();
-  /// Adds the loads of the boundaries at time t that the equilibrium does not take as pressures, as SolidBoundaries does.
+  /// Adds the loads of the boundaries at time t that are no pressures of the equilibrium.
   void add_dead_loads(double t, std::span<double> forces) const { add_scaled_loads(t, forces); }
   /// See Equilibrium::lowest_stiffness(). Collective.
   SoftMotion softest_motion(std::span<const double> unknowns, std::span<const double> known) const;
-  /// Forces on the rows of elastic() without symmetry, smooth and the same on any number of ranks: the start of a search
-  /// for a soft motion. Collective.
+  /// Smooth forces on the rows of elastic() without symmetry, equal on any number of ranks. Start vector of a
+  /// search for a soft motion. Collective.
   std::vector<double> any_start() const;
-  /// By which all loads but prescribed displacements are multiplied from here on.
+  /// Sets the factor of all loads except prescribed displacements.
   void set_load_factor(double factor) { load_factor_ = factor; }
-  /// It knows the pressures at time t that follow the surface. Collective.
+  /// Sets the follower pressures at time t in the equilibrium. Collective.
   void place_pressures(double t) const {
     if (equilibrium_->means().takes_pressure) equilibrium_->set_pressure(scaled(boundaries_.pressures(t)));
   }
-  /// It knows the thermal strains at time t that it takes itself: large strain. Collective.
+  /// Sets the thermal strains at time t in the equilibrium (large strain). Collective.
   void place_expansion(double t) const;
   bool has_body_forces() const { return !body_force_.empty() || !parameters_.gravity.empty(); }
-  /// Body forces and weight of the owned cells at time t [N], `dim` values each; empty: none.
+  /// Body forces and weight of the owned cells at time t [N], `dim` values each; empty if there are none.
   std::vector<double> body_forces(double t) const;
-  /// Of the known columns over [start, start + dt], one a component; empty: they rest. The change of the velocity,
-  /// and not second differences of the displacement: the kinetic energy of the ends then grows by its work.
+  /// Acceleration of the known columns over [start, start + dt], dim values each; empty at rest. Uses the
+  /// change of velocity, not second differences, so that its work equals the growth of kinetic energy.
   std::vector<double> known_acceleration(double start, double dt) const;
-  /// The change of the displacement by dt; empty: they rest.
+  /// Change of displacement divided by dt; empty if they are at rest.
   std::vector<double> known_velocity(double start, double dt) const;
 
-  /// The unknowns of elastic() in these fields.
+  /// Unknowns of elastic() in these fields.
   std::vector<double> unknowns_of(std::span<const double> cells, std::span<const double> faces) const;
-  /// The known columns of elastic() in this field.
+  /// Known columns of elastic() in this field.
   std::vector<double> known_of(const BodyField& field) const;
-  /// Values at all local points; `known`: one a known column. Collective.
+  /// Values at all local points; `known`: one value per known column. Collective.
   std::vector<double> to_points(std::span<const double> cells, std::span<const double> faces,
                                 std::span<const double> known) const;
-  /// At these points by the interpolation of the operator, which needs no exchange.
+  /// Values at these points by the interpolation of the operator, without communication.
   std::vector<double> at_points(std::span<const Index> points, std::span<const double> cells,
                                 std::span<const double> faces, std::span<const double> known) const;
   /// Gradients of all flux faces. Collective.
   void visit_gradients(const BodyField& field, const elastic::ElasticKernel::TakeGradient& take) const;
-  /// Those of the flux faces first, first + 1, ... (`count` of them). Collective.
+  /// Gradients of the flux faces first, first + 1, ... (`count` of them). Collective.
   std::vector<Tensor3> face_gradients(Index first, Index count, const BodyField& field) const;
 
  private:
@@ -122,7 +122,7 @@ class SolidBody final {
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
   std::vector<fv::Expression> body_force_;
-  std::unique_ptr<ThermalStrain> thermal_;  // nullptr: no temperature
+  std::unique_ptr<ThermalStrain> thermal_;  // nullptr if there is no temperature
 };
 
 }  // namespace couplet::solid

@@ -9,8 +9,8 @@
 namespace couplet::solid {
 namespace {
 
-/// Cells all of whose neighbours by vertex are of the same kind and material. Elsewhere the values at points
-/// are less exact (kind) or have no one gradient (material).
+/// Cells whose neighbors by vertex all have the same type and material. Elsewhere point values are less
+/// accurate (type) or have no single gradient (material).
 std::vector<bool> uniform_surroundings(const mesh::Mesh& mesh) {
   constexpr int unseen = -1, several = -2;
   std::vector<int> around(mesh.points.n_local(), unseen);
@@ -25,7 +25,7 @@ std::vector<bool> uniform_surroundings(const mesh::Mesh& mesh) {
   return uniform;
 }
 
-/// Unit normal of a boundary face whose points are at `places`, out of the body as the reference one is.
+/// Outward unit normal of a boundary face with points at `places`, oriented as the reference one.
 Vec3 normal_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face,
                std::span<const Vec3> places) {
   const auto corners = mesh.face_points[face];
@@ -73,7 +73,7 @@ std::vector<double> SolidFields::point_acceleration() const {
   return body_.to_points(state_.acceleration, state_.face_acceleration, known_acceleration());
 }
 
-/// Of the prescribed columns at the accepted time: a difference over half of the last step.
+/// Acceleration of the prescribed columns at the accepted time, a difference over half of the last step.
 std::vector<double> SolidFields::known_acceleration() const {
   std::vector<double> result(state_.known.size(), 0), before(result.size()), now(result.size());
   if (!body_.prescribed().uses_time() || !(state_.dt > 0)) return result;
@@ -128,7 +128,7 @@ const PointTensors& SolidFields::point_tensors() const {
   return *point_tensors_;
 }
 
-/// Of the boundary faces of owned cells, small strain: tractions as the loads have them, no shear at planes of symmetry.
+/// Tractions of boundary faces of owned cells at small strain, from the loads; no shear at symmetry planes.
 std::vector<SurfaceTraction> SolidFields::known_tractions() const {
   const std::vector<double> forces = loads_now().faces;
   std::vector<SurfaceTraction> result(std::size_t(mesh_.boundary.n_owned()));
@@ -192,10 +192,10 @@ std::vector<double> SolidFields::point_strain(std::span<const double> points) co
 
 // Gradients of the displacement in cells, from which stress and strain follow.
 
-/// Mean of the face gradients by the pyramids over the faces: exact for fields whose gradient is linear if
-/// those of the faces are. With the corrected face gradient the points' values are exact for quadratics, and
-/// Gauss's theorem over the faces with these means at the points errs by h^2/24 of the third derivatives
-/// along a line of cells where the mean of the faces' differences errs by h^2/6.
+/// Mean of the face gradients weighted by the pyramids over the faces; exact for linear gradients if those of
+/// the faces are. The corrected gradient has point values exact for quadratics. Gauss's theorem with face
+/// means of these has an error of h^2/24 times the third derivatives along a line of cells, the mean of face
+/// differences h^2/6.
 std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) const {
   const Index n_owned = mesh_.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero()), on_boundary;
@@ -227,7 +227,7 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
   return gradient;
 }
 
-// Tractions of boundary faces: those of the loads where they are known, else of the stress at the faces' points.
+// Tractions of boundary faces: from known loads, else from the stress at the faces' points.
 
 std::vector<double> SolidFields::traction(std::span<const Vec3> places,
                                           std::span<const double> point_stress) const {

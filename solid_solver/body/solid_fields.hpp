@@ -14,13 +14,13 @@
 
 namespace couplet::solid {
 
-/// Force on the solid at a constrained patch [N], its moment about the origin [N m]: of the undeformed places, at large strain of
-/// the deformed ones.
+/// Force on the solid at a constrained patch [N] and its moment about the origin [N m]. Moment arms are
+/// undeformed at small strain and deformed at large strain.
 struct PatchForce : elastic::Wrench {
   std::string patch;
 };
 
-/// The largest at any face of what a displacement does; NaN: not known.
+/// Largest gradient, strain and rotation of a displacement over the faces; NaN if unknown.
 struct Deformation {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double gradient = unknown;  ///< Frobenius norm
@@ -28,37 +28,37 @@ struct Deformation {
   double rotation = unknown;  ///< angle [rad]
 };
 
-/// What follows from the accepted state. `points`: as point_displacement() gives them. All is collective.
+/// Fields derived from the accepted state. `points`: from point_displacement(). All functions are collective.
 class SolidFields final {
  public:
-  /// All by reference. `last`: whose loads the forces are of.
+  /// Keeps references. `last`: contains the loads for the forces.
   SolidFields(const SolidBody& body, const SolidState& state, const LastSolve& last);
 
-  /// Packed values of all local points.
+  /// Values at all local points.
   std::vector<double> point_displacement() const;
   std::vector<double> point_velocity() const;
-  /// Needs wants_acceleration().
+  /// Requires wants_acceleration().
   std::vector<double> point_acceleration() const;
-  /// Packed symmetric tensors (see stress.hpp) of all local points: at small strain recovered from patches of cells
-  /// (StressRecovery), else interpolated from those in the cells and on the boundary faces. `wanted`: flags of local
-  /// points, empty: all; others may hold anything. `left`, of a body with recovers_stress(): StressRecovery::left_at_points().
+  /// Packed symmetric tensors (see stress.hpp) at all local points. At small strain they are recovered from
+  /// patches of cells (StressRecovery), else interpolated from cells and boundary faces. `wanted`: flags of
+  /// local points (empty: all); other values are undefined. `left`: its left_at_points() if recovered.
   std::vector<double> point_stress(std::span<const double> points, std::span<const std::uint8_t> wanted = {},
                                    std::vector<double>* left = nullptr) const;
-  /// On boundary faces of owned cells, `dim` values each, out of the body [Pa]: as the loads have it where it is known (at
-  /// small strain), else sigma n of the mean of `point_stress` over the face's points, of which those on a patch suffice for
-  /// its faces. `places`: where the local points are; the normal is that of the deformed face at large strain.
+  /// Traction on boundary faces of owned cells, `dim` values each, out of the body [Pa]. At small strain it
+  /// equals a known load; else it is sigma n with the mean of `point_stress` over the face's points.
+  /// `places`: local points; at large strain the normal is that of the deformed face.
   std::vector<double> traction(std::span<const Vec3> places, std::span<const double> point_stress) const;
   std::vector<double> point_strain(std::span<const double> points) const;
   /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa].
   std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;
-  /// Stress of the local owned cells [Pa] by cell_gradient(); exact for linear displacements.
+  /// Stress of owned cells [Pa] by cell_gradient(); exact for linear displacements.
   std::vector<Tensor3> cell_stress(std::span<const double> points) const;
-  /// The same for strains, of faces and of cells.
+  /// Strains of faces and cells, as for the stress.
   std::vector<Tensor3> face_strain(Index first, Index count, std::span<const double> points) const;
   std::vector<Tensor3> cell_strain(std::span<const double> points) const;
-  /// Forces the solid gets at fixed and symmetry patches from the stress.
+  /// Forces on the solid at fixed and symmetry patches, from the stress.
   std::vector<PatchForce> reactions(std::span<const double> points) const;
-  /// All loads of the last solve: tractions, pressures, interface, body forces.
+  /// Sum of all loads of the last solve: tractions, pressures, interface, body forces.
   Vec3 total_load() const;
   Deformation deformation(std::span<const double> points) const;
 
@@ -82,11 +82,11 @@ class SolidFields final {
   const mesh::Geometry& geometry_;
   const SolidParameters& parameters_;
   const elastic::ElasticOperator& elastic_;
-  mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for
+  mutable std::unique_ptr<PointTensors> point_tensors_;  // created on first use
   mutable std::unique_ptr<StressRecovery> recovery_;     // likewise
 };
 
-/// Its stress at points is recovered: at small strain, but not of a body of revolution.
+/// True if the stress at points is recovered: at small strain, except for a body of revolution.
 bool recovers_stress(const SolidBody& body);
 
 }  // namespace couplet::solid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forces on the solid, and the largest strain, rotation and stress, from the accepted state.
+// Forces on the solid, and the largest strain, rotation and stress of the accepted state.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace couplet::solid {
 namespace {
 
-/// Over the ranks. Collective.
+/// Sum over the ranks. Collective.
 elastic::Wrench sum_of(const elastic::Wrench& here, MPI_Comm comm) {
   elastic::Wrench total;
   double numbers[6];
@@ -24,7 +24,7 @@ elastic::Wrench sum_of(const elastic::Wrench& here, MPI_Comm comm) {
 std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) const {
   std::vector<PatchForce> forces = reactions_by_trial_functions();
   if (!forces.empty()) return forces;
-  // One pass over the faces between the first and the last that is held, often few of the boundary's.
+  // Loops only from the first to the last held face, often a small part of the boundary.
   Index first = mesh_.n_flux_faces(), end = mesh_.n_interior;
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     const mesh::Patch& patch = mesh_.patches[p];
@@ -45,7 +45,7 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
   return forces;
 }
 
-/// What the stress leaves there; empty: of a gradient without such functions.
+/// Reactions as residual of the stress; empty for a gradient without trial functions.
 std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   std::vector<PatchForce> forces;
   const std::vector<double> u = body_.unknowns_of(state_.cell_u, state_.face_u);
@@ -59,7 +59,7 @@ std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   return forces;
 }
 
-/// At the accepted time; of the interface what it had in the last solve.
+/// Loads at the accepted time; the interface's are those of the last solve.
 elastic::ElasticLoads SolidFields::loads_now() const {
   elastic::ElasticLoads loads;
   loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
@@ -84,7 +84,7 @@ Deformation SolidFields::deformation(std::span<const double> points) const {
     strain = std::max(strain, (0.5 * (g + g.transpose())).squaredNorm());
     rotation = std::max(rotation, (0.5 * (g - g.transpose())).squaredNorm());
   });
-  // The skew part of a rotation by a small angle phi holds phi twice.
+  // The skew part of a small rotation phi contains phi twice.
   return {.gradient = parallel::max(mesh_.comm, std::sqrt(gradient)),
           .strain = parallel::max(mesh_.comm, std::sqrt(strain)),
           .rotation = parallel::max(mesh_.comm, std::sqrt(rotation / 2))};

@@ -11,14 +11,14 @@ namespace couplet::solid {
 
 namespace {
 
-/// Of pressure waves without motion across [m/s]; infinite for materials of which it is not known.
+/// Speed of pressure waves without lateral motion [m/s]; infinite for a material where it is unknown.
 double speed_in(const SolidMaterial& m) {
   const double nu = m.poissons_ratio, modulus = m.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
   return modulus > 0 && m.density > 0 ? std::sqrt(modulus / m.density)
                                       : std::numeric_limits<double>::infinity();
 }
 
-/// For `interface: {surface-density: true}`. Collective.
+/// Impedance for `interface: {surface-density: true}`. Collective.
 WallImpedance impedance_of(const SolidBody& body, const coupling::Interface& interface) {
   const mesh::Geometry& geometry = body.geometry();
   const mesh::Mesh& mesh = body.mesh();

@@ -13,27 +13,27 @@
 
 namespace couplet::solid {
 
-/// What a solid takes through its interface patches and gives there.
+/// Coupling interface of a solid: the data it takes and gives at its interface patches.
 class SolidInterface final {
  public:
-  /// Throws Error if a temperature or a surface density is wanted where there is no interface. Collective.
+  /// Throws Error if a temperature or surface density is requested without an interface. Collective.
   explicit SolidInterface(const SolidBody& body);
 
   const coupling::Interface& description() const { return description_; }
-  /// A temperature comes with the load, so that the loads it makes cannot be prepared before.
+  /// True if a temperature arrives with the load, so that thermal loads cannot be prepared earlier.
   bool takes_temperature() const { return takes_temperature_; }
-  /// Hands on the temperature that was given. Collective.
+  /// Passes the given temperature on. Collective.
   void take_temperature(const coupling::Exchange& in) const;
-  /// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
+  /// Sum of the given forces, `dim` values per boundary face of owned cells; empty without an interface.
   std::vector<double> load(const coupling::Exchange& in) const;
-  /// Displacement and velocity at the vertices, and what answers within a step `dt` if it was asked for. Collective.
+  /// Displacement and velocity at the vertices, and the mass responding within `dt` on request. Collective.
   coupling::Exchange values(const SolidState& state, double dt) const;
 
  private:
   const SolidBody& body_;
-  std::unique_ptr<coupling::InterfaceMap> map_;  // none: no interface patch
+  std::unique_ptr<coupling::InterfaceMap> map_;  // nullptr if there is no interface patch
   coupling::Interface description_;
-  std::optional<WallImpedance> impedance_;  // none: not given
+  std::optional<WallImpedance> impedance_;  // empty if not given
   bool takes_temperature_ = false;
 };
 

@@ -19,7 +19,7 @@ fv::VertexInterpolation::ByFace stencils_of(const mesh::Mesh& mesh, const std::v
   return stencils;
 }
 
-/// Tensors as `size` numbers each, by `numbers(tensor)`, with ghosts up to date.
+/// Tensors as `size` numbers each, by `numbers(tensor)`, including ghosts.
 template <class Numbers>
 std::vector<double> with_ghosts(const parallel::IndexMap& map, std::span<const Tensor3> owned, int size,
                                 const Numbers& numbers) {
@@ -76,7 +76,7 @@ PointTensors::PointTensors(const mesh::Mesh& mesh, const mesh::Geometry& geometr
   }
 }
 
-/// Means of the tensors at the points of symmetry planes and their mirror images.
+/// Averages the tensors at points of symmetry planes with their mirror images.
 template <class Get, class Set>
 void PointTensors::mirror(const Get& get, const Set& set) const {
   for (const Mirror& mirror : mirrors_)

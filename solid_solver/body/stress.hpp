@@ -17,27 +17,27 @@ constexpr std::array<const char*, tensor_size> tensor_component{"xx", "yy", "zz"
 PackedTensor pack(const Tensor3& tensor);
 Tensor3 unpack(std::span<const double> packed);
 
-/// von Mises [Pa].
+/// Von Mises stress [Pa].
 double equivalent_stress(const Tensor3& stress);
-/// Largest first [Pa].
+/// Principal stresses in descending order [Pa].
 std::array<double, 3> principal_stresses(const Tensor3& stress);
 
-/// Symmetric tensors at points from those in cells and on boundary faces, exact for linear fields (the vertex
-/// interpolation of the displacement, all faces of the boundary taking part). At symmetry planes the mirrored
-/// tensor is averaged in: no shear there. Where materials meet it is the mean of theirs.
+/// Interpolates symmetric tensors from cells and boundary faces to points, exact for linear fields. Uses the
+/// vertex interpolation of the displacement with all boundary faces. At symmetry planes it averages in the
+/// mirrored tensor, so that there is no shear. At material interfaces it takes the mean.
 class PointTensors {
  public:
-  /// `is_symmetry`: one a patch; `inside`: any interpolation on the mesh, kept by reference. Collective.
+  /// `is_symmetry`: one flag per patch. `inside`: any interpolation, kept by reference. Collective.
   PointTensors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const std::vector<bool>& is_symmetry,
                const fv::VertexInterpolation& inside);
-  /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Packed, all local points.
-  /// Collective.
+  /// `cells`: per owned cell; `faces`: per boundary face of owned cells. Returns packed values at all local
+  /// points. Collective.
   std::vector<double> interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
-  /// The same for tensors that are not symmetric.
+  /// Interpolates tensors that are not symmetric.
   std::vector<Tensor3> interpolate_full(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
 
  private:
-  /// `get(i)`, `set(i, tensor)` of the points of symmetry planes.
+  /// `get(i)`, `set(i, tensor)`: access to the points of symmetry planes.
   template <class Get, class Set>
   void mirror(const Get& get, const Set& set) const;
   struct Mirror {

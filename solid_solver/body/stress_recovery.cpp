@@ -13,8 +13,8 @@
 namespace couplet::solid {
 namespace {
 
-// Measured on the fillet of an L-bracket, LE1, LE10 and LE11; the stress hangs little on any of them.
-constexpr double of_far = 1. / 9;           // weight of a sample at the patch's rim over one in its centre
+// Measured on the fillet of an L-bracket, LE1, LE10 and LE11; the stress depends little on any of them.
+constexpr double of_far = 1. / 9;           // weight of a sample at the patch's rim over one in its center
 constexpr double of_traction = 1;           // weight of a traction over a sample, fit of stress ...
 constexpr double of_scaled_traction = 0.1;  // ... and of displacement, as h t / (2 mu + lambda)
 constexpr double of_face = 3;               // weight of a face's displacement over a cell's
@@ -38,7 +38,7 @@ QuadraticFit::Row row_of_stress(const QuadraticFit::Terms& phi, const Vec3& e, c
   return phi * factor;
 }
 
-/// A patch seen in a plane of symmetry.
+/// Mirror image of a patch at a symmetry plane.
 struct Mirror {
   Vec3 normal, origin;
   Tensor3 reflection() const { return Tensor3::Identity() - 2 * normal * normal.transpose(); }

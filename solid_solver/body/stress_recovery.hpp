@@ -12,47 +12,47 @@
 
 namespace couplet::solid {
 
-/// What is known of the traction on a boundary face: projector (stress . n) = traction [Pa], n out of the body.
+/// Known traction on a boundary face: projector (stress . n) = traction [Pa], n out of the body.
 struct SurfaceTraction {
-  Tensor3 projector = Tensor3::Zero();  ///< zero: nothing is known
+  Tensor3 projector = Tensor3::Zero();  ///< zero if nothing is known
   Vec3 traction = Vec3::Zero();
-  bool symmetry = false;  ///< the body goes on as its mirror image
+  bool symmetry = false;  ///< the body is continued by its mirror image
 };
 
-/// What a discrete solution says, at small strain.
+/// Discrete solution at small strain.
 struct DiscreteStress {
   std::vector<Tensor3> cells, faces;  ///< stress of owned cells, of boundary faces of owned cells [Pa]
-  /// What of it does not come from the displacement (thermal stress); empty: nothing.
+  /// Part of the stress that does not depend on the displacement (thermal stress); empty if there is none.
   std::vector<Tensor3> other_in_cells, other_on_faces;
   std::span<const double> cell_u, face_u;  ///< all local cells, boundary faces, `dim` values each [m]
   std::vector<SurfaceTraction> surface;    ///< per boundary face of owned cells
 };
 
-/// Stress recovered from patches of cells: each cell gets a quadratic fitted to the cells that share a vertex with it,
-/// of its material, to their boundary faces, and to the tractions known there; a point takes the mean of its cells. At
-/// planes of symmetry the patch goes on as its mirror image.
+/// Recovers the stress from patches of cells. A quadratic is fitted for each cell to the cells of its
+/// material that share a vertex with it, to their boundary faces, and to known tractions. A point takes the
+/// mean of its cells. At symmetry planes the patch is continued by its mirror image.
 ///
-/// The stress is fitted, whose means over cells are more exact than what is made of them (Zienkiewicz and Zhu, Int. J.
-/// Numer. Meth. Engng 33 (1992) 1331; with tractions, Blacker and Belytschko, ibid. 37 (1994) 517). Among triangles and
-/// tetrahedra at a surface it is the displacement, whose gradient shows peaks at curved surfaces that the strains of the
-/// faces, shared around edges, smooth away (Naga and Zhang, SIAM J. Numer. Anal. 42 (2004) 1780); but the stress there,
-/// too, where mean stresses are the cells' own (ElasticOperator::volume_by_cells).
+/// The fit uses the stress, whose cell means are more accurate than derived values (Zienkiewicz and Zhu,
+/// IJNME 33 (1992) 1331; with tractions, Blacker and Belytschko, ibid. 37 (1994) 517). For triangles and
+/// tetrahedra at a surface it uses the displacement, whose gradient keeps peaks at curved surfaces that face
+/// strains smooth (Naga and Zhang, SIAM J. Numer. Anal. 42 (2004) 1780). It uses stress there too if mean
+/// stresses are per cell (ElasticOperator::volume_by_cells).
 class StressRecovery {
  public:
-  /// Both by reference.
+  /// Keeps references to both.
   StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
 
-  /// Packed stress [Pa] of all local points, the mean of the cells around. `wanted`: flags of local points, empty: all;
-  /// others may hold anything. Collective.
+  /// Packed stress [Pa] at all local points, the mean of the cells around. `wanted`: flags of local points
+  /// (empty: all); other values are undefined. Collective.
   std::vector<double> at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
-  /// What the fits leave of the stress at the `wanted` points, over its size [1]: the quadratics of the cells one ring on, continued
-  /// to the point, differ from the stress there by so much, in the median. NaN: of other points, and where there is no such cell.
-  /// It does not see what is wrong with the displacement as a whole. `stress`: at_points() of them. Collective.
+  /// Relative residual of the fits at the `wanted` points [1]: median difference from the stress there of the
+  /// quadratics of the second ring of cells, extrapolated to the point. NaN at other points and if there is
+  /// no such cell. Does not detect global displacement errors. `stress`: result of at_points(). Collective.
   std::vector<double> left_at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted,
                                      std::span<const double> stress) const;
 
  private:
-  struct Local;  // with ghosts
+  struct Local;  // fields including ghosts
   struct Patch;
   template <class Wants, class Take>
   void visit(const DiscreteStress& found, const Wants& wants, const Take& take) const;
@@ -66,7 +66,7 @@ class StressRecovery {
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
   mesh::Csr cells_of_point_, faces_of_cell_;  // boundary faces
-  std::vector<Tensor3> moment_;               // of local cells: mean of (x - x_c) (x - x_c)^T [m^2]
+  std::vector<Tensor3> moment_;               // per local cell: mean of (x - x_c)(x - x_c)^T [m^2]
 };
 
 }  // namespace couplet::solid

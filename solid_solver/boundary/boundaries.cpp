@@ -70,7 +70,7 @@ SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition&
       c.known_components[i] = from.components[i].has_value();
       c.known.emplace_back(from.components[i].value_or(config::ExpressionText{}), where + ".components");
     }
-    // All components known: held like by `value`, at its vertices, too.
+    // All components are known, so it is held as by `value`, also at its vertices.
     c.by_component = c.known_components.head(dim).minCoeff() == 0;
   } else if (from.type == Type::fixed_displacement || from.type == Type::spring) {
     if (!from.value.empty()) c.known = fv::make_expressions(from.value, dim, where + ".value");
@@ -144,7 +144,7 @@ void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
   }
 }
 
-/// All that the equations ask of a type: its projector and its stiffness at a face.
+/// Row of a condition type: its projector and its stiffness at a face.
 elastic::BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) const {
   const Vec3 n = geometry_->face_area[face].normalized();
   const Tensor3 none = Tensor3::Zero(), across = n * n.transpose(), lifted = c.normal * c.normal.transpose();
@@ -163,7 +163,7 @@ elastic::BoundaryRow SolidBoundaries::row_at(const Condition& c, Index face) con
       return elastic::support_row(lifted, none);
     case Type::hard_support: {
       const Vec3 along = n.cross(c.normal);
-      // On the top or bottom of the plate there is no edge to go along.
+      // At the top and bottom of the plate there is no edge direction.
       const bool has_edge = along.norm() > 1e-3;
       return elastic::support_row(
           has_edge ? Tensor3(lifted + along * along.transpose() / along.squaredNorm()) : lifted, none);

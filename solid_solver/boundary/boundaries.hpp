@@ -14,46 +14,46 @@
 
 namespace couplet::solid {
 
-/// The boundaries of the YAML on the faces of the mesh.
+/// Boundary conditions of a case on the faces of the mesh.
 class SolidBoundaries {
  public:
-  /// Throws Error if a patch has no boundary, a boundary no patch, a part no face, or an expression is wrong.
-  /// Collective.
+  /// Throws Error if a patch has no boundary, a boundary no patch, a part no face, or an expression is
+  /// invalid. Collective.
   SolidBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const SolidParameters& parameters);
 
-  /// For the operator.
+  /// Conditions in the form of the operator.
   elastic::ElasticBoundary elastic() const;
   /// Faces of owned cells of each condition that moves as a rigid body.
   std::vector<std::vector<Index>> rigid_faces() const;
-  /// The force on a boundary face of an owned cell is known, if its condition is one of forces.
+  /// True if the force on a boundary face of an owned cell is known, provided its condition is a load.
   bool knows_traction(Index face) const { return !at(face - mesh_->n_interior).is_rigid; }
   const std::vector<std::string>& interface_patches() const { return interface_patches_; }
-  /// The patch can hold the solid: some of its faces know more than the force on them.
+  /// True if the patch can hold the solid: some of its faces prescribe more than a force.
   bool holds(std::size_t patch) const { return holds_[patch] != 0; }
 
-  /// Adds tractions, pressures and loads by their total at time t as forces [N] on the boundary faces of owned cells (`dim`
-  /// values a face): thesis (2.64), reference configuration. Collective.
+  /// Adds tractions, pressures and total loads at time t as forces [N] on boundary faces of owned cells
+  /// (`dim` values per face): thesis (2.64), reference configuration. Collective.
   void add_forces(double t, std::span<double> forces, bool with_pressure = true) const;
   /// Pressures at time t on the boundary faces of owned cells [Pa].
   std::vector<double> pressures(double t) const;
 
  private:
   friend class PrescribedDisplacement;
-  /// One entry of the YAML: a patch or a part of it.
+  /// One entry of the YAML file: a patch or a part of it.
   struct Condition {
     SolidCondition::Type type;
-    bool is_load = true;                   ///< knows no more than the force
-    std::vector<fv::Expression> known;     // vector g of the support, or displacement; empty: zero
-    std::vector<fv::Expression> traction;  // empty: none
+    bool is_load = true;                   ///< prescribes only the force
+    std::vector<fv::Expression> known;     // vector g of the support, or displacement; empty if zero
+    std::vector<fv::Expression> traction;  // empty if there is none
     fv::Expression pressure;
-    std::vector<Index> faces;  // those of owned cells
+    std::vector<Index> faces;  // faces of owned cells
     fv::Expression stiffness;
     bool along_normal = false;
-    /// fixed-displacement by component. A part of which all are known holds its faces, `value` also their
-    /// vertices.
+    /// Fixed displacement by component. If all components of a part are known, it holds its faces; `value`
+    /// also holds their vertices.
     bool by_component = false;
     Vec3 known_components = Vec3::Zero(), normal = Vec3::Zero();
-    // By their total.
+    // Loads given by their total.
     std::optional<DistributedForce> distributed;
     std::optional<BearingLoad> bearing;
     std::optional<HydrostaticPressure> liquid;
@@ -73,14 +73,14 @@ class SolidBoundaries {
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   std::vector<Condition> conditions_;
-  std::vector<Index> condition_of_face_;  // per local boundary face, -1: bonded
+  std::vector<Index> condition_of_face_;  // per local boundary face; -1 if bonded
   std::vector<std::uint8_t> holds_;       // per patch
   std::vector<std::string> interface_patches_;
   std::vector<DistributedForce> point_loads_;
 };
 
-/// The known values of the operator in the order of its columns: displacements of vertices and faces, far
-/// ends of springs.
+/// Known values of the operator in the order of its columns: displacements of vertices and faces, far ends of
+/// springs.
 class PrescribedDisplacement {
  public:
   PrescribedDisplacement(const mesh::Mesh& mesh, const SolidBoundaries& boundaries,
@@ -89,17 +89,17 @@ class PrescribedDisplacement {
   std::size_t size() const { return size_; }
   bool is_zero() const { return groups_.empty(); }
   bool uses_time() const { return uses_time_; }
-  /// dim values a known column.
+  /// Evaluates dim values per known column.
   void evaluate(double t, std::span<double> values) const;
-  /// The time derivative, central difference over 2e-3 dt.
+  /// Evaluates the time derivative by a central difference over 2e-3 dt.
   void evaluate_rate(double t, double dt, std::span<double> values) const;
 
  private:
-  struct Group {  // all that takes its values from one condition
+  struct Group {  // all columns with values from one condition
     const std::vector<fv::Expression>* value;
     std::vector<Index> columns;
     std::vector<Vec3> places;
-    std::vector<Tensor3> shares;  // one a place, after the places without (their share is I)
+    std::vector<Tensor3> shares;  // one per place, after the places without (whose share is I)
   };
   int dim_;
   std::size_t size_ = 0;

@@ -32,7 +32,7 @@ struct Found {
   Vec3 first;  ///< place of the first one
 };
 
-/// Of points listed on each rank. Collective.
+/// Finds one of the points listed on the ranks. Collective.
 std::optional<Found> find_any(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                               const std::vector<Index>& points) {
   std::vector<double> first;
@@ -54,7 +54,7 @@ void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
         "The mesh has an inverted cell: cell {} at {} has the volume {:.3g} m^3. Its faces intersect; "
         "remesh there, coarser or with another element size.",
         trouble->cell_id, text_of(trouble->centre, mesh.dim), trouble->volume);
-  // Where a cell does not lie behind its face the operator is not elliptic.
+  // The operator is not elliptic if a cell is not behind its face.
   if (const auto fold = mesh::find_fold(mesh, geometry))
     throw Error(
         "The mesh is folded at {}: cell {} (counted from 0 in the file) is not behind its face there. A "
@@ -103,14 +103,14 @@ void check_axis(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic)
 
 namespace {
 
-// A motion is free if the supports resist it less than this, relative to the motion they resist most
-// (squares: a clamped spot of a thousandth of the body still holds it).
+// A motion is free if its resistance relative to the largest one is below this (squared: holding a spot of a
+// thousandth of the body suffices).
 constexpr double resisted = 1e-9;
 
-using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the centre, rotation times the size of the body
+using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the center, rotation times the size of the body
 using Resistance = Eigen::Matrix<double, 6, 6>;
 
-/// Sum over the ranks, entry by entry.
+/// Component-wise sum over the ranks.
 void add_over_ranks(MPI_Comm comm, std::vector<double>& values) {
   const std::vector<double> all = parallel::all_gather(comm, values);
   const std::size_t n = values.size();
@@ -207,7 +207,7 @@ void add_face(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic, I
   const Vec3 n = geometry.face_area[face].normalized();
   const elastic::BoundaryRow& row = elastic.at(face);
   if (row.held) resist(at_centre, row.known);
-  // Any spring holds: its stiffness only says how far the body moves.
+  // Any spring holds, because its stiffness only determines the displacement.
   if (const double stiffest = row.spring.norm(); stiffest > 0) resist(at_centre, row.spring / stiffest);
   if (row.level) resist(normal_gradients(n), Tensor3::Identity());
   for (const Index v : mesh.face_points[face])
@@ -216,7 +216,7 @@ void add_face(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic, I
              Tensor3::Identity() - elastic.constraints().free_part(v));
 }
 
-/// Reduced row echelon form: pivots in the order of the columns; rows without pivot are dropped.
+/// Reduced row echelon form with pivots in column order; rows without pivot are removed.
 std::vector<Motion> reduce(std::vector<Motion> rows, const std::array<int, 6>& columns) {
   std::vector<Motion> reduced;
   for (const int column : columns) {
@@ -243,7 +243,7 @@ std::string direction(Vec3 d) {
 std::string describe(const Motion& motion, const Body& body, int dim) {
   const Vec3 t = motion.head<3>(), w = motion.tail<3>() / body.size;
   if (w.norm() * body.size < 1e-6) return "translation along " + direction(t);
-  // u = t + w x (x - centre) vanishes on the axis through centre + w x t / |w|^2, or runs along it (a screw).
+  // u = t + w x (x - center) vanishes, or is parallel (a screw), on the axis through center + w x t/|w|^2.
   Vec3 x = body.centre + w.cross(t) / w.squaredNorm();
   for (int a = 0; a < 3; ++a)
     if (std::abs(x[a]) < 1e-6 * body.size) x[a] = 0;
@@ -256,12 +256,12 @@ std::string describe(const Motion& motion, const Body& body, int dim) {
 
 std::vector<std::string> free_modes(const Body& body, int dim, bool axisymmetric) {
   Resistance resistance = body.resistance;
-  // Of a body of revolution only the motion along its axis is without strain.
+  // In a body of revolution, only the axial motion has no strain.
   if (axisymmetric)
     return resistance(1, 1) > resisted * std::max(resistance.trace(), std::numeric_limits<double>::min())
                ? std::vector<std::string>()
                : std::vector<std::string>{"translation along y, the axis"};
-  // In 2-D the other three motions do not exist.
+  // The other three motions do not exist in 2-D.
   if (dim == 2)
     for (const int i : {2, 3, 4}) {
       resistance.row(i).setZero();
@@ -274,7 +274,7 @@ std::vector<std::string> free_modes(const Body& body, int dim, bool axisymmetric
   for (int i = 0; i < 6; ++i)
     if (eigen.eigenvalues()[i] <= resisted * largest) free.push_back(eigen.eigenvectors().col(i));
   std::vector<std::string> names;
-  // Rotations first, so that what is left of them are plain translations; these are named first.
+  // Eliminates rotations first, so that pure translations remain; these are reported first.
   for (const Motion& motion : reduce(free, {3, 4, 5, 0, 1, 2})) names.push_back(describe(motion, body, dim));
   std::ranges::stable_partition(names, [](const std::string& n) { return n.starts_with("translation"); });
   return names;

@@ -17,9 +17,9 @@ namespace couplet::solid {
 
 namespace {
 
-/// Least over largest extent squared of faces that take a moment about every axis.
+/// Smallest over largest squared extent of faces that carry a moment about any axis.
 constexpr double flat = 1e-10;
-/// Of a moment about a line of faces, over what the load has.
+/// Relative tolerance for a moment about a line of faces.
 constexpr double rounding = 1e-9;
 
 std::vector<fv::Expression> expressions(const std::vector<config::ExpressionText>& texts, int n,
@@ -76,7 +76,7 @@ void DistributedForce::find_spin() {
   const int dim = mesh_->dim;
   const Eigen::SelfAdjointEigenSolver<Tensor3> axes(inertia_);
   for (int k = 0; k < 3; ++k) {
-    // In two dimensions all centres lie at z = 0, and moments are those about z.
+    // In 2-D all centers are at z = 0 and moments are about z.
     const Vec3 e = dim == 2 ? Vec3(Vec3::Unit(k)) : Vec3(axes.eigenvectors().col(k));
     const double inertia = e.dot(inertia_ * e);
     const double least = dim == 2 ? flat * area_ * area_ * area_ : flat * axes.eigenvalues()[2];
@@ -103,7 +103,7 @@ Vec3 DistributedForce::moment_about_centre(double t) const {
   return moment;
 }
 
-/// A moment about an axis on which all faces lie would go lost.
+/// A moment about a line of faces cannot be applied.
 void DistributedForce::check_taken(const Vec3& moment, const Vec3& force) const {
   const double scale = force.norm() * (arm_.norm() + std::sqrt(inertia_.trace() / area_)) + moment.norm();
   if ((lost_ * moment).norm() <= rounding * scale) return;
@@ -129,12 +129,12 @@ void DistributedForce::add_forces(double t, std::span<double> forces) const {
 
 namespace {
 
-// Mean squares of normals along the axis, which the facets of a coarse cylinder still have, and across it, which a
-// strip of a cylinder of 40 degrees has.
+// Limits for the mean squared normals: along the axis (facets of a coarse cylinder), and across it (a 40
+// degree strip of a cylinder).
 constexpr double along_axis = 0.02, curved = 0.04;
-// Share of a force that may go along the axis found from such facets.
+// Share of a force that may be along an axis found from such facets.
 constexpr double most_axial = 0.05;
-// Rounds until the loaded half fits the pressure; mostly it is one.
+// Maximum number of iterations for the loaded half; usually one.
 constexpr int most_rounds = 20;
 
 }  // namespace
@@ -188,7 +188,7 @@ Vec3 BearingLoad::force_at(double t) const {
   return force;
 }
 
-/// q: see the class. Rounds until the half chosen by the force is the one where the pressure is positive.
+/// q as in the class. Iterates until the half chosen by the force is the one with positive pressure.
 BearingLoad::Push BearingLoad::find_push(const Vec3& force) const {
   const Vec3 wanted = force - force.dot(axis_) * axis_;
   Vec3 push = wanted;
@@ -251,7 +251,7 @@ double mean_positive(double d0, double d1, double d2) {
   if (d[2] <= 0) return 0;
   const double all = (d[0] + d[1] + d[2]) / 3;
   if (d[0] >= 0) return all;
-  // Under the corner that lies alone on its side of the surface: a similar triangle with a third of its depth as the mean.
+  // Below the corner alone on its side of the surface: a similar triangle with a third of its depth as mean.
   const auto corner = [](double alone, double a, double b) {
     return alone * alone * alone / (3 * (alone - a) * (alone - b));
   };
@@ -278,10 +278,10 @@ double HydrostaticPressure::mean(Index face, double level) const {
 
 namespace {
 
-/// A point further from the nearest face than so many of its widths lies beside the body.
+/// A point farther from the nearest face than this many face widths is not on the body.
 constexpr double widths = 2;
 
-/// The nearest boundary face of all ranks: of several the first of the file.
+/// Nearest boundary face of all ranks; ties go to the first in the file.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
   GlobalIndex id = std::numeric_limits<GlobalIndex>::max();

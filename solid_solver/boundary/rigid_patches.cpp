@@ -12,7 +12,7 @@
 namespace couplet::solid {
 namespace {
 
-// Least over largest moment of inertia of faces that do not lie on one line.
+// Smallest over largest moment of inertia of faces that are not collinear.
 constexpr double on_a_line = 1e-10;
 constexpr std::size_t motions = 6;
 

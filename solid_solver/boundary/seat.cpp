@@ -14,9 +14,9 @@ namespace couplet::solid {
 
 namespace {
 
-/// A face looks at the seat when its normal is within 60 degrees of the way to it.
+/// A face is oriented towards the seat if its normal is within 60 degrees of the direction.
 constexpr double least_cosine_to_seat = 0.5;
-/// Of a rigid seat, over the stiffness of the cells: what is left of the penetration falls tenfold with each change of the multipliers.
+/// Stiffness of a rigid seat over that of the cells: each multiplier update reduces the penetration tenfold.
 constexpr double rigid_scale = 10;
 
 }  // namespace
@@ -32,7 +32,7 @@ Seat::Seat(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const e
   for (std::size_t a = 0; a < p.direction.size(); ++a) direction_[Index(a)] = p.direction[a];
   const mesh::Geometry& geometry = rows.geometry();
   const fv::Expression height(p.height, "contact.height"), where(p.where, "contact.where");
-  // The height counts along a direction of any length, as the plate has it; displacements along that of length 1.
+  // The height is along a direction of any length, as for the plate; displacements are along the unit vector.
   const double length = direction_.norm();
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
     if (!open[std::size_t(f - mesh.n_interior)]) continue;

@@ -17,15 +17,15 @@
 namespace couplet::solid {
 namespace {
 
-// Compressive strain times (L/t)^2: a clamped column buckles at 0.2 (thickness by slenderness(): of a
-// square column half its own, hence a fourth, and a little less), a plate or an arch far above.
+// Compressive strain times (L/t)^2. A clamped column buckles at 0.2; slenderness() uses half its thickness
+// for a square column, hence a fourth, with a margin. Plates and arches are far above.
 constexpr double least_strain = 0.9 * 0.2 / 4 / BucklingEstimate::low;
-// Of the solution in which a negative curvature of K + low K_sigma would show.
+// Tolerance of the solution in which a negative curvature of K + low K_sigma would appear.
 constexpr double shown_at = 1e-3;
 constexpr int most_searches = 2000, most_refinements = 40, settled = 6;
-// More compression than at the last look that makes another one worth while.
+// Increase of compression since the last search that justifies another one.
 constexpr double more_compression = 1.1;
-// A factor that has changed by less than this part over the last refinements is told.
+// Largest relative change in the last refinements for a factor to be reported.
 constexpr double settled_part = 0.01;
 
 double limit_of(const BucklingEstimate& found) {
@@ -39,7 +39,7 @@ std::string neglected(const BucklingEstimate& found) {
               : std::string());
 }
 
-/// |a x| / |u| / (factor - 1), root mean squares over the cells: modes are orthogonal by K, by which a is the part of u along x.
+/// |a x| / |u| / (factor - 1), RMS over cells. The part a of u along x is by the K-orthogonality of modes.
 double growth_of(const SolidBody& body, const std::vector<double>& u, const std::vector<double>& x,
                  double factor) {
   const mesh::Mesh& mesh = body.mesh();
@@ -105,7 +105,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   const double here = compression(mesh, prestress), ratio = slenderness(mesh, geometry);
   if (!(here > more_compression * compression_seen)) return {};
   if (!(here / parallel::min(mesh.comm, softest) * ratio * ratio >= least_strain)) return {};
-  // As forces, which soft motions answer to: what stiff ones leave would end the iteration before.
+  // Given as forces, to excite soft motions: errors in stiff ones would stop the iteration earlier.
   const std::vector<double> force = body.any_start();
   std::vector<double> of_stress(force.size());
   if (!method.approximate_inverse(force, of_stress)) return {};
@@ -127,7 +127,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   };
   modes::Curvature found = look(BucklingEstimate::low);
   if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
-  // Under less load fewer motions are soft: one of them is nearer to the softest.
+  // Fewer motions are soft under less load, so this one is closer to the softest.
   if (modes::Curvature closer = look(BucklingEstimate::imperfect); closer.is_negative) {
     closer.iterations += found.iterations;
     found = std::move(closer);
@@ -135,8 +135,8 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   const auto enough = [](const std::vector<double>& rho) {
     return rho.size() > settled && rho[rho.size() - 1 - settled] - rho.back() < settled_part * -rho.back();
   };
-  const modes::LowestQuotient least =
-      modes::lowest_quotient(of, found.x, most_refinements, enough);  // -1 / lambda
+  // -1 / lambda
+  const modes::LowestQuotient least = modes::lowest_quotient(of, found.x, most_refinements, enough);
   const double factor = -1 / least.value;
   return {.factor = factor,
           .growth = growth_of(body, body.unknowns_of(state.cell_u, state.face_u), least.x, factor),

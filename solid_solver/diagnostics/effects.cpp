@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects that the scene leaves out, by what the run has seen of them.
+// Effects that the case neglects, judged by results of the run.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@
 namespace couplet::solid {
 namespace {
 
-/// Inertia of a static run with several steps, by the velocities between them.
+/// Inertia of a static run with several steps, from the velocities between them.
 class NeglectedInertia final : public diagnostics::Diagnostic {
  public:
   explicit NeglectedInertia(const SolidView& view) : view_(view) {}
@@ -58,7 +58,7 @@ class NeglectedOfMaterial final : public diagnostics::Diagnostic {
   }
 
  private:
-  /// Largest equivalent stress (von Mises) over the yield strength, where that is known; else NaN.
+  /// Largest von Mises stress over the yield strength; NaN if unknown.
   double share_of_yield() const {
     const SolidBody& body = view_.body;
     const mesh::Mesh& mesh = body.mesh();
@@ -77,7 +77,7 @@ class NeglectedOfMaterial final : public diagnostics::Diagnostic {
   SolidView view_;
 };
 
-/// Thermal strain and the heat of deformation, of a scene with temperatures.
+/// Thermal strain and heat of deformation, for a case with temperatures.
 class NeglectedOfHeat final : public diagnostics::Diagnostic {
  public:
   explicit NeglectedOfHeat(const SolidView& view) : view_(view) {}

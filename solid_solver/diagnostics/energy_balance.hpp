@@ -8,27 +8,27 @@
 
 namespace couplet::solid {
 
-/// Energy that a dynamic run has found beside what it was given [J]; over all ranks.
+/// Energy of a dynamic run compared with the energy supplied to it [J]; over all ranks.
 struct EnergyAudit {
   double held = 0;        ///< kinetic and strain energy
   double given = 0;       ///< initial energy and work of the loads
-  double scale = 0;       ///< most that was given so far
-  bool is_driven = true;  ///< loads did work: the balance holds as well as their work is known
+  double scale = 0;       ///< largest energy supplied so far
+  bool is_driven = true;  ///< loads did work, which is known only approximately
   double created() const { return scale > 0 ? (held - given) / scale : 0; }
-  /// Above these, motion grows out of nothing; an undriven body has nothing that could be in error but the motion.
+  /// Limits of energy growth without a cause. In an undriven body, only the motion can be in error.
   static constexpr double most_created = 0.2, most_created_undriven = 0.1;
-  /// Above this, nothing of the answer is left: the run ends.
+  /// Limit above which the run ends because the result is unusable.
   static constexpr double hopeless = 10;
-  // Not a number is more than all of them.
+  // The comparisons treat NaN as exceeding every limit.
   double limit() const { return is_driven ? most_created : most_created_undriven; }
   bool is_doubtful() const { return !(created() <= limit()); }
-  /// More energy out of nothing than was brought in.
+  /// Limit at which more energy was created than supplied.
   static constexpr double useless = 1;
   base::Severity severity() const {
     return created() < useless ? base::Severity::warning : base::Severity::wrong;
   }
   bool is_hopeless() const { return !(created() <= hopeless); }
-  /// What is held and what was given, with the growth in per cent.
+  /// Both energies, with the growth in percent.
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
@@ -36,18 +36,18 @@ struct EnergyAudit {
   }
 };
 
-/// Tells a motion that holds more energy than loads and initial motion have brought in, and ends one of which nothing is
-/// left. Moving supports and heat do work that is not counted: no balance then.
+/// Reports a motion with more energy than loads and initial motion supplied, and ends the run in hopeless
+/// cases. Moving supports and heat do work that is not counted, so there is no balance with them.
 class EnergyBalance final : public diagnostics::Diagnostic {
  public:
-  /// `strain`: looks at the same steps before it; nullptr at large strain, whose energy is that of the law.
+  /// `strain`: observed before it at the same steps; nullptr at large strain (energy of the law).
   EnergyBalance(const SolidView& view, std::shared_ptr<StrainEnergy> strain)
       : view_(view), strain_(std::move(strain)) {}
   const EnergyAudit& audit() const { return audit_; }
   void observe(diagnostics::Report& report) override {
     if (is_time_to_look(view_)) look(report);
   }
-  /// Throws Error if nothing of the answer is left.
+  /// Throws Error if the result is unusable.
   void look(diagnostics::Report& report) override;
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;

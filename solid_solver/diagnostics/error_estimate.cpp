@@ -24,17 +24,17 @@ double product(MPI_Comm comm, std::span<const double> a, std::span<const double>
   return parallel::sum(comm, std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
 }
 
-/// How far a motion has swung, and with it what a wrong stiffness makes of it. A mesh that is stiffer by a part e swings faster
-/// by e/2, so that after an angle w t the displacement is e w t / 2 of its amplitude off, twice the amplitude at most. Loads that
-/// a body follows without inertia have no such drift: kinetic over strain energy, means over the run, is 1 of free
-/// vibrations and 0 of those.
+/// Phase error of a motion by a wrong stiffness. A mesh with a relative stiffness error e oscillates faster
+/// by e/2, so after an angle w t the displacement is wrong by e w t/2 of its amplitude, at most twice the
+/// amplitude. Quasi-static responses do not drift: the ratio of mean kinetic to mean strain energy is 1 for
+/// free vibrations and 0 for those.
 struct PhaseDrift {
   double way = 0, size = 0;        // integral of |v|, largest |u| [m]
   double kinetic = 0, strain = 0;  // integrals of the energies of the whole body [J s]
-  /// Error of the displacement over its size, with a relative error `stiffness` of the strain energy.
+  /// Relative error of the displacement for a relative error `stiffness` of the strain energy.
   double over_size(double stiffness) const {
     if (!(size > 0) || !(strain > 0)) return 0;
-    // |v| of a swing is 2/pi of its amplitude w A in the mean.
+    // The mean |v| of an oscillation is 2/pi of its amplitude w A.
     const double angle = 0.5 * std::numbers::pi * way / size;
     return std::min(2.0, 0.5 * stiffness * angle * std::min(1.0, kinetic / strain));
   }
@@ -45,19 +45,17 @@ struct PhaseDrift {
 };
 
 /// Estimates the error of the displacement:
-///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
-///           if more, what recovered strains differ from those of the faces (symmetric gradient: its work misses nothing
-///           by itself), or the square of the relative difference of two face gradients' strains: an energy errs by the
-///           square of what the strains err; see StrainAudit::missed_by_mesh().
-///           In motion what that makes of the phase comes beside it, see PhaseDrift. A body at rest tells nothing.
-///   step    sum of the local errors, see VelocityErrors; static: none
-///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
-///           dynamic: the relative residuals of all steps, see StepErrors
-/// Thermal strain: see weighted_mesh_error; in motion it makes the mesh's part unknown.
-/// Temperatures that are solved for add what they err by, over their distance from the reference, times the share of the
-/// strain energy that their strain makes. At finite strain the mesh's part is half the square of the difference of two
-/// gradients' Green strains, times how softly the deformed body follows a change of its stiffness (a static run: one linear
-/// solve with the tangent), or, if more, what its softest motion makes of it, see soft_mesh_error().
+///   mesh    difference of stress work and strain energy, equal in equilibrium; if larger, that of recovered
+///           and face strains (symmetric gradient: its work has no error), or the squared relative difference
+///           of two gradients' strains; see StrainAudit::missed_by_mesh(). Motion adds PhaseDrift.
+///   step    sum of the local errors, see VelocityErrors; none if static
+///   linear  static: work of the equilibrium residual over that of the loads, the error of the compliance;
+///           dynamic: relative residuals of all steps, see StepErrors
+/// Thermal strain uses weighted_mesh_error(); in motion the mesh part is then unknown. Computed temperatures
+/// add their error, relative to the distance from the reference, times the thermal share of strain energy. At
+/// finite strain the mesh part is half the squared difference of two gradients' Green strains, times the
+/// sensitivity of the deformed body to its stiffness (static runs: one solve with the tangent), or if larger
+/// the effect on the softest motion, see soft_mesh_error().
 class ErrorEstimate final : public diagnostics::Diagnostic {
  public:
   ErrorEstimate(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
@@ -95,13 +93,13 @@ class ErrorEstimate final : public diagnostics::Diagnostic {
   std::optional<HeatErrors> heat_;  // of temperatures that are solved for and strain the body
 };
 
-/// Residual of the last solve over the size of its rows.
+/// Residual of the last solve relative to its rows.
 double ErrorEstimate::left_by_solver() const {
   const LastSolve& last = view_.stepper.last_solve();
   return body_.equilibrium().share_left(view_.stepper.effort().residual, norm(view_.comm(), last.rhs));
 }
 
-/// |u . (b - A u)| / |u . b| of the last static solve, linear: u . b grows by as much as A u misses of b.
+/// |u . (b - A u)| / |u . b| of the last linear static solve: relative error of u . b.
 double ErrorEstimate::missed_work() const {
   const LastSolve& last = view_.stepper.last_solve();
   if (!last.is_known(view_.comm())) return 0;
@@ -112,8 +110,8 @@ double ErrorEstimate::missed_work() const {
   return work != 0 ? std::abs(product(view_.comm(), last.unknowns, missed) / work) : 0;
 }
 
-/// A temperature that errs strains the body wrongly: the displacement that follows from it by as much, |u . b_T| / u . K u
-/// of the whole.
+/// Adds the effect of a temperature error: the thermal displacement changes in proportion, by its share |u .
+/// b_T| / u . K u of the whole.
 void ErrorEstimate::add_heat(diagnostics::ErrorParts& parts) const {
   if (!heat_) return;
   const diagnostics::ErrorParts load =
@@ -129,9 +127,10 @@ void ErrorEstimate::add_heat(diagnostics::ErrorParts& parts) const {
     parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
 }
 
-/// Share of the strain energy that the mesh misses: half of sum V mu |E1 - E2|^2 / sum V mu |E1|^2 of the Green strains
-/// E = (H + H^T + H^T H) / 2 of the gradient in use and the corrected one, which turning the body leaves as they are, half
-/// since each gradient errs; or, if more, what quadrilaterals miss, by the law's moduli at rest.
+/// Relative strain energy error of the mesh: half of sum V mu |E1 - E2|^2 / sum V mu |E1|^2 with Green
+/// strains E = (H + H^T + H^T H)/2 of this gradient and the corrected one, which are invariant to rotations.
+/// Half, because each gradient has an error. If larger, the error of quadrilaterals, with the law's moduli at
+/// rest.
 double ErrorEstimate::missed_of_large_strain() const {
   const mesh::Mesh& mesh = body_.mesh();
   const elastic::ElasticOperator& rows = body_.elastic();
@@ -165,7 +164,7 @@ double ErrorEstimate::missed_of_large_strain() const {
   return std::max(size > 0 ? 0.5 * difference / size : 0, inner ? inner->missed() : 0);
 }
 
-/// The displacement follows as softly as the deformed body does. NaN: its tangent has no solution.
+/// The displacement changes with the sensitivity of the deformed body. NaN if its tangent has no solution.
 double ErrorEstimate::finite_mesh_error() const {
   const double energy = missed_of_large_strain();
   if (!stability_) return energy;
@@ -178,8 +177,8 @@ double ErrorEstimate::finite_mesh_error() const {
   }
 }
 
-/// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that
-/// nothing is known.
+/// Thermal mesh error, at least `known`. Energies are no measure if heat strains the body. A moving body may
+/// be free, so the error is then unknown.
 double ErrorEstimate::thermal_mesh_error(double known) const {
   if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return diagnostics::ErrorParts::unknown;
   std::vector<double> pressure = body_.thermal()->pressure(view_.now().time);
@@ -211,7 +210,7 @@ void ErrorEstimate::observe(diagnostics::Report&) {
   if (strain_) see_swing(step);
 }
 
-/// Half of u . K u is the strain energy, of the gradients without an energy nearly so.
+/// Half of u . K u is the strain energy, approximately also for gradients without an energy.
 void ErrorEstimate::see_swing(const time::StepErrors::Seen& step) {
   const SolidState& now = view_.now();
   const std::vector<double> u = view_.unknowns();

@@ -16,9 +16,9 @@ constexpr int patience = 4;              // turns in a row
 constexpr double turning_cosine = -0.5;  // cosine between the changes of two steps
 constexpr double noticeable = 1e-3;      // root mean square of a step's change over all temperatures seen
 
-/// Tells a temperature that swings to and fro from step to step: the trapezoidal rule turns modes that its step does not
-/// resolve (a shock, a large Fourier number) round in each step in place of damping them: amplification
-/// (1 - z/2)/(1 + z/2), towards -1 for z = dt/tau to infinity.
+/// Detects a temperature that alternates between steps. The trapezoidal rule reverses modes that its step
+/// does not resolve (a shock, a large Fourier number) instead of damping them: amplification (1 - z/2)/(1 +
+/// z/2), towards -1 for z = dt/tau to infinity.
 class HeatSwing final : public diagnostics::Diagnostic {
  public:
   explicit HeatSwing(const Heat& heat) : heat_(heat) {}
@@ -30,7 +30,7 @@ class HeatSwing final : public diagnostics::Diagnostic {
 
  private:
   const Heat& heat_;
-  std::vector<double> change_;       // of owned cells in the last step [K]; empty: not yet
+  std::vector<double> change_;       // of owned cells in the last step [K]; or empty
   double lowest_ = 0, highest_ = 0;  // that was seen [K]
   int turns_ = 0;                    // in a row
   bool begun_ = false;
@@ -77,8 +77,8 @@ void HeatSwing::observe(diagnostics::Report& report) {
            size, highest_ - lowest_)});
 }
 
-/// Says whether a steady temperature could follow its loads. Heat needs L^2 / a to get through a solid of half thickness
-/// L = volume / surface, a = k / (rho c).
+/// Judges whether a steady temperature could follow its loads. Heat takes L^2/a to cross a solid of half
+/// thickness L = volume/surface, a = k/(rho c).
 class HeatStorage final : public diagnostics::Diagnostic {
  public:
   explicit HeatStorage(const Heat& heat) : heat_(heat) {}
@@ -139,7 +139,7 @@ class HeatError final : public diagnostics::Diagnostic {
 }  // namespace
 
 diagnostics::Made heat_swing(const Heat& heat) {
-  // The one scheme that does not damp.
+  // The only scheme without damping.
   if (heat.is_steady() || heat.parameters().scheme != HeatParameters::Scheme::trapezoidal) return nullptr;
   return std::make_shared<HeatSwing>(heat);
 }

@@ -19,7 +19,7 @@ time::TimeSchemeParameters scheme_of(HeatParameters::Scheme scheme) {
   return p;
 }
 
-/// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
+/// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
 struct Fit {
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   Eigen::Vector4d values = Eigen::Vector4d::Zero();
@@ -29,7 +29,7 @@ struct Fit {
     moments += weight * row * row.transpose();
     values += weight * value * row;
   }
-  /// In the cell itself; in a plane the third direction is left out.
+  /// Value of the fit in the cell itself; 2-D omits the third direction.
   double value() const { return moments.completeOrthogonalDecomposition().solve(values)[0]; }
 };
 
@@ -76,7 +76,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   const auto n = std::size_t(mesh_.cells.n_owned());
   std::vector<double> rate(n);
   for (std::size_t c = 0; c < n; ++c) rate[c] = (now.cells[c] - before.cells[c]) / now.dt;
-  // Rates are those of the middles of steps, as far apart as half of both.
+  // Rates are at mid-steps, whose distance is the mean of both steps.
   if (dt_ > 0 && rate_.size() != n)
     throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
   if (dt_ > 0)  // the same on all ranks, also on one without cells
@@ -87,7 +87,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   dt_ = now.dt;
 }
 
-/// The temperature of each owned cell against that of a linear fit through its neighbours [K].
+/// Difference of each owned cell's temperature from a linear fit through its neighbors [K].
 std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   const HeatState& now = heat.accepted();
   const std::vector<double> faces = heat.face_temperature(now);  // also where nothing is solved for
@@ -117,7 +117,7 @@ diagnostics::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double
   const double varies = size(now.cells, level);
   const double size = reference ? this->size(now.cells, *reference) : varies;
   if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
-    return parts;  // one temperature: nothing errs
+    return parts;  // uniform temperature has no error
   parts.mesh = root_mean_square(mesh_, geometry_, 1, gaps(heat)) / size;
   if (!steady_) parts.step = steps_.over_size() * varies / size;
   return parts;

@@ -20,20 +20,19 @@ namespace couplet::solid {
 double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, int width,
                         std::span<const double> cells);
 
-/// What a run of heat conduction leaves in its temperature, over the size of the temperature's variation: its distance from
-/// the mean temperature before the first step, or of a steady field from its own mean.
-///   mesh    the temperature against that of a linear fit through each cell's neighbours
-///   step    sum of the local errors by the rates of the last three steps, see VelocityErrors; steady: none
-/// Collective.
+/// Error of the temperature in heat conduction, relative to its variation: the distance from the mean
+/// temperature before the first step, or of a steady field from its own mean. Collective.
+///   mesh    difference from a linear fit through each cell's neighbors
+///   step    sum of local errors by the rates of the last three steps, see VelocityErrors; none if steady
 class HeatErrors {
  public:
-  /// `mesh` by reference.
+  /// Keeps a reference to `mesh`.
   HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const HeatParameters& parameters);
-  /// After a step of a transient.
+  /// Call after a step of a transient run.
   void see_step(const HeatState& before, const HeatState& now);
-  /// Error of the accepted temperature; with `reference` [K] over the distance from that.
+  /// Error of the accepted temperature. With `reference` [K], relative to the distance from it.
   diagnostics::ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
-  /// On the solid's mesh. Collective.
+  /// Saves or loads data on the mesh of the solid. Collective.
   void visit(io::Archive& archive);
 
  private:
@@ -46,8 +45,8 @@ class HeatErrors {
   bool steady_;
   double level_ = 0;  // before the first step [K]
   bool begun_ = false;
-  std::vector<double> rate_;  // of the step before [K/s]; empty: not yet
-  double dt_ = 0;             // of the step before; 0: not yet
+  std::vector<double> rate_;  // of the previous step [K/s]; empty if none
+  double dt_ = 0;             // of the previous step; 0 if none
   time::VelocityErrors steps_;
 };
 

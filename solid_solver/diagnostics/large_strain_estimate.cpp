@@ -20,8 +20,8 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Differences are taken over displacements with gradients of this size: Saint Venant-Kirchhoff's forces are a cubic
-/// polynomial, which they give exactly; of other laws they miss parts of that size.
+/// Size of displacement gradients for differences. The forces of Saint Venant-Kirchhoff are cubic, so
+/// differences are exact; for other laws they have relative errors of this size.
 constexpr double probe_gradient = 0.01;
 
 struct Displacement {
@@ -35,7 +35,7 @@ Displacement combined(double a, const Displacement& u, double b, const Displacem
   return w;
 }
 
-/// The inner forces F of the body at large strain.
+/// Internal forces F of the body at large strain.
 class Forces {
  public:
   explicit Forces(const SolidBody& body) : n_(body.elastic().n_unknowns()) {
@@ -91,7 +91,7 @@ class Stiffness {
   std::unique_ptr<SolutionMethod> method_;
 };
 
-/// The root of x - a x^3 = 1 that is reached from no load on; NaN: the load has a maximum before.
+/// Root of x - a x^3 = 1 on the branch from zero load; NaN if the load has a maximum before.
 double amplitude(double a) {
   if (a > 4. / 27) return std::numeric_limits<double>::quiet_NaN();
   double x = a > 0 ? 1 : 1 / (1 - a);  // below the root, where Newton's method closes in from one side
@@ -160,7 +160,7 @@ LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const
     c[i] = (odd2[i] - 2 * odd[i]) / (6 * s * s * s);
   }
   const Displacement u2{stiffness.solve(q), Values(known.size(), 0)};
-  // u2 is made as large as u1, so that the differences see both.
+  // Scales u2 to the size of u1, so that differences resolve both.
   const double size2 = std::sqrt(dot(u2.unknowns, u2.unknowns));
   const double t = size2 > 0 ? std::sqrt(dot(u1.unknowns, u1.unknowns)) / size2 : 1;
   const Values with = forces.part(s, combined(1, u1, t, u2), 1),

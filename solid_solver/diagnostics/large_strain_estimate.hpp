@@ -8,21 +8,21 @@
 
 namespace couplet::solid {
 
-/// By how much large strain would change the displacement u1 of a linear static solution, the loads being dead.
-/// With the forces F(u) = K u + Q(u, u) + C(u, u, u) + ... of the symmetric gradient at large strain the solution under
-/// lambda times the load is lambda u1 + lambda^2 u2 + lambda^3 u3 + ... [koiter1970],
+/// Change of the displacement u1 of a linear static solution by large strain, under dead loads. With the
+/// forces F(u) = K u + Q(u, u) + C(u, u, u) + ..., the solution under lambda times the load is lambda u1 +
+/// lambda^2 u2 + lambda^3 u3 + ... [koiter1970]:
 ///   K u2 = -Q(u1, u1),   K u3 = -2 Q(u1, u2) - C(u1, u1, u1).
-/// Summed beyond that as what such series are where they are known: with r = <u3, u2> / <u2, u2> and u3 = r u2 + w the
-/// part along u2 is geometric (a column under r of its buckling load: u2 (1 + r + r^2 + ...)), and with a = <w, u1> /
-/// <u1, u1> the amplitude x obeys x - a x^3 = 1 (a held beam that stretches: a < 0):
-///   u = x u1 + x^2 u2 / (1 - r) + x^3 (w - a u1).
+/// The part of u3 along u2, r = <u3, u2>/<u2, u2>, continues as a geometric series, as in a column at the
+/// share r of its buckling load. The rest w = u3 - r u2 gives a = <w, u1>/<u1, u1>, and the amplitude obeys x
+/// - a x^3 = 1:
+///   u = x u1 + x^2 u2/(1 - r) + x^3 (w - a u1), for example a < 0 in a held beam that stretches.
 struct LargeStrainEstimate {
-  double change =
-      0;  ///< |u - u1| / |u1|, root mean square over the cells; NaN: r >= 1 or a > 4/27, no equilibrium
+  /// |u - u1|/|u1|, root mean square over the cells; NaN without equilibrium (r >= 1 or a > 4/27).
+  double change = 0;
   double ratio = 0;  ///< r
   double cubic = 0;  ///< a
   bool is_known() const { return change == change; }
-  /// One sentence with the number.
+  /// Describes the change in one sentence.
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
@@ -30,9 +30,9 @@ struct LargeStrainEstimate {
   }
 };
 
-/// Two linear solves and some evaluations of the forces, with an operator of its own. `unknowns`, `known`: of the linear
-/// solution. Laws: Saint Venant-Kirchhoff, or nearly incompressible neo-Hookean where the volume strain is the cells'.
-/// Throws SolveFailure. Collective.
+/// Needs two linear solves and some force evaluations, with its own operator. `unknowns`, `known`: linear
+/// solution. Laws: Saint Venant-Kirchhoff, or nearly incompressible neo-Hookean with the volume strain of
+/// cells. Throws SolveFailure. Collective.
 LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const double> unknowns,
                                           std::span<const double> known);
 

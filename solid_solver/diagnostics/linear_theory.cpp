@@ -13,8 +13,8 @@
 namespace couplet::solid {
 namespace {
 
-/// Says what small strain neglects: by the largest gradient, by how near the loads are to those that buckle the body, and,
-/// where it is asked for, by an expansion beyond the linear solution.
+/// Reports what small strain neglects: by the largest gradient, by the distance from buckling, and on request
+/// by an expansion beyond the linear solution.
 class LinearTheory final : public diagnostics::Diagnostic {
  public:
   explicit LinearTheory(const SolidView& view) : view_(view) {}

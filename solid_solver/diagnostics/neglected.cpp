@@ -17,7 +17,7 @@ using P = SolidParameters;
 
 bool deforms(const P& p) { return p.analysis != P::Analysis::thermal; }
 
-/// The largest coefficient that the case gives as a number [1/K].
+/// Largest constant expansion coefficient in the case [1/K].
 std::optional<double> largest_expansion(const P& p) {
   std::optional<double> largest;
   for (const SolidMaterial& m : materials_of(p))
@@ -27,9 +27,9 @@ std::optional<double> largest_expansion(const P& p) {
   return largest;
 }
 
-/// Its share of a displacement: 0.4 of the square of the rotation at the tip of a cantilever (elastica; the norm of the
-/// gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) where a load of 1/f of the buckling
-/// load makes lateral motion grow.
+/// Relative change of a displacement: 0.4 times the squared tip rotation of a cantilever (elastica; the norm
+/// of the gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) for lateral
+/// motion under 1/f of the buckling load.
 double share_of_geometry(const Deformation& d, const std::optional<LargeStrainEstimate>& large_strain,
                          double buckling_factor) {
   constexpr double all = 10;  // of a load beyond the buckling load nothing is left
@@ -42,11 +42,11 @@ double share_of_geometry(const Deformation& d, const std::optional<LargeStrainEs
 
 }  // namespace
 
-// A static answer to a load of circular frequency w is too large by r = inertia / load = (w / w_1)^2 of itself where that is
-// small, and all of it is wrong where it is not: a load that comes at once moves a body twice as far.
+// The static response to a load of angular frequency w has a relative error r = inertia/load = (w/w_1)^2 if
+// that is small, and is useless otherwise: a sudden load moves a body twice as far.
 Opinion neglected_inertia(const P& p, double inertia_over_load) {
-  if (p.analysis != P::Analysis::static_ || has_finite_strain(p))
-    return {};  // static steps at large strain are load steps: t is no time
+  // Static steps at large strain are load steps, so t is not a time.
+  if (p.analysis != P::Analysis::static_ || has_finite_strain(p)) return {};
   return diagnostics::finding_of({.effect = "inertia",
                                   .number = inertia_over_load,
                                   .limit = 0.01,
@@ -55,7 +55,7 @@ Opinion neglected_inertia(const P& p, double inertia_over_load) {
                                   .share = std::min(inertia_over_load, 1.)});
 }
 
-// A body that moves slowly enough holds next to no kinetic energy beside its strain energy, (w / w_1)^2 of it.
+// In slow motion, the kinetic energy is (w/w_1)^2 of the strain energy.
 Opinion spare_inertia(double kinetic_over_strain, double steps) {
   if (!(steps > 1)) return {};
   return diagnostics::finding_of(
@@ -70,8 +70,8 @@ Opinion spare_inertia(double kinetic_over_strain, double steps) {
        .saves = 1 - 1 / steps});
 }
 
-// The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
-// theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
+// In linear theory the stretch of a fiber that rotates by phi without strain has the error phi^2/2. For a
+// gradient of 0.02 that is a fiftieth of the strain itself.
 Opinion neglected_geometry(const P& p, const Deformation& d,
                            const std::optional<LargeStrainEstimate>& large_strain, double buckling_factor) {
   if (!deforms(p) || has_finite_strain(p)) return {};
@@ -120,9 +120,9 @@ Opinion near_incompressibility(const P& p) {
                        "{face-gradient: symmetric}' with one volume strain per cell"});
 }
 
-// The strain of a free body beside the largest gradient of the displacement: with the material's own coefficient from the
-// reference temperature that `thermal-expansion` would have by default, else with 1e-5 1/K over the range of temperatures,
-// since nobody says then at which one the body is free of stress.
+// Free thermal strain relative to the largest displacement gradient. Uses the material's coefficient and the
+// default reference temperature of `thermal-expansion`, otherwise 1e-5 1/K over the range of temperatures,
+// because the stress-free temperature is unknown.
 Opinion neglected_thermal_strain(const P& p, double gradient, double range, double change) {
   if (!deforms(p) || p.expansion) return {};
   const auto own = largest_expansion(p);

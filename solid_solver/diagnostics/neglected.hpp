@@ -10,24 +10,24 @@
 
 namespace couplet::solid {
 
-/// An opinion on an effect that a scene leaves out or has in vain, from numbers that the run has seen. Nothing where the
-/// number is not known (NaN) or says nothing about this scene.
+/// Finding about an effect that a case neglects or includes needlessly. Empty if the number is unknown (NaN)
+/// or not relevant to this case.
 using Opinion = std::optional<diagnostics::Finding>;
 
-/// Largest inertia over the load of a static run with several steps.
+/// `inertia_over_load`: largest ratio in a static run with several steps.
 Opinion neglected_inertia(const SolidParameters& parameters, double inertia_over_load);
-/// Largest kinetic over largest strain energy of a dynamic run.
+/// `kinetic_over_strain`: largest energy ratio in a dynamic run.
 Opinion spare_inertia(double kinetic_over_strain, double steps);
-/// `large_strain`: nothing if it was not asked for; `buckling_factor`: NaN unless it is low.
+/// `large_strain`: absent if not requested. `buckling_factor`: NaN unless it is low.
 Opinion neglected_geometry(const SolidParameters& parameters, const Deformation& largest,
                            const std::optional<LargeStrainEstimate>& large_strain, double buckling_factor);
-/// Largest equivalent stress over the yield strength.
+/// `share_of_yield`: largest equivalent stress over the yield strength.
 Opinion neglected_yielding(double share_of_yield);
 Opinion near_incompressibility(const SolidParameters& parameters);
-/// `gradient`: the largest of the displacement; `range` of temperatures and largest `change` from the reference [K].
+/// `gradient`: largest of the displacement. `range`, `change`: of temperatures, largest from reference [K].
 Opinion neglected_thermal_strain(const SolidParameters& parameters, double gradient, double range,
                                  double change);
-/// Stiffening by the heat of deformation, thesis (2.27); in vain where the scene has it.
+/// Stiffening by the heat of deformation, thesis (2.27), needed or not.
 Opinion thermoelastic_coupling(const SolidParameters& parameters, double coupling_number);
 
 inline void add(diagnostics::Report& report, Opinion opinion) {

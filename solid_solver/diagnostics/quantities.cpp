@@ -21,11 +21,11 @@ std::vector<QuantityEstimate> estimates_of(const Estimate& estimate) {
   }
 }
 
-/// Numbers that the run is made for, with what its mesh leaves in them.
+/// Quantities of interest with their mesh errors.
 class Quantities final : public diagnostics::Diagnostic {
  public:
   explicit Quantities(const SolidView& view) : view_(view) {}
-  /// While there is what the state was solved with.
+  /// Computed while the solver of the state is still available.
   void observe(diagnostics::Report&) override {
     if (view_.stepper.step().is_last) estimate();
   }
@@ -48,7 +48,7 @@ class Quantities final : public diagnostics::Diagnostic {
   std::vector<QuantityEstimate> found_;
 };
 
-/// The same of a steady temperature.
+/// Quantities of interest of a steady temperature.
 class QuantitiesOfHeat final : public diagnostics::Diagnostic {
  public:
   explicit QuantitiesOfHeat(const HeatView& view) : view_(view) {}

@@ -19,7 +19,7 @@ namespace couplet::solid {
 namespace {
 
 constexpr GlobalIndex patches_looked_at = 100000;  // of all ranks
-constexpr double no_slope = 1e-9;                  // of a slope that no neighbour determines
+constexpr double no_slope = 1e-9;                  // of a slope that no neighbor determines
 
 }  // namespace
 
@@ -64,7 +64,7 @@ void RecoveredStrain::recover() {
     slot_[std::size_t(cell)] = Index(linear_.size());
     linear_.push_back(fit(cell, patch));
   }
-  // The run holds most memory here.
+  // Frees memory at its peak.
   std::vector<double>().swap(mean_), std::vector<double>().swap(volume_);
 }
 
@@ -116,12 +116,12 @@ double RecoveredStrain::missed() const {
 
 namespace {
 
-constexpr double of_far = 1. / 9;  // weight of a sample at the patch's rim over one in its centre
+constexpr double of_far = 1. / 9;  // weight of a sample at the patch's rim over one in its center
 constexpr GlobalIndex cells_looked_at = 20000;  // of all ranks
 
 }  // namespace
 
-/// Of one cell after the other.
+/// Data of the current cell.
 struct SmoothEnergy::Patch {
   mesh::Csr cells_of_point, faces_of_cell;
   std::vector<Index> mark;  // per local cell: for which cell it was last gathered
@@ -169,7 +169,7 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
     }
 }
 
-/// Twice its energy [J]: of a strain that is linear in the cell.
+/// Twice its energy [J], for a strain that is linear in the cell.
 double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const {
   const mesh::Geometry& g = geometry_;
   const int dim = mesh_.dim;

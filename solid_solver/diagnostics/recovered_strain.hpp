@@ -12,30 +12,30 @@
 
 namespace couplet::solid {
 
-/// The strains of faces against recovered ones: in each cell a linear strain, fitted to the means of the cells that share a vertex
-/// with it. The energy of their difference is what the mesh misses (Zienkiewicz and Zhu, Int. J. Numer. Meth. Eng. 33 (1992) 1331), over
-/// the faces' pyramids:
+/// Compares face strains with recovered ones: a linear strain per cell, fitted to the means of cells that
+/// share a vertex. The energy of the difference, over the faces' pyramids, estimates the mesh error
+/// (Zienkiewicz and Zhu, IJNME 33 (1992) 1331):
 ///   sum_f V_f (e_f - e*(x_f)) : C : (e_f - e*(x_f)) / sum_f V_f e_f : C : e_f
-///
-/// Beside the true error of the displacement (scripts/validate solid-accuracy): 0.8 to 2 times on plates, 0.6 to 4 on beams of hexahedra, for which the
-/// difference of two face gradients is 3 to 30 times it; 0.3 to 3 on tetrahedra that bend (that difference: 7 to 170), least where long cells
-/// make the whole body too stiff. One hexahedron across shows no slope: ten times, see StrainAudit::missed_by_mesh(). Added in two passes over the flux faces, see strain_audit.cpp.
+/// Ratio to the true displacement error (scripts/validate solid-accuracy): 0.8-2 on plates, 0.6-4 on
+/// hexahedral beams, 0.3-3 on bent tetrahedra; the difference of two gradients gives 3-30 on hexahedra and
+/// 7-170 on tetrahedra. The ratio is smallest if long cells make the body too stiff, and about ten for a
+/// single layer of hexahedra, see StrainAudit::missed_by_mesh(). Needs two passes over faces.
 class RecoveredStrain {
  public:
-  /// By reference.
+  /// Keeps references.
   RecoveredStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
   Index n_faces() const { return mesh_.n_flux_faces(); }
-  /// First pass; strains of partition faces on both ranks.
+  /// Adds a strain in the first pass; strains of partition faces on both ranks.
   void add(Index face, const Tensor3& strain);
-  /// Between the passes. Collective.
+  /// Call between the passes. Collective.
   void recover();
-  /// Second pass.
+  /// Compares a strain in the second pass.
   void compare(Index face, const Tensor3& strain);
-  /// Share of the energy; 0 where there is none. Collective.
+  /// Relative energy of the difference; 0 if there is no energy. Collective.
   double missed() const;
 
  private:
-  /// At the cell's centre and per metre along the axes; packed as the symmetric tensor's six components.
+  /// At the cell center and per meter along the axes; packed as the six components of the symmetric tensor.
   using Linear = std::array<std::array<float, 6>, 4>;
   template <class Visit>
   void visit_pyramids(Index face, const Visit& visit) const;
@@ -44,33 +44,33 @@ class RecoveredStrain {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
-  std::vector<double> mean_;    // of local cells, six each
-  std::vector<double> volume_;  // of their pyramids [m^3]
-  std::vector<Index> slot_;     // per owned cell its place in linear_; -1: not looked at
+  std::vector<double> mean_;    // per local cell, six each
+  std::vector<double> volume_;  // pyramid volume per local cell [m^3]
+  std::vector<Index> slot_;     // per owned cell its index in linear_; -1 if not used
   std::vector<Linear> linear_;
   double difference_ = 0, whole_ = 0;
 };
 
-/// The strain energy of a displacement seen twice: as the operator counts it, by the strains of faces over their pyramids, and smooth,
-/// by a quadratic a cell, fitted to the vertices of the cells that share one with it, integrated over the cell. How much they
-/// differ says how wrong the operator's stiffness is for this displacement (recovered displacements: Naga and Zhang, SIAM J.
-/// Numer. Anal. 42 (2004) 1780).
+/// Compares two strain energies of a displacement. One is that of the operator, by face strains over their
+/// pyramids. The other is smooth: it integrates a quadratic per cell, fitted to the vertices of cells that
+/// share a vertex. The difference measures the error of the operator's stiffness for this displacement
+/// (recovered displacements: Naga and Zhang, SIAM J. Numer. Anal. 42 (2004) 1780).
 ///
-/// Beside the true error of the displacement (scripts/validate solid-accuracy): on triangles 0.3 to 1.2 of it on Cook's panel, a ring and
-/// an orthotropic bar, where recovered strains see 0.02 to 1.1; far above it where structured triangles are
-/// sheared and their errors cancel. On other cells it knows less than those: 0.3 to 40 on tetrahedra that bend.
+/// Ratio to the true displacement error (scripts/validate solid-accuracy): 0.3-1.2 on triangles (Cook's
+/// panel, a ring, an orthotropic bar; recovered strains: 0.02-1.1). It is far too large on sheared structured
+/// triangles, whose errors cancel. On other cells it is less reliable: 0.3-40 on bent tetrahedra.
 class SmoothEnergy {
  public:
-  /// By reference.
+  /// Keeps references.
   SmoothEnergy(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
-  /// Triangles alone. Collective.
+  /// True for meshes of triangles. Collective.
   static bool is_of_use(const mesh::Mesh& mesh);
 
-  /// Displacement gradient of a flux face; those of partition faces on both ranks.
+  /// Adds the displacement gradient of a flux face; add those of partition faces on both ranks.
   void add(Index face, const Tensor3& gradient);
-  /// Share of the smooth energy by which the counted one differs; 0 where there is none. `point_u`: the displacement of
-  /// all local points, `dim` values each [m]. Looks at some 20 000 cells at most, evenly
-  /// taken. Collective.
+  /// Relative difference of the operator's energy from the smooth one; 0 if there is none. `point_u`:
+  /// displacement of all local points, `dim` values each [m]. Samples at most about 20 000 cells, evenly.
+  /// Collective.
   double missed(std::span<const double> point_u) const;
 
  private:
@@ -81,7 +81,7 @@ class SmoothEnergy {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
-  std::vector<double> counted_;  // of owned cells: sum V_fP G : C : G
+  std::vector<double> counted_;  // per owned cell: sum V_fP G : C : G
 };
 
 }  // namespace couplet::solid

@@ -51,7 +51,7 @@ void Stability::see_limits(const LoadPath& path) {
   std::string force;
   if (load > 0 && path.factor() != 0)
     force = fmt::format(", a total load of about {:.4g} N", load * std::abs(limit.factor / path.factor()));
-  // A note, which diagnostics keep to themselves: it is news of the run.
+  // Logged directly, because diagnostics do not report notes.
   diagnostics::finding(
       parallel::comm_rank(view_.comm()),
       {.id = "limit-load",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A solution judged by its own energy: work against strain energy, and one face gradient against another.
+// Consistency of a solution: stress work against strain energy, and one face gradient against another.
 #include "solid_solver/diagnostics/strain_energy.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace couplet::solid {
 namespace {
 
-/// From the owner to the node across.
+/// Vector from the owner to the opposite node.
 Vec3 line_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   const mesh::Geometry& g = geometry;
   const Vec3 across =
@@ -30,7 +30,7 @@ elastic::FaceGradientScheme other_scheme(elastic::FaceGradientScheme scheme) {
                                                           : elastic::FaceGradientScheme::corrected;
 }
 
-/// Half of what the force on a face does on the way between the displacements on both sides of it.
+/// Half the work of a face force over the difference of the displacements on both sides.
 double work_on(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const SolidState& state, Index f,
                const Vec3& force) {
   const Vec3& area = rows.geometry().face_area[f];
@@ -41,12 +41,12 @@ double work_on(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, con
   return 0.5 * force.dot(elastic::vector_at(state.face_u, f - mesh.n_interior, mesh.dim) - here);
 }
 
-/// Thermal strain would count as a variation; a temperature that neither strains nor softens the body changes nothing.
+/// True if the temperature strains or softens the body. Thermal strain would count as a variation.
 bool is_strained(const SolidBody& body) {
   return body.thermal() && (body.parameters().expansion.has_value() || !body.thermal()->stiffness().empty());
 }
 
-/// What varies within the cells, where that can be told.
+/// Estimates of the variation within cells, where available.
 struct WithinCells {
   std::optional<InnerVariation> variation;
   std::optional<SmoothEnergy> smooth;
@@ -57,7 +57,7 @@ struct WithinCells {
     if (smooth) smooth->add(f, gradient);
     if (recovered) recovered->add(f, strain);
   }
-  /// After all faces. Collective.
+  /// Call after all faces. Collective.
   void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u,
               std::span<const double> points, StrainAudit& audit) {
     if (variation) audit.inner_variation = variation->missed();
@@ -77,13 +77,13 @@ WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
   within.recovered.emplace(mesh, rows);
   if (is_strained(body)) return within;
   if (InnerVariation::is_needed(mesh, rows)) within.variation.emplace(mesh, rows);
-  // Of a motion, high modes would decide.
+  // In a dynamic run, high modes would dominate.
   if (!body.is_dynamic() && SmoothEnergy::is_of_use(mesh)) within.smooth.emplace(mesh, rows);
   return within;
 }
 
-/// What equilibrium misses, times the displacement: where nothing is missing, a symmetric operator's strain
-/// energy is half of the loads' work. Static solves; this rank's part.
+/// Equilibrium residual times the displacement. If it is zero, the strain energy of a symmetric operator is
+/// half the loads' work. Static solves; this rank's part.
 double residual_work(const SolidView& view, std::span<const double> unknowns) {
   const std::vector<double>& rhs = view.stepper.last_solve().rhs;
   if (view.body.is_dynamic() || !view.stepper.last_solve().is_known(view.comm())) return 0;
@@ -99,7 +99,7 @@ double residual_work(const SolidView& view, std::span<const double> unknowns) {
 double StrainAudit::missed_by_mesh(int dim) const {
   const double of_gradients = gradient_difference * gradient_difference;
   if (!recovered_difference) return of_gradients;
-  // A single cell across shows no slope to its neighbours: all of its bending would be missed.
+  // A single cell across shows no slope to neighbors, so all of its bending would be missed.
   const double missed = dim == 3 ? std::min(*recovered_difference, of_gradients) : *recovered_difference;
   return std::max({missed, smooth_difference, inner_variation});
 }
@@ -169,7 +169,7 @@ StrainAudit audit_strain(const SolidView& view, bool compare) {
   if (!compare) {
     body.kernel().face_gradients(unknowns, known, own, 0, n_faces);
   } else {
-    // Half of the faces after the other: the run needs most memory here, and half of the strains is a fiftieth of it.
+    // Processes half of the faces at a time, because this is the peak of memory (half the strains: 2 %).
     const elastic::ElasticKernel beside(mesh, rows, other_scheme(body.kernel().scheme()));
     for (const Index end : {half, n_faces}) {
       body.kernel().face_gradients(unknowns, known, own, first, end);

@@ -9,38 +9,37 @@
 
 namespace couplet::solid {
 
-/// What a displacement that was found says of itself; over all ranks.
+/// Consistency measures of a computed displacement; over all ranks.
 struct StrainAudit {
-  /// sum_f V_f epsilon_f : C : epsilon_f / 2 [J], V_f = |S . d| / dim the volume between a face and the nodes
-  /// beside it.
+  /// sum_f V_f epsilon_f : C : epsilon_f / 2 [J], V_f = |S . d|/dim the volume between a face and its nodes.
   double strain_energy = 0;
-  /// Half of what the loads, prescribed motions and thermal strains did [J]: sum_f (C : epsilon_f) S . (u_N -
-  /// u_P) / 2, which equilibrium turns into half of their products with the displacements.
+  /// Half the work of loads, prescribed motions and thermal strains [J], computed from the stress: sum_f (C :
+  /// epsilon_f) S . (u_N - u_P)/2. In equilibrium it equals half of their products with the displacements.
   double stress_work = 0;
-  /// Norm sqrt(sum V_f mu |epsilon|^2) of the difference of the strains of two face gradients over that of
-  /// the one in use (mu alone: near nu = 1/2 the volume strain is nothing beside it).
+  /// Relative norm sqrt(sum V_f mu |epsilon|^2) of the strain difference of two face gradients. Only mu
+  /// enters, because the volume strain is negligible near nu = 1/2.
   double gradient_difference = 0;
   bool compares_gradients = false;
-  /// InnerVariation::missed() of the symmetric gradient in the plane, else 0.
+  /// InnerVariation::missed() of the symmetric gradient in 2-D, else 0.
   double inner_variation = 0;
-  /// SmoothEnergy::missed() of triangles at rest, else 0.
+  /// SmoothEnergy::missed() of static triangle meshes, else 0.
   double smooth_difference = 0;
   /// RecoveredStrain::missed() of the symmetric gradient.
   std::optional<double> recovered_difference;
-  /// Share of the stiffness, and so of the displacement, that the mesh errs by: the most of these; in space the square of the
-  /// difference of the gradients where that is less, and with the other gradients that alone.
+  /// Error of the stiffness, and so of the displacement, due to the mesh: the largest of these. In 3-D at
+  /// most the square of the gradient difference; with other gradients, only that difference.
   double missed_by_mesh(int dim) const;
-  /// Part of the strain energy by which it misses the work; a symmetric operator has none.
+  /// Relative difference of strain energy and work; zero for a symmetric operator.
   double mismatch() const;
-  /// Above these the answer is not to be trusted (docs/theory.md, "Does the answer fit itself?").
+  /// Limits above which the result is doubtful (docs/theory.md, "Does the answer fit itself?").
   static constexpr double most_mismatch = 0.35, most_difference = 1.0, most_variation = 0.2;
-  /// From here on work and strain energy have nothing to do with each other.
+  /// Limit above which work and strain energy are unrelated.
   static constexpr double useless_mismatch = 1.0;
   bool is_doubtful() const;
   base::Severity severity() const {
     return mismatch() < useless_mismatch ? base::Severity::warning : base::Severity::wrong;
   }
-  /// One sentence with the numbers.
+  /// Describes the numbers in one sentence.
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
@@ -49,11 +48,11 @@ struct StrainAudit {
   }
 };
 
-/// Work against strain energy of the accepted state and, if asked for, one face gradient against another. Collective.
+/// Audits the accepted state and, if requested, compares two face gradients. Collective.
 StrainAudit audit_strain(const SolidView& view, bool compare_gradients);
 
-/// Tells a small strain whose stresses do another work than its strain energy says: after each step of a static run, in
-/// motion now and then.
+/// Reports small-strain results whose stress work differs from the strain energy. Checks each step of a
+/// static run, and some steps of a dynamic one.
 class StrainEnergy final : public diagnostics::Diagnostic {
  public:
   explicit StrainEnergy(const SolidView& view) : view_(view) {}
@@ -61,18 +60,18 @@ class StrainEnergy final : public diagnostics::Diagnostic {
   void look(diagnostics::Report& report) override;
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;
-  /// Audit of the accepted state, which is made once per step. Collective.
+  /// Audit of the accepted state, computed once per step. Collective.
   const StrainAudit& now(bool compare_gradients);
 
  private:
   SolidView view_;
   std::optional<StrainAudit> latest_;
   int steps_of_latest_ = -1;
-  std::optional<StrainAudit> worst_;  // the last doubtful one; the last one if none was doubtful
+  std::optional<StrainAudit> worst_;  // the last doubtful one, or the last one
 };
 
-/// In motion the energies are looked at so often between outputs, too: growth out of nothing may come, or come and go,
-/// between two of them. A look costs less than a step.
+/// True if a dynamic run should check energies between outputs, too, because spurious growth may appear and
+/// vanish between two outputs. A check costs less than a step.
 bool is_time_to_look(const SolidView& view);
 
 }  // namespace couplet::solid

@@ -9,14 +9,14 @@
 namespace couplet::solid {
 namespace {
 
-// From here on a stress at a probe is told as doubtful.
+// Relative error above which a probed stress is reported as doubtful.
 constexpr double doubtful = 0.3;
 
-/// Stresses at probes and, of static runs, the largest, with their errors.
+/// Stresses at probes and, in static runs, the largest one, with their errors.
 class StressError final : public diagnostics::Diagnostic {
  public:
   explicit StressError(const SolidView& view) : view_(view) {}
-  /// After the error of the displacement, which strains and stresses follow.
+  /// Runs after the displacement error, which strains and stresses follow.
   void conclude(diagnostics::Report& report) override {
     if (view_.now().steps == 0) return;
     for (const ReportedStress& s :
@@ -25,7 +25,7 @@ class StressError final : public diagnostics::Diagnostic {
   }
 
  private:
-  /// Most are notes, which diagnostics keep to themselves.
+  /// Most are notes, which diagnostics do not report.
   void tell(const ReportedStress& s) const {
     const bool is_doubtful = s.where != "largest" && s.error > doubtful;
     const std::string error = std::isnan(s.error) ? "unknown"

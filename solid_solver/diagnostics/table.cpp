@@ -7,7 +7,7 @@ namespace couplet::solid {
 
 using diagnostics::Made;
 
-// Each in the file of its subject; nullptr where it does not apply.
+// Each is in the file of its subject; nullptr if not applicable.
 Made linear_theory(const SolidView& view);
 Made neglected_inertia(const SolidView& view);
 Made limits_of_material(const SolidView& view);
@@ -21,7 +21,7 @@ Made heat_swing(const Heat& heat);
 Made heat_storage(const Heat& heat);
 Made heat_error(const Heat& heat);
 
-// Later ones read earlier ones: the energies the strains, stresses and quantities the error of the displacement.
+// Later diagnostics read earlier ones: energies read strains, stresses and quantities the displacement error.
 void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
   const bool is_dynamic = view.body.is_dynamic(), is_small = view.compares_gradients();
   const auto strain = is_small ? std::make_shared<StrainEnergy>(view) : nullptr;

@@ -9,7 +9,7 @@
 
 namespace couplet::solid {
 
-/// Everything that diagnostics may read of a solid, as it is after the last accepted step.
+/// State of a solid run after the last accepted step, as diagnostics see it.
 struct SolidView {
   const SolidBody& body;
   const SolidStepper& stepper;
@@ -21,15 +21,15 @@ struct SolidView {
   const SolidState& before() const { return stepper.trial(); }  ///< at the start of the accepted step
   MPI_Comm comm() const { return body.mesh().comm; }
   std::vector<double> unknowns() const { return body.unknowns_of(now().cell_u, now().face_u); }
-  /// The known columns of the kernel in the accepted displacement.
+  /// Known columns of the kernel in the accepted displacement.
   std::vector<double> known() const {
     return body.known_of({now().cell_u, now().face_u, fields.point_displacement()});
   }
-  /// Two gradients of the displacement can be compared; else the strain energy is that of a law.
+  /// True if two displacement gradients can be compared; otherwise the strain energy is that of a law.
   bool compares_gradients() const { return body.equilibrium().means().compares_gradients; }
 };
 
-/// The same of a solid that only conducts heat.
+/// View of a solid that only conducts heat.
 struct HeatView {
   const Heat& heat;
   const SolidParameters& parameters;

@@ -21,7 +21,7 @@ namespace {
 using Values = std::vector<double>;
 using Strains = std::vector<std::array<float, 6>>;  // of the flux faces: few digits do, and half the room
 
-// Of the one solve.
+// Tolerance of the dual solve.
 constexpr double tolerance = 1e-4;
 
 std::array<float, 6> packed(const Tensor3& t) {
@@ -46,7 +46,7 @@ Strains strains(const elastic::ElasticKernel& kernel, const mesh::Mesh& mesh,
   return all;
 }
 
-/// V u of the owned cells, nothing on faces.
+/// V u of the owned cells, zero on faces.
 Values weight_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::span<const double> unknowns) {
   const std::size_t dim = std::size_t(mesh.dim), n = std::size_t(mesh.cells.n_owned()) * dim;
   Values weight(unknowns.size(), 0);
@@ -64,7 +64,7 @@ Values sensitivity(const SolidBody& body, std::span<const double> weight) {
   return z;
 }
 
-/// Both sides of a face with the volumes of their pyramids, those of this rank.
+/// Calls take for both sides of a face with their pyramid volumes, on this rank.
 template <class Take>
 void visit_sides(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Take& take) {
   const Index n = mesh.cells.n_owned();
@@ -92,7 +92,7 @@ double variation_in_cells(const SolidBody& body, const Strains& of_u, const Stra
   return all;
 }
 
-/// sum_f V_f |2 mu dE_f(u) : dE_f(z)|, faces by their owners.
+/// sum_f V_f |2 mu dE_f(u) : dE_f(z)|, each face on its owner.
 double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 2>& of_u,
                         const std::array<const Strains*, 2>& of_z) {
   double all = 0;
@@ -103,7 +103,7 @@ double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 
   return all;
 }
 
-/// With the gradient that the body's is compared with.
+/// Kernel with the other face gradient, for comparison.
 elastic::ElasticKernel other_kernel(const SolidBody& body) {
   return {body.mesh(), body.elastic(),
           body.is_corrected() ? elastic::FaceGradientScheme::thesis : elastic::FaceGradientScheme::corrected};
@@ -136,7 +136,7 @@ double weighted_mesh_error(const SolidBody& body, std::span<const double> unknow
 
 namespace {
 
-/// Strains of all flux faces: Green's of u, and its change by x.
+/// Strains of all flux faces: Green's strain of u, and its change by x.
 struct FaceStrains {
   std::vector<Tensor3> of_u, of_x;
 };
@@ -166,7 +166,7 @@ double size_of(const std::vector<Tensor3>& strains) {
   return std::sqrt(size);
 }
 
-/// The product of what the faces' strains vary by, from two squares.
+/// Product of the variations of the face strains, from two squares.
 double by_inner_variation(const SolidBody& body, const FaceStrains& s) {
   const mesh::Mesh& mesh = body.mesh();
   if (!InnerVariation::is_needed(mesh, body.elastic())) return 0;
@@ -183,7 +183,7 @@ double by_inner_variation(const SolidBody& body, const FaceStrains& s) {
   return (sum.energy() - difference.energy()) / (4 * factor);
 }
 
-/// Half the product of the differences, since each gradient errs.
+/// Half the product of the differences, because each gradient has an error.
 double by_gradients(const SolidBody& body, const FaceStrains& s, const FaceStrains& other) {
   const mesh::Mesh& mesh = body.mesh();
   double product = 0;

@@ -8,20 +8,20 @@
 
 namespace couplet::solid {
 
-/// What the mesh leaves in the displacement u of a linear static body, over the size of u, where the work of the loads is no measure
-/// of it: heat expands a body everywhere, with far more energy than that by which it bends it. How J = integral of u^2 / 2 answers to
-/// forces, K z = V u, weighs what the strains miss (dual weighted residuals, [becker2001]):
+/// Relative mesh error of the displacement u of a linear static body with thermal strains, where the work of
+/// the loads is no measure: expansion stores far more energy than bending. Missed strains are weighted
+/// by the dual solution, K z = V u, of J = integral of u^2/2 (dual weighted residuals, [becker2001]):
 ///   [ sum_f V_f |2 mu dE_f(u) : dE_f(z)| + 1/3 sum_P |sum_f V_fP (s_f - s_P) : (E_f - E_P)(z)| ] / integral of u^2
-/// with dE the difference of two face gradients' strains, s the stress of u less that of the thermal strain, s_P and E_P the means of
-/// a cell (a third of the variation: see InnerVariation, here of all kinds of cells and gradients). `pressure` [Pa]: of the thermal
-/// strain, one a local face. A method made for one solve; NaN: it failed. Collective.
+/// dE is the strain difference of two face gradients, s the stress without its thermal part, s_P and E_P cell
+/// means. The second sum follows InnerVariation for all cells and gradients. `pressure`: thermal [Pa], per
+/// local face. Uses a method made for one solve; NaN if it fails. Collective.
 double weighted_mesh_error(const SolidBody& body, std::span<const double> unknowns,
                            std::span<const double> known, std::span<const double> pressure);
 
-/// How far the displacement of a static run at large strain errs along its softest motion x, over its size. A mesh that is too stiff by dK
-/// leaves a = x . dK u / x . K x of x in u, K being the tangent: near the loss of stability far more than its share of the strain
-/// energy, which a load along a column may hardly be. dK by what the two gradients, or the faces' strains and their mean
-/// (InnerVariation), make of Green's strain of u and of that of x about it. 0: no such motion is known, or no stable one.
+/// Relative error of a static large-strain displacement along its softest motion x. A mesh that is too stiff
+/// by dK leaves a = x . dK u / x . K x of x in u, with the tangent K. Near the loss of stability this far
+/// exceeds the share of strain energy. dK is the difference of two gradients, or of face strains and their
+/// mean (InnerVariation), in Green's strain of u and of x about it. 0 if no stable motion is known.
 /// `unknowns`, `known`: of u. Collective.
 double soft_mesh_error(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known,
                        const SoftMotion& softest);

@@ -21,42 +21,42 @@ namespace couplet::solid {
 
 namespace {
 
-// Iterations after which a shorter load step is the cheaper way.
+// Iterations after which a shorter load step is cheaper.
 constexpr int most_iterations = 20;
-// A step may multiply the residual by this much, of a residual of at least `small` of the load's.
+// Allowed growth of the residual in a step, if it is at least `small` relative to the load.
 constexpr double growth = 30, small = 1e-3;
-// The first iteration of a step may do more: it goes through the linear theory's idea of the new state.
+// Allowed growth in the first iteration, which passes through the prediction of linear theory.
 constexpr double first = 1e6;
-// Of the step length: below it the direction is useless.
+// Shortest step length; below it the direction is useless.
 constexpr double shortest = 1. / 128;
-// Forcing of the linear solves.
+// Forcing terms of the linear solves.
 constexpr double loosest = 0.05, tightest = 1e-4, with_pressures = 1e-6;
-// Where momenta are to be kept: what a linear solve leaves is momentum that the body gains (2e-10 of it in 40 steps at the
-// looser ones, 2e-13 at this).
+// Tolerance if momenta must be conserved, because the residual of a linear solve adds momentum (2e-10
+// relative in 40 steps with the looser ones, 2e-13 with this).
 constexpr double conserving = 1e-6;
 constexpr std::size_t solvers_kept = 2;
-// From this Poisson's ratio on pressures are carried along, and the compact operator says too little of the tangent (in
-// motion inertia helps it further); bodies of so many cells can have factors.
+// Poisson's ratio from which pressures are separate unknowns, and the compact operator approximates the
+// tangent poorly (inertia helps); bodies up to these sizes can use factors.
 constexpr double factors_from_ratio = 0.48, factors_from_dynamic = 0.499;
 constexpr GlobalIndex tangent_factors_up_to_2d = 60000, tangent_factors_up_to_3d = 4000;
-// Slenderness from which static bodies of so many cells have them, too: 120 quadrilaterals of a bar 100:1 under a pressure that
-// follows were not solved without, a beam 1:20 in four times the time.
+// Slenderness from which static bodies of these sizes use factors, too. 120 quadrilaterals of a bar 100:1
+// under follower pressure fail without, a beam 1:20 takes four times as long.
 constexpr double slender_2d = 12, slender_3d = 60;
-// Up to so many in space, where factors soon cost more than they save: of a beam 32:1 of 128, 432, 1024 and 2048 hexahedra or prisms they
-// took 1.4, 14, over 24 and over 25 s of processor time for 5.9, 14, 7.0 and 3.7 s without.
+// Largest size in 3-D, where factors soon cost more than they save. For a beam 32:1 of 128, 432, 1024 and
+// 2048 cells they took 1.4, 14, over 24 and over 25 s of CPU time instead of 5.9, 14, 7.0 and 3.7 s.
 constexpr GlobalIndex slender_up_to_3d = 400;
-// A correction of this size beside the displacement is rounding.
+// A correction of this relative size is round-off.
 constexpr double rounding = 1e-14;
-// Left of a load by rounding: told.
+// Residual over the load by round-off from which it is reported.
 constexpr double drowned = 0.01;
 
-/// As exactly as the last step deserves, no more than what is `wanted` in the end.
+/// As accurate as the last step justifies, but no more than `wanted`.
 double forcing(double ratio, double wanted) {
   return std::max(std::clamp(0.9 * ratio * ratio, tightest, loosest), std::min(wanted, loosest));
 }
 
 constexpr int most_multipliers = 100;
-// Change of the pressure of a rigid seat over the largest: as much is left of the penetration over that of its springs.
+// Relative change of a rigid seat's pressure at convergence; the relative penetration is similar.
 constexpr double settled = 1e-9;
 
 }  // namespace
@@ -130,7 +130,7 @@ TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const doub
   return *solvers_.front();
 }
 
-/// r = b - A(u) and its norm; infinite where a face is inside out.
+/// r = b - A(u) and its norm; infinite if a face is inverted.
 double FiniteStrain::residual(const Load& load, std::span<const double> u, double& ratio) {
   kernel_->linearise(u, load.known, load.mass_factor, r_);
   ratio = parallel::min(mesh_.comm, kernel_->worst().ratio);
@@ -140,7 +140,7 @@ double FiniteStrain::residual(const Load& load, std::span<const double> u, doubl
   double size = norm(mesh_.comm, r_);
   whole_ = size;
   if (is_carried_) {
-    // What the linear system wants on the right once its pressures are eliminated.
+    // Right-hand side of the linear system after eliminating the pressures.
     std::vector<double> defect(r_.size(), 0);
     kernel_->add_pressure_defect(defect);
     for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= defect[i];
@@ -149,7 +149,7 @@ double FiniteStrain::residual(const Load& load, std::span<const double> u, doubl
   return std::isfinite(size) && std::isfinite(whole_) ? size : std::numeric_limits<double>::infinity();
 }
 
-/// p of the accepted state, moved on with the linear change to the first guess.
+/// p of the accepted state, updated by the linear change to the first guess.
 void FiniteStrain::start_pressures(const Load& load, std::span<const double> u) {
   is_carried_ = false;
   kernel_->set_own_pressures(false);
@@ -175,8 +175,8 @@ void FiniteStrain::predict_pressures(std::span<const double> change, std::span<c
   kernel_->accept_pressures();
 }
 
-/// The motion of what is known goes into the body by one linear step: left to the first guess it would be a jump
-/// in the cells beside it.
+/// Moves the body with its known columns by one linear step, because the first guess would make a jump in
+/// adjacent cells.
 void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::span<double> u) {
   std::vector<double> change(load.known.begin(), load.known.end());
   double size = 0;
@@ -198,7 +198,7 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du_[i];
 }
 
-/// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
+/// u + s du with the largest s of 1, 1/2, ... that keeps det F positive and the residual below `most`.
 bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& now, double most) {
   if (load.mass_factor == 0 && !load.pressing && iterates_.size() == 1) jump_.predict(u, du_);
   for (double s = 1; s >= shortest; s *= 0.5) {
@@ -215,8 +215,8 @@ bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& 
   return false;
 }
 
-/// What a residual is measured by: the loads; in motion the inner forces, since b holds the inertia of the place itself,
-/// which is far larger than what accelerates the body.
+/// Scale of the residual: the loads, or in motion the internal forces, because b contains the inertia of the
+/// position itself, which far exceeds the accelerating force.
 double FiniteStrain::scale_of(const Load& load, std::span<const double> u, double residual) {
   if (load.pressing) {
     std::vector<double> push(u.size(), 0);
@@ -242,7 +242,7 @@ linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double
   if (!std::isfinite(now.residual))
     throw SolveFailure("The initial guess of the step inverts a cell. {}", where_worst());
   const double scale = scale_of(load, u, now.residual);
-  // Its difference quotients divide rounding by the change over the step.
+  // Its difference quotients divide round-off by the change over the step.
   const auto floor = [&] {
     double largest = 0;
     for (const double v : u) largest = std::max(largest, std::abs(v));
@@ -303,7 +303,7 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
   return left / loads;
 }
 
-// Response of the body in a given state: forces, energy, softness; the last solve in words.
+// Response of the body in a state: forces, energy, sensitivity; description of the last solve.
 
 linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::span<double> u) {
   if (path_) return follow_path(load, u);
@@ -321,7 +321,7 @@ linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::
   } catch (const SolveFailure& failure) {
     kernel_->forget_start();
     if (!parallel::any(mesh_.comm, !load.accepted.empty())) throw;
-    // Features of the accepted state that may be why no other is found.
+    // Features of the accepted state may prevent finding another one.
     kernel_->set_own_pressures(false);
     kernel_->linearise(load.accepted, load.accepted_known, 0, trial_);
     const std::string fold =
@@ -331,7 +331,7 @@ linalg::SolveStatistics FiniteStrain::find(const Load& load, SolidSystem&, std::
   }
 }
 
-/// With a rigid seat until a change of its multipliers leaves nothing to correct.
+/// With a rigid seat, iterates until its multipliers converge.
 linalg::SolveStatistics FiniteStrain::press(const Load& load, std::span<double> u) {
   linalg::SolveStatistics all = iterate(load, u);
   if (!load.pressing || !load.pressing->seat().is_rigid()) return all;
@@ -409,7 +409,7 @@ void FiniteStrain::set_pressure(std::vector<double> of_faces) {
   if (path_) whole_pressure_ = std::move(of_faces);
 }
 
-/// theta = 1 + the integral of alpha dT: lengths of the body as it was at the reference temperature.
+/// theta = 1 + the integral of alpha dT: lengths refer to the body at the reference temperature.
 void FiniteStrain::set_expansion(const std::function<std::vector<double>()>& of_faces) {
   std::vector<double> strains = of_faces();
   if (strains.empty()) return;

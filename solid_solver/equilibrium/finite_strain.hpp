@@ -19,27 +19,26 @@ namespace couplet::solid {
 
 /// One iterate of Newton's method.
 struct NewtonIterate {
-  double residual = 0;  ///< norm over that of the load
+  double residual = 0;  ///< norm relative to the load
   double length = 1;    ///< of the step that led here
   double ratio = 1;     ///< smallest det F of any face
   int linear = 0;       ///< iterations of the linear solver
 };
 
-/// The equilibrium of a body at large strain, inertia included: M m u + dE/du(u) = b. Newton's method with the
-/// consistent tangent, solved as exactly as the last step deserves [eisenstat1996] (formula 2.6: eta =
-/// 0.9 (r / r_before)^2, between 1e-4 and 0.05), and a line search that keeps det F positive. The residual may
-/// grow on the way: a beam that is bent passes states whose membrane forces are far larger than those at either
-/// end.
+/// Equilibrium of a body at large strain, including inertia: M m u + dE/du(u) = b. Uses Newton's method with
+/// the consistent tangent and a line search that keeps det F positive. The linear tolerance follows
+/// [eisenstat1996] (formula 2.6: eta = 0.9 (r/r_before)^2, between 1e-4 and 0.05). The residual may grow
+/// temporarily: a bending beam passes states with far larger membrane forces than at either end.
 class FiniteStrain final : public LargeStrain {
  public:
-  /// Throws Error for what finite strain cannot have. Mesh and rows by reference. Collective.
+  /// Throws Error for unsupported cases. Keeps references to mesh and rows. Collective.
   FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                const SolidParameters& parameters);
 
-  EquilibriumMeans means() const override { return {.has_tangent = !meets_seat_}; }  // nothing but its own
+  EquilibriumMeans means() const override { return {.has_tangent = !meets_seat_}; }  // no other means
   std::string name(const SolidSystem& system) const override;
   void prepare(const SolidProblem& problem, SolidSystem& system) const override;
-  /// Of the local cells; dynamic analyses.
+  /// Sets the density of local cells in dynamic analyses.
   void set_density(std::span<const double> of_cells) override { kernel_->set_density(of_cells); }
   using Load = EquilibriumLoad;
   linalg::SolveStatistics find(const Load& load, SolidSystem& system, std::span<double> u) override;
@@ -59,9 +58,9 @@ class FiniteStrain final : public LargeStrain {
   LoadPath* load_path() override { return path_ ? &*path_ : nullptr; }
   void save(io::CheckpointWriter& file) const override;
   void load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) override;
-  /// Of the last solve.
+  /// Newton iterates of the last solve.
   const std::vector<NewtonIterate>& iterates() const { return iterates_; }
-  /// "3 iterations of Newton's method, ...", of the last solve.
+  /// Summary of the last solve, for example "3 iterations of Newton's method, ...".
   std::string text() const;
 
  private:
@@ -82,7 +81,8 @@ class FiniteStrain final : public LargeStrain {
   void search_path(PathSearch& path, std::span<double> u, double change, double most);
   void leave(PathSearch& path, TangentSolver& solver, std::span<double> u);
   void correct(PathSearch& path, TangentSolver& solver, std::span<double> u);
-  /// Over the load what rounding ended the iteration with; much of it is said once, nothing is left of no load. Collective.
+  /// Residual over the load at which round-off ended the iteration. Reports a large one once; 0 without load.
+  /// Collective.
   double judge_rounding(const Load& load, double scale, double left);
   TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia,
                             const Pressing* pressing = nullptr);
@@ -91,20 +91,20 @@ class FiniteStrain final : public LargeStrain {
   double stiffest_over(std::span<const double> x, const linalg::LinearMap& elastic) const;
 
   TangentSolver::By by_ = TangentSolver::By::frames;
-  bool mixed_ = false;       // pressures of their own on the way to equilibrium
-  bool is_carried_ = false;  // in the solve under way
+  bool mixed_ = false;       // pressures are separate unknowns during the iteration
+  bool is_carried_ = false;  // in the current solve
   bool presses_ = false, is_drowned_told_ = false;
   bool meets_seat_;
   double tolerance_, noise_, noise_of_motion_;
-  double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
+  double whole_ = 0;  // norm of the last residual with U'(J) instead of those pressures
   int most_linear_;
   std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
   std::unique_ptr<elastic::FiniteKernel> kernel_;
   std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
   std::vector<double> r_, trial_, du_;
   StepJump jump_;
-  bool is_restored_ = false;            // the expansion that comes next is that of the equilibrium on file
-  std::optional<LoadPath> path_;        // none: the loads follow the time
+  bool is_restored_ = false;            // the next expansion is that of the restored equilibrium
+  std::optional<LoadPath> path_;        // empty if the loads follow the time
   std::vector<double> whole_pressure_;  // at load factor 1
   std::vector<NewtonIterate> iterates_;
 };

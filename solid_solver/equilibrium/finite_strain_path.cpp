@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of FiniteStrain: the next equilibrium along a load path, and whether an equilibrium holds.
+// Parts of FiniteStrain: the next equilibrium along a load path, and the stability of an equilibrium.
 //
-// The next equilibrium: Newton's method for (u, lambda), A(u) = lambda b, on the plane across the path's tangent at a
-// distance from the last equilibrium (pseudo arc length [riks1979]). Each iteration solves K d = r and K v = b, and
-// takes d + dlambda v with dlambda by the plane's equation, so that the whole is linearised consistently.
+// Finds the next equilibrium by Newton's method for (u, lambda), A(u) = lambda b, on the plane normal to the
+// path's tangent at a distance from the last one (pseudo arc length [riks1979]). Each iteration
+// solves K d = r and K v = b and takes d + dlambda v, dlambda from the plane's equation (consistent tangent).
 
 #include <algorithm>
 #include <array>
@@ -23,26 +23,26 @@ namespace couplet::solid {
 namespace {
 
 constexpr int most_path_iterations = 15;
-// As in plain load steps (finite_strain.cpp).
+// As in ordinary load steps (finite_strain.cpp).
 constexpr double path_growth = 30, path_first = 1e6, path_small = 1e-3, path_shortest = 1. / 64;
-// Of the linear solves: near a limit point both solutions are large and nearly cancel.
+// Tolerance of the linear solves: near a limit point both solutions are large and almost cancel.
 constexpr double path_linear = 1e-8;
 
-// Tolerance of the solution in which a negative curvature would show, and of the least stiffness once there is one, or nearly.
+// Tolerances of the solution that would show a negative curvature, and of a lowest stiffness near zero.
 constexpr double looked_for = 1e-3;
 constexpr int most_looks = 2000, most_refined = 12;
-// A stiffness below this is looked at more closely, by one more inverse iteration.
+// A stiffness below this is refined by one more inverse iteration.
 constexpr double nearly_lost = 0.5;
 // A negative stiffness of this part of the stiffest motion's may be rounding.
 constexpr double spectral_rounding = 1e-14;
-// Linear solve of a motion whose size alone is used.
+// Tolerance of a solve of which only the size is used.
 constexpr double roughly = 1e-4;
-// Largest difference of x . K y and y . K x.
+// Largest relative difference of x . K y and y . K x.
 constexpr double symmetric_part = 1e-7;
 
 }  // namespace
 
-/// Loads at a load factor, and where the search for the equilibrium stands.
+/// Loads at a load factor, and the state of the search for equilibrium.
 struct FiniteStrain::PathSearch {
   const Load& whole;  // at load factor 1
   std::vector<double> rows, known, push, tangent, normal, start;
@@ -51,7 +51,7 @@ struct FiniteStrain::PathSearch {
   NewtonIterate now{};
 };
 
-/// The kernel's pressures and the rows at a load factor.
+/// Sets the kernel's pressures and the rows at a load factor.
 void FiniteStrain::scale_loads(PathSearch& path, double factor) {
   path.rows.assign(path.whole.rows.begin(), path.whole.rows.end());
   path.known.assign(path.whole.known.begin(), path.whole.known.end());
@@ -67,7 +67,7 @@ void FiniteStrain::scale_loads(PathSearch& path, double factor) {
   kernel_->set_pressure(pressure);
 }
 
-/// d(lambda b - A)/d lambda at u, where the kernel is linearised afterwards. Prescribed displacements push by the tangent's columns.
+/// d(lambda b - A)/d lambda at u; linearizes the kernel there. Known displacements act by the tangent.
 void FiniteStrain::find_push(PathSearch& path, std::span<const double> u) {
   path.push.assign(path.whole.rows.begin(), path.whole.rows.end());
   if (presses_) {
@@ -88,7 +88,7 @@ void FiniteStrain::find_push(PathSearch& path, std::span<const double> u) {
   for (std::size_t i = 0; i < u.size(); ++i) path.push[i] -= pulled[i];
 }
 
-/// (u, lambda) + s (du, dlambda) with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
+/// (u, lambda) + s (du, dlambda) with the largest s of 1, 1/2, ... with det F > 0 and residual < `most`.
 void FiniteStrain::search_path(PathSearch& path, std::span<double> u, double change, double most) {
   const double from = path.factor;
   std::vector<double> known_change(path.whole.known.begin(), path.whole.known.end());
@@ -113,7 +113,7 @@ void FiniteStrain::search_path(PathSearch& path, std::span<double> u, double cha
       from, path.now.length, path_growth, where_worst());
 }
 
-/// From the last equilibrium along the tangent, which is the normal of the plane to be met.
+/// Step from the last equilibrium along the tangent, which is the normal of the plane to be met.
 void FiniteStrain::leave(PathSearch& path, TangentSolver& solver, std::span<double> u) {
   scale_loads(path, path.factor);
   start_pressures(path.load, u);
@@ -131,7 +131,7 @@ void FiniteStrain::leave(PathSearch& path, TangentSolver& solver, std::span<doub
   search_path(path, u, change, path_first * std::max(path.now.residual, path_small * path.most));
 }
 
-/// d + dlambda v on the plane n . (u + d + dlambda v - u_0) = l of the path, n . n = 1 / l^2 times its own length.
+/// d + dlambda v on the path's plane n . (u + d + dlambda v - u_0) = l, n . n = 1/l^2 times its length.
 void FiniteStrain::correct(PathSearch& path, TangentSolver& solver, std::span<double> u) {
   find_push(path, u);
   if (presses_) path.now.residual = residual(path.load, u, path.now.ratio);
@@ -191,7 +191,7 @@ void FiniteStrain::load(io::CheckpointReader& file, std::span<const double>, std
   is_restored_ = true;
 }
 
-// Tells whether the equilibrium that was found holds.
+// Stability of the equilibrium.
 
 SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
                                           const linalg::LinearMap& elastic, std::vector<double> start) {
@@ -229,8 +229,8 @@ SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std:
   return {least, std::move(softest.x)};
 }
 
-/// K(u)^-1 of the load that led from the equilibrium `before` to `u`: what `before` leaves of the new load, as it was in equilibrium with
-/// the old one.
+/// K(u)^-1 times the change of load from the equilibrium `before` to `u`, which is the residual of `before`
+/// under the new load.
 std::vector<double> FiniteStrain::backward_motion(const Load& load, std::span<const double> before,
                                                   std::span<const double> u) {
   TangentSolver& solver = solver_for(0, {});
@@ -249,7 +249,7 @@ std::vector<double> FiniteStrain::backward_motion(const Load& load, std::span<co
   return motion;
 }
 
-/// x . x of the stiffest motion there may be over that of `x`, each per x . K x, by a motion that turns round from row to row.
+/// Ratio of x . x / x . K x of the stiffest motion, which alternates from row to row, to that of `x`.
 double FiniteStrain::stiffest_over(std::span<const double> x, const linalg::LinearMap& elastic) const {
   std::vector<double> force(x.size()), rough(x.size());
   std::array<double, 4> sums{};

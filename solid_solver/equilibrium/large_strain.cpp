@@ -18,7 +18,7 @@ namespace couplet::solid {
 
 namespace {
 
-// Of a stiffness, in a residual that is nothing but rounding.
+// Round-off of a residual relative to the stiffness.
 constexpr double last_digits = 2e-15;
 
 }  // namespace
@@ -62,9 +62,9 @@ std::string worst_cell(const mesh::Mesh& mesh, const mesh::Geometry& geometry, d
                      w.x[0], w.x[1], w.x[2], w.ratio);
 }
 
-// Strain and Cauchy's stress at large strain.
+// Strain and Cauchy stress at large strain.
 
-/// Green's (F^T F - I) / 2.
+/// Green's strain (F^T F - I)/2.
 void LargeStrain::to_strain(std::span<Tensor3> gradients) const {
   for (Tensor3& g : gradients) g = (0.5 * (g + g.transpose()) + 0.5 * g * g.transpose()).eval();
 }
@@ -79,8 +79,8 @@ std::vector<Tensor3> LargeStrain::face_stress(const Displaced& state, Index firs
   return stress;
 }
 
-/// Stress of a cell by the pyramids over its faces: sum V_fP P F^T / sum V_fP J, the mean over the deformed cell. The
-/// ghosts' faces are another rank's.
+/// Cell stress weighted by the pyramids over the faces: sum V_fP P F^T / sum V_fP J, the mean over the
+/// deformed cell. Other ranks own the faces of ghosts.
 std::vector<Tensor3> LargeStrain::cell_stress(const Displaced& state) {
   constexpr int size = 10;
   std::vector<double> sums(std::size_t(mesh_.cells.n_local()) * size, 0);
@@ -112,7 +112,7 @@ struct Fold {
   Index support = -1;
 };
 
-// Of free faces, from the rim of the support on: the first may be pressed flat while the next ones fold over it.
+// Rings of free faces from the rim of the support: the first may be flattened while the next folds over it.
 constexpr int rings = 3;
 
 using FacesOfPoints = std::vector<std::vector<Index>>;
@@ -178,8 +178,8 @@ std::string folded_support(const mesh::Mesh& mesh, const elastic::ElasticOperato
 
 namespace {
 
-// Beyond both tangents, of the largest motion. Steps of a bonded rubber block, 16 x 16 cells: 0.08 at most next to a limit point of the cells at
-// its rim, 0.13 to 0.95 past one; of a shallow arch from rest to 1.05 and 8 times its limit load 0.88 and 0.34.
+// Motion beyond both tangents relative to the largest motion. A bonded rubber block of 16 x 16 cells had at
+// most 0.08 at a limit point of rim cells, 0.13-0.95 past it; an arch at 1.05 and 8 limit loads 0.88, 0.34.
 constexpr double limit = 0.15;
 
 }  // namespace
@@ -202,7 +202,7 @@ double StepJump::largest_growth(double length) const {
   return largest * length;
 }
 
-/// By how much a node moves more than by the larger of both predictions and the growth, over the largest motion of a node; `later` may be empty.
+/// Largest relative excess of a node's motion over both predictions and growth. `later` may be empty.
 double StepJump::beyond(MPI_Comm comm, std::span<const double> u, std::span<const double> later,
                         double growth) const {
   std::array<double, 3> found{0, 0, growth};

@@ -14,7 +14,7 @@ namespace couplet::solid {
 
 namespace {
 
-// A step's length over that of the last one.
+// Ratio of a step's length to the last one.
 constexpr double shortest_ratio = 0.5, longest_ratio = 1.5;
 
 }  // namespace
@@ -48,7 +48,7 @@ double LoadPath::predict(std::span<const double> tangent, double dt) {
     first_ = nominal_ = chosen_.first_load_factor * size;
   }
   step_ = nominal_ * dt / dt_;
-  // The path goes on as it came, through limit points of load and displacement alike.
+  // Continues in the direction of the path, through limit points of load and displacement.
   const bool is_back = !now_.change.empty() && product(now_.change, tangent) < 0;
   return (is_back ? -1 : 1) * step_ / size;
 }
@@ -70,7 +70,7 @@ void LoadPath::accept(double time, double stiffness) {
   nominal_ = std::min(nominal_ * std::clamp(wanted, shortest_ratio, longest_ratio), chosen_.longest * first_);
 }
 
-/// By the parabola through the last three equilibria.
+/// Locates limit points with the parabola through the last three equilibria.
 void LoadPath::see_limit(double length, double time) {
   if (length_before_ == 0 || length == 0) return;
   const double before = (now_.factor - factor_before_) / length_before_,

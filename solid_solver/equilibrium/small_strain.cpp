@@ -13,7 +13,7 @@ namespace couplet::solid {
 namespace {
 
 constexpr int most_corrections = 60, most_multiplier_changes = 200, halvings = 50;
-// Of a linear solve at most.
+// Loosest tolerance of a linear solve.
 constexpr double loosest_solve = 1e-3;
 
 class ContactNewton {
@@ -71,7 +71,7 @@ class ContactNewton {
           "'factors'.");
   }
 
-  /// r = b + C^T f - K u, and what it is measured by.
+  /// r = b + C^T f - K u, and its scale.
   double residual() {
     p_.stiffness(u_, r_);
     for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b_[i] - r_[i];
@@ -82,7 +82,8 @@ class ContactNewton {
     return norm(p_.comm, r_);
   }
 
-  /// Newton's method for the multipliers at hand; gives how many corrections it took: none is left of a rigid seat that has settled.
+  /// Newton's method for the current multipliers. Returns the number of corrections, zero for a converged
+  /// rigid seat.
   int equilibrate() {
     double size = residual();
     int i = 0;
@@ -101,14 +102,14 @@ class ContactNewton {
       correct();
       const double before = size;
       size = residual();
-      // At rounding level Newton's method stands still, but for the last digits.
+      // Newton's method has stalled at round-off.
       if (size >= 0.999 * before && size <= 1e3 * p_.tolerance * scale_ && i > 3) break;
     }
     statistics_.residual = size;
     return i;
   }
 
-  /// u + s du with the s <= 1 at which du . r changes its sign: along du the energy is convex.
+  /// u + s du with the s <= 1 at which du . r changes sign; the energy is convex along du.
   void correct() {
     const std::vector<double> change = p_.pressing.seat().along(du_, {}), start = along_;
     p_.stiffness(du_, kdu_);
@@ -210,8 +211,7 @@ std::vector<Tensor3> SmallStrain::cell_stress(const Displaced& state) {
   std::vector<Tensor3> stress = state.cell_gradients();
   for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = rows_.stress(Index(c), stress[c]);
   if (thermal_) thermal_->add_cell_stress(stress);
-  // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
-  // stress.
+  // Out-of-plane stress: lambda tr(epsilon) in plane strain (already included), zero in plane stress.
   if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
     for (Tensor3& s : stress) s(2, 2) = 0;
   return stress;

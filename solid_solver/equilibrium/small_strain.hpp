@@ -14,28 +14,28 @@
 
 namespace couplet::solid {
 
-/// What is solved: K u = b + C^T f(C u), f the forces of the seat.
+/// System K u = b + C^T f(C u) with the forces f of the seat.
 struct ContactProblem {
   MPI_Comm comm;
-  const linalg::LinearMap& stiffness;  ///< K, inertia included
+  const linalg::LinearMap& stiffness;  ///< K, including inertia
   SolutionMethod& method;              ///< for K alone
   Pressing& pressing;
-  std::span<const double> known;  ///< columns, whose part of b stands there
-  double tolerance;               ///< of the residual over the rows
+  std::span<const double> known;  ///< known columns of C; their part of K is in b
+  double tolerance;               ///< of the residual relative to the rows
   int most_iterations;            ///< of the linear solver
 };
 
-/// Semi-smooth Newton's method [hueber2005]: the forces are the slope of a convex energy, so that with the exact length of each
-/// correction it ends at any stiffness. The tangent K + C^T k C is solved by conjugate gradients with the preconditioner of K. A body
-/// that is clear of the seat is solved for by the method of K, and looked at once. `u`: the first guess on entry. Throws SolveFailure.
-/// Collective.
+/// Semi-smooth Newton method [hueber2005]. The forces derive from a convex energy, so with exact line search
+/// it converges at any stiffness. The tangent K + C^T k C is solved by CG with the preconditioner of K. A
+/// body clear of the seat is solved by the method of K and checked once. `u`: first guess on entry. Throws
+/// SolveFailure. Collective.
 linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::span<const double> b,
                                            std::span<double> u);
 
-/// A(u) = K u in the reference configuration, with the face gradient that was chosen.
+/// A(u) = K u in the reference configuration, with the selected face gradient.
 class SmallStrain final : public Equilibrium {
  public:
-  /// All by reference.
+  /// Keeps references.
   SmallStrain(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
               const elastic::ElasticOperator& rows, const std::unique_ptr<ThermalStrain>& thermal,
               const SolidParameters& parameters)
@@ -65,7 +65,7 @@ class SmallStrain final : public Equilibrium {
   const mesh::Mesh& mesh_;
   const elastic::ElasticKernel& kernel_;
   const elastic::ElasticOperator& rows_;
-  const std::unique_ptr<ThermalStrain>& thermal_;  // made after it; nullptr: no temperature
+  const std::unique_ptr<ThermalStrain>& thermal_;  // created after it; nullptr without temperature
   const SolidParameters& parameters_;
 };
 

@@ -14,16 +14,16 @@ namespace couplet::solid {
 
 namespace {
 
-// Cells below which the rigid motions of aggregates gain nothing, cells an aggregate, and most aggregates.
+// Minimum cells for rigid motions of aggregates to help, cells per aggregate, and maximum aggregates.
 constexpr GlobalIndex small_body = 64, cells_of_tangent_aggregate = 32;
 constexpr GlobalIndex most_tangent_aggregates = 160;
-// New factors cost as much as some dozens of iterations; a tangent that has changed much needs them.
+// New factors cost as much as dozens of iterations, but are required if the tangent has changed much.
 constexpr int most_with_old_factors = 12, most_before_new_factors = 60;
 
-// Factors in space need some 50 kB a cell.
+// Factors require about 50 kB per cell in 3-D.
 constexpr GlobalIndex most_to_factor = 20000;
 
-/// The rotation of F = R U by Higham's iteration; I where F is inside out.
+/// Rotation of F = R U by Higham's iteration; I if F is inverted.
 Tensor3 rotation_of(const Tensor3& f) {
   if (!(f.determinant() > 1e-6)) return Tensor3::Identity();
   Tensor3 r = f;
@@ -75,7 +75,7 @@ TangentSolver::TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOpera
       [this](std::span<const double> r, std::span<double> z) { precondition(r, z); });
 }
 
-/// Of cells by the mean of their faces' F; boundary faces turn with their cell, supports with nothing.
+/// Frames of cells by the mean of their faces' F; boundary faces rotate with their cell, supports do not.
 void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
   const Index n = mesh_.cells.n_owned();
   std::vector<Tensor3> mean(n, Tensor3::Zero());
@@ -109,7 +109,7 @@ void TangentSolver::follow(bool with_modes) {
   modes_->update(body);
 }
 
-/// LU: away from equilibrium, and under a pressure that follows, the tangent need not be positive.
+/// LU, because the tangent may be indefinite away from equilibrium or under follower pressure.
 void TangentSolver::make_factors() {
   is_fresh_ = !(factors_ && iterations_ <= most_with_old_factors);
   if (!is_fresh_) return;
@@ -148,7 +148,7 @@ linalg::SolveStatistics TangentSolver::solve(std::span<const double> r, std::spa
   std::ranges::fill(du, 0.0);
   linalg::KrylovOptions options{relative_tolerance, max_iterations, !is_unsymmetric_};
   if (factors_ && !is_fresh_) {
-    // Those of an earlier correction, for as long as they are cheap.
+    // Uses factors of an earlier correction while they are cheap.
     linalg::KrylovOptions few = options;
     few.max_iterations = std::min(max_iterations, most_before_new_factors);
     try {
@@ -163,20 +163,20 @@ linalg::SolveStatistics TangentSolver::solve(std::span<const double> r, std::spa
     return counted(r, du, options);
   } catch (const SolveFailure&) {
     if (!options.is_symmetric) throw;
-    // Not positive away from equilibrium, perhaps: what does not need it.
+    // The tangent may be indefinite away from equilibrium: uses a method that allows this.
     std::ranges::fill(du, 0.0);
     options.is_symmetric = false;
   }
   try {
     return counted(r, du, options);
   } catch (const SolveFailure&) {
-    // A cycle made for a positive operator may be no help to one with negative eigenvalues: factors of the tangent itself.
+    // A cycle for a positive operator may fail for negative eigenvalues: use factors of the tangent itself.
     if (factors_ || mesh_.cells.n_global() > most_to_factor) throw;
     return solve_by_own_factors(r, du, options);
   }
 }
 
-/// Factors of this tangent alone: none is left for another, whatever comes of it.
+/// Uses factors of this tangent, which are discarded afterwards in any case.
 linalg::SolveStatistics TangentSolver::solve_by_own_factors(std::span<const double> r, std::span<double> du,
                                                             const linalg::KrylovOptions& options) {
   const auto forget = [this] {

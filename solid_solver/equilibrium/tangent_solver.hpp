@@ -14,31 +14,31 @@
 
 namespace couplet::solid {
 
-/// Solves K(u) du = r for the tangent of a deformed body by conjugate gradients. Preconditioner: the compact
-/// component-wise operator of the undeformed body, made once and applied in the frame that turns with each
-/// cell (residuals turned back, corrections turned forth), and rigid motions of aggregates about their present
-/// places where the body is not small. Near incompressibility that operator is none of the tangent's: small bodies
-/// take factors of the tangent itself, made anew where those of an earlier correction no longer do.
+/// Solves K(u) du = r for the tangent of a deformed body by CG. The preconditioner is the compact
+/// component-wise operator of the undeformed body, applied in frames that rotate with the cells. Bodies that
+/// are not small add the rigid motions of aggregates in their present position. That operator is unsuitable
+/// near incompressibility, so small bodies use factors of the tangent itself, recomputed when older ones are
+/// no longer good enough.
 class TangentSolver {
  public:
   enum class By { frames, factors };
-  /// `node_inertia`: mass factor times mass of the unknown nodes [N/m]; empty: static. All by reference.
+  /// `node_inertia`: mass factor times mass of the unknown nodes [N/m]; empty if static. Keeps references.
   /// Collective.
   TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, elastic::FiniteKernel& kernel,
                 double mass_factor, std::span<const double> node_inertia, By by);
 
   double mass_factor() const { return mass_factor_; }
-  /// The seat whose stiffness is a part of K(u) from here on, by reference; null: none.
+  /// Adds the stiffness of a seat to K(u), by reference; nullptr if there is none.
   void meet(const Pressing* pressing) { pressing_ = pressing; }
-  /// A new load or step: factors of an earlier one are not used again, so that a run that continues takes the same way.
+  /// Discards factors for a new load or step, so that a restarted run is identical.
   void forget_factors() { factors_.reset(); }
-  /// The preconditioner follows the body: frames, and `with_modes` also the rigid motions. At the last
-  /// linearise() of the kernel. Collective.
+  /// Updates the frames, and with `with_modes` the rigid motions, to the last linearise() of the kernel.
+  /// Collective.
   void follow(bool with_modes);
-  /// du holds the correction. Throws SolveFailure. Collective.
+  /// Returns the correction in du. Throws SolveFailure. Collective.
   linalg::SolveStatistics solve(std::span<const double> r, std::span<double> du, double relative_tolerance,
                                 int max_iterations);
-  /// z near K^-1 r, after follow().
+  /// Sets z to an approximation of K^-1 r. Call after follow().
   void precondition(std::span<const double> r, std::span<double> z);
 
  private:
@@ -59,12 +59,12 @@ class TangentSolver {
   By by_;
   const Pressing* pressing_ = nullptr;
   bool is_unsymmetric_ = false;                   // a pressure follows the surface
-  std::unique_ptr<linalg::SparseMatrix> matrix_;  // of factors
+  std::unique_ptr<linalg::SparseMatrix> matrix_;  // matrix of the factors
   std::unique_ptr<linalg::LinearSolver> factors_;
-  bool is_fresh_ = false;  // they are those of the last linearise()
+  bool is_fresh_ = false;  // factors_ belong to the last linearise()
   int iterations_ = 0;     // of the last solution
   std::unique_ptr<elastic::ElasticPreconditioner> compact_;
-  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // null: the body is small
+  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // nullptr for a small body
   std::vector<Tensor3> frame_;                         // of the unknown nodes
   std::vector<double> turned_, correction_;
   std::unique_ptr<linalg::KrylovSolver> krylov_;

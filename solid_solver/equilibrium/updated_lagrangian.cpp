@@ -23,7 +23,7 @@ namespace couplet::solid {
 
 namespace {
 
-// Of a first guess.
+// Tolerance of a first guess.
 constexpr double loose = 1e-3;
 
 }  // namespace
@@ -51,7 +51,7 @@ std::vector<double> UpdatedFrame::linear_answer(std::span<const double> change, 
   return u;
 }
 
-// Four places at a time, the last ones filled up with their neighbour.
+// Evaluates four places at a time; the last group is padded.
 void first_piola(const elastic::FiniteLaw& law, std::span<const Tensor3> deformation,
                  std::span<Tensor3> stress, std::span<double> energy) {
   using namespace elastic::finite;
@@ -90,7 +90,7 @@ namespace {
 constexpr std::array unknown_conditions{"a support or springs", "'zero-normal-gradient'",
                                         "an interface between two materials"};
 
-/// Which of these a row is, -1: none.
+/// Index of an unsupported condition of a row; -1 if there is none.
 int unknown_condition_of(const elastic::BoundaryRow& row) {
   if (row.fixed || row.mirrored || row.is_free()) return -1;
   return row.has_value() ? 0 : row.level ? 1 : 2;
@@ -137,7 +137,7 @@ UpdatedFrame& UpdatedLagrangian::frame() {
   return *frame_;
 }
 
-/// `known` may be empty: zeros.
+/// `known`: empty for zeros.
 UpdatedLagrangian::Change UpdatedLagrangian::since_start(std::span<const double> unknowns,
                                                          std::span<const double> known) const {
   Change change{{unknowns.begin(), unknowns.end()}, std::vector<double>(now_.known.size(), 0)};
@@ -147,7 +147,7 @@ UpdatedLagrangian::Change UpdatedLagrangian::since_start(std::span<const double>
   return change;
 }
 
-/// f at the faces for the displacement since the step began; nothing has moved: no frame is needed.
+/// f at the faces for the displacement since the start of the step; without motion no frame is required.
 void UpdatedLagrangian::find_change(std::span<const double> unknowns, std::span<const double> known) {
   const auto [u, g] = since_start(unknowns, known);
   change_.assign(mesh_.n_flux_faces(), Tensor3::Identity());
@@ -159,7 +159,7 @@ void UpdatedLagrangian::find_change(std::span<const double> unknowns, std::span<
       mesh_.n_flux_faces());
 }
 
-/// F = f F_u, W and P at the faces. False: some face is inside out.
+/// Computes F = f F_u, W and P at the faces; false if some face is inverted.
 bool UpdatedLagrangian::find_stress() {
   const Index n = mesh_.n_flux_faces();
   deformation_.resize(n);
@@ -183,7 +183,7 @@ Vec3 UpdatedLagrangian::force_through(Index f) {
   return stress_[f] * (F.transpose() * present_area(f)) / F.determinant();
 }
 
-/// Rows as ElasticOperator has them: cells minus what goes out, faces with a known traction what comes to them.
+/// Rows of ElasticOperator: minus the outgoing force of cells, plus the incoming one of traction faces.
 void UpdatedLagrangian::add_forces(std::span<double> result) {
   const Index n = mesh_.cells.n_owned();
   const std::size_t dim = mesh_.dim;
@@ -218,7 +218,7 @@ bool UpdatedLagrangian::look(std::span<const double> unknowns, std::span<const d
   return find_stress();
 }
 
-/// r = b - M m u - A(u) and its norm; infinite where a face is inside out.
+/// r = b - M m u - A(u) and its norm; infinite if a face is inverted.
 double UpdatedLagrangian::residual(const EquilibriumLoad& load, std::span<const double> u,
                                    std::span<double> r) {
   if (!look(u, load.known)) return std::numeric_limits<double>::infinity();
@@ -233,8 +233,8 @@ double UpdatedLagrangian::residual(const EquilibriumLoad& load, std::span<const 
 
 std::string UpdatedLagrangian::where_worst() const { return worst_cell(mesh_, geometry_, least_, worst_); }
 
-/// What is known has moved: the body goes with it as a linear one would. Left to the first guess it would be a jump in
-/// the cells beside it.
+/// Moves the body with its known columns as a linear one, because the first guess would make a jump in
+/// adjacent cells.
 void UpdatedLagrangian::follow_known(const EquilibriumLoad& load, std::span<double> u) {
   std::vector<double> change(load.known.begin(), load.known.end());
   for (std::size_t i = 0; i < change.size(); ++i) change[i] -= load.before[i];
@@ -254,7 +254,7 @@ linalg::SolveStatistics UpdatedLagrangian::find(const EquilibriumLoad& load, Sol
   double size = residual(load, u, r);
   if (!std::isfinite(size))
     throw SolveFailure("The initial guess of the step inverts a cell. {}", where_worst());
-  // In motion b holds the inertia of the place itself, far larger than what accelerates the body.
+  // In motion b contains the inertia of the position itself, which far exceeds the accelerating force.
   std::vector<double> inner(u.size(), 0);
   if (load.mass_factor > 0) add_forces(inner);
   const std::span<const double> loads = load.mass_factor > 0 ? std::span<const double>(inner) : load.rows;
@@ -279,7 +279,7 @@ linalg::SolveStatistics UpdatedLagrangian::find(const EquilibriumLoad& load, Sol
   return statistics;
 }
 
-// Results of a state of the updated-Lagrangian method: energies, forces, the place where the next step begins.
+// Results of a state of the updated-Lagrangian method: energies, forces, and the start of the next step.
 
 std::vector<double> UpdatedLagrangian::forces(std::span<const double> unknowns,
                                               std::span<const double> known) {
@@ -289,7 +289,7 @@ std::vector<double> UpdatedLagrangian::forces(std::span<const double> unknowns,
   return result;
 }
 
-/// W a face times the pyramids of owned cells over it.
+/// Sum of W per face times the pyramids of owned cells over it.
 double UpdatedLagrangian::energy(std::span<const double> unknowns, std::span<const double> known) {
   look(unknowns, known);
   const Index n = mesh_.cells.n_owned();
@@ -302,7 +302,7 @@ double UpdatedLagrangian::energy(std::span<const double> unknowns, std::span<con
   return parallel::sum(mesh_.comm, here);
 }
 
-/// Each face once over all ranks, where the cell of its owner lives.
+/// Each face once over all ranks, on the rank of its owner cell.
 void UpdatedLagrangian::visit(std::span<const double> unknowns, std::span<const double> known,
                               const Take& take) {
   look(unknowns, known);
@@ -310,7 +310,7 @@ void UpdatedLagrangian::visit(std::span<const double> unknowns, std::span<const 
     if (mesh_.owner[f] < mesh_.cells.n_owned()) take(f, deformation_[f], stress_[f]);
 }
 
-/// Loads need not be taken off: faces that are held take none.
+/// Loads need no subtraction, because held faces have none.
 std::vector<elastic::Wrench> UpdatedLagrangian::holding_forces(std::span<const double> unknowns,
                                                                std::span<const double> known,
                                                                const elastic::ElasticLoads&) {

@@ -15,18 +15,18 @@
 
 namespace couplet::solid {
 
-/// The thesis's operators on a body that stands elsewhere: the same mesh in the geometry of its moved vertices, steps 5 to 7 of the
+/// The thesis's operators on a displaced body: the same mesh with moved vertices, steps 5 to 7 of the
 /// algorithm in thesis 2.7.1.
 class UpdatedFrame {
  public:
-  /// `rows`: conditions and constants, of the undeformed body. Keeps the mesh by reference. Collective.
+  /// `rows`: conditions and constants of the undeformed body. Keeps a reference to the mesh. Collective.
   UpdatedFrame(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, std::vector<Vec3> points);
   const elastic::ElasticKernel& kernel() const { return kernel_; }
   /// S_u of local faces [m^2], out of the owner.
   const std::vector<Vec3>& area() const { return geometry_.face_area; }
-  /// For this inertia, made anew when the factor is another one. Collective.
+  /// Systems for this inertia, recomputed when the factor changes. Collective.
   ScalarSystems& systems(double mass_factor, std::span<const double> inertia);
-  /// Displacement of a linear body whose known columns move by `change`, loosely solved. Collective.
+  /// Displacement of a linear body whose known columns move by `change`, with a loose tolerance. Collective.
   std::vector<double> linear_answer(std::span<const double> change, MethodParameters method);
 
  private:
@@ -44,14 +44,14 @@ void first_piola(const elastic::FiniteLaw& law, std::span<const Tensor3> deforma
 /// det(F) F^-T
 Tensor3 cofactors_of(const Tensor3& deformation);
 
-/// The thesis's own large strain, updated Lagrangian, thesis (2.37)-(2.40) and (2.68)-(2.72). Each step is referred to the
-/// place where the body stood at its beginning (index u), whose geometry is made of the vertices that moved along:
+/// Updated Lagrangian method of the thesis for large strain, thesis (2.37)-(2.40) and (2.68)-(2.72). Each
+/// step refers to the configuration at its start (index u), whose geometry follows from the moved vertices:
 ///   f = I + [grad_u (du)]^T,  j = det f,  F = f F_u,  force through a face = sigma(F) . (j f^-T S_u)
-/// with the thesis's face gradient on that geometry, du the displacement since then. The equilibrium is found by the
+/// The face gradient is the thesis's on that geometry, and du the displacement since then. Uses the
 /// segregated method. Masses are those of the undeformed cells, rho_u V_u = rho_0 V_0.
 class UpdatedLagrangian final : public LargeStrain {
  public:
-  /// Throws Error for conditions that it does not know. Mesh and rows by reference. Collective.
+  /// Throws Error for unsupported conditions. Keeps references to mesh and rows. Collective.
   UpdatedLagrangian(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                     const SolidParameters& parameters);
   ~UpdatedLagrangian() override;
@@ -73,15 +73,15 @@ class UpdatedLagrangian final : public LargeStrain {
             std::span<const double> known) override;
 
  private:
-  /// Where the body stands and how it is deformed there.
+  /// Configuration of the body and its deformation.
   struct Place {
     std::vector<Vec3> points;       // per local point [m]
     std::vector<Tensor3> gradient;  // F_u, per flux face
     std::vector<double> u, known;   // total displacement
   };
-  /// Operators where the step begins, made when first asked for.
+  /// Operators at the start of the step, created on first use.
   UpdatedFrame& frame();
-  /// Displacement since the step began.
+  /// Displacement since the start of the step.
   struct Change {
     std::vector<double> u, known;
   };
@@ -102,8 +102,8 @@ class UpdatedLagrangian final : public LargeStrain {
   linalg::Accelerator accelerator_;
   Place now_, next_;
   std::unique_ptr<UpdatedFrame> frame_;
-  std::vector<double> pressure_;  // per boundary face of owned cells; empty: none
-  // Of the state that was looked at last, per flux face: f, F, P.
+  std::vector<double> pressure_;  // per boundary face of owned cells; empty if there is none
+  // At the last evaluated state, per flux face: f, F, P.
   std::vector<Tensor3> change_, deformation_, stress_;
   std::vector<double> energy_;  // per undeformed volume
   double least_ = 1;            // det F

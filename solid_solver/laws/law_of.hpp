@@ -7,7 +7,7 @@
 
 namespace couplet::laws {
 
-/// Functions of four places; of one number those of the standard library.
+/// Functions of four values at once; those of one number are from the standard library.
 using std::cbrt;
 using std::log;
 inline elastic::Four log(const elastic::Four& x) {
@@ -17,8 +17,8 @@ inline elastic::Four cbrt(const elastic::Four& x) {
   return elastic::Four{std::cbrt(x[0]), std::cbrt(x[1]), std::cbrt(x[2]), std::cbrt(x[3])};
 }
 
-/// Invariants of the isochoric part of the deformation, i1 = J^-2/3 I1 and i2 = J^-4/3 I2, and the energy of a
-/// function psi(i1, i2) of them by the chain rule.
+/// Invariants of the isochoric deformation, i1 = J^-2/3 I1 and i2 = J^-4/3 I2, and the energy of a function
+/// psi(i1, i2) by the chain rule.
 template <class T>
 struct Isochoric {
   T i1, i2;
@@ -29,7 +29,7 @@ struct Isochoric {
     i1 = a_ * I1;
     i2 = b_ * I2;
   }
-  /// `psi`: w, w1, w2, w11, w12, w22 by i1 and i2.
+  /// `psi`: w, w1, w2, w11, w12, w22, derivatives by i1 and i2.
   elastic::EnergyOf<T> energy(const elastic::EnergyOf<T>& psi) const {
     elastic::EnergyOf<T> e;
     const T r = 1.0 / J_, x = -2. / 3 * r * i1, y = -4. / 3 * r * i2;  // di1/dJ, di2/dJ
@@ -57,9 +57,9 @@ elastic::BulkOf<T> quadratic_bulk(double K, const T& J) {
   return {0.5 * K * (J - 1.0) * (J - 1.0), K * (J - 1.0), K + 0.0 * J};
 }
 
-/// A law of the solver from a struct with
+/// Adapts a law to FiniteLaw. The struct provides
 ///   static constexpr bool has_bulk, has_second_invariant;
-///   template <class T> EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const;   all but the bulk part
+///   template <class T> EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const;   without the bulk part
 ///   template <class T> BulkOf<T> bulk(const T& J) const;
 template <class Law>
 class LawOf final : public elastic::FiniteLaw {

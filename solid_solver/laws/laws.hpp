@@ -10,7 +10,7 @@
 
 namespace couplet::laws {
 
-/// `lame`: at small strain; `coefficients`: what the law wants beside them, missing ones are zero.
+/// `lame`: at small strain. `coefficients`: further constants of the law; missing ones are zero.
 using MakeLaw = std::unique_ptr<elastic::FiniteLaw> (*)(const elastic::LameConstants& lame,
                                                         std::span<const double> coefficients);
 
@@ -22,19 +22,19 @@ std::unique_ptr<elastic::FiniteLaw> nearly_incompressible_neo_hookean(const elas
 std::unique_ptr<elastic::FiniteLaw> mooney_rivlin(const elastic::LameConstants&, std::span<const double>);
 std::unique_ptr<elastic::FiniteLaw> yeoh(const elastic::LameConstants&, std::span<const double>);
 
-/// A law as the YAML names it.
+/// Law with its name in the YAML file.
 struct Entry {
   const char* name;
   MakeLaw make;
-  std::size_t n_coefficients;  ///< it takes at most so many
-  const char* coefficients;    ///< what they are
+  std::size_t n_coefficients;  ///< largest number
+  const char* coefficients;    ///< their names
 };
 
-/// All laws, in the order in which the documentation lists them.
+/// All laws, in the order of the documentation.
 std::span<const Entry> all();
-/// Null: there is none of this name.
+/// nullptr if there is no law of this name.
 const Entry* find(const std::string& name);
-/// The same; no name: the first one, Saint Venant-Kirchhoff.
+/// Like find(); without a name the first law, Saint Venant-Kirchhoff.
 const Entry* of(const std::string& name);
 std::vector<std::string> names();
 

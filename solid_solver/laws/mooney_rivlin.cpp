@@ -5,8 +5,8 @@
 namespace couplet::laws {
 namespace {
 
-/// W = c10 (i1 - 3) + c01 (i2 - 3) + K/2 (J - 1)^2 with the isochoric invariants i1, i2 and the shear modulus
-/// 2 (c10 + c01) at small strain.
+/// W = c10 (i1 - 3) + c01 (i2 - 3) + K/2 (J - 1)^2 with isochoric invariants i1, i2; small-strain shear
+/// modulus 2 (c10 + c01).
 struct MooneyRivlin {
   static constexpr bool has_bulk = true, has_second_invariant = true;
   double c10, c01, K;

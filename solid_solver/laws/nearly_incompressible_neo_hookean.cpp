@@ -5,8 +5,8 @@
 namespace couplet::laws {
 namespace {
 
-/// Thesis (2.32) with its erratum (mu and K stand swapped there), sigma = K (J - 1) I + mu J^-5/3 dev B
-/// [bonet2008]: W = mu/2 (J^-2/3 I1 - 3) + K/2 (J - 1)^2.
+/// Thesis (2.32) with its erratum (mu and K interchanged), sigma = K (J - 1) I + mu J^-5/3 dev B [bonet2008]:
+/// W = mu/2 (J^-2/3 I1 - 3) + K/2 (J - 1)^2.
 struct NearlyIncompressible {
   static constexpr bool has_bulk = true, has_second_invariant = false;
   double mu, K;

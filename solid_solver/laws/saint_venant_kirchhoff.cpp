@@ -5,8 +5,8 @@
 namespace couplet::laws {
 namespace {
 
-/// Hooke's law for Green's strain E = (C - I) / 2, thesis (2.29): W = lambda/2 (tr E)^2 + mu E:E. For large
-/// rotations and small strains; it softens under compression until it has no stiffness left at J = 0.58.
+/// Hooke's law for Green's strain E = (C - I)/2, thesis (2.29): W = lambda/2 (tr E)^2 + mu E:E. For large
+/// rotations and small strains: it softens in compression and has no stiffness at J = 0.58.
 struct SaintVenantKirchhoff {
   static constexpr bool has_bulk = false, has_second_invariant = true;
   double mu, lambda;

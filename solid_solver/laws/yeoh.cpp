@@ -5,8 +5,8 @@
 namespace couplet::laws {
 namespace {
 
-/// Rubber that stiffens as it is stretched [yeoh1993]: W = c1 x + c2 x^2 + c3 x^3 + K/2 (J - 1)^2 with
-/// x = i1 - 3 of the isochoric i1 and the shear modulus 2 c1 at small strain.
+/// Rubber with strain stiffening [yeoh1993]: W = c1 x + c2 x^2 + c3 x^3 + K/2 (J - 1)^2 with x = i1 - 3 of
+/// the isochoric i1. The small-strain shear modulus is 2 c1.
 struct Yeoh {
   static constexpr bool has_bulk = true, has_second_invariant = false;
   double c1, c2, c3, K;

@@ -11,8 +11,8 @@
 namespace couplet::solid {
 namespace {
 
-// Up to here LU wins in time and has the memory (about 20 kB an unknown in 3-D). Without inertia slender
-// bending stalls ILU, so that static problems stay with LU for longer.
+// Size up to which LU is faster and has enough memory (about 20 kB per unknown in 3-D). Without inertia, ILU
+// stalls for slender bending, so static problems use LU longer.
 constexpr GlobalIndex direct_up_to = 60000, direct_up_to_static = 200000;
 
 linalg::LinearMethod linear_method(const SolidProblem& problem, const MethodParameters& parameters) {
@@ -33,7 +33,7 @@ linalg::LinearMethod linear_method(const SolidProblem& problem, const MethodPara
                                                                          : linalg::LinearMethod::bicgstab_ilu;
 }
 
-// Of an iterative linear solve within the deferred correction: more is lost on the next correction.
+// Tolerance of the inner linear solve. A tighter one is wasted, because corrections change the equation.
 constexpr double deferred_tolerance = 1e-2;
 constexpr int deferred_history = 8;
 
@@ -79,7 +79,7 @@ linalg::SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span
   try {
     return accelerator_ ? solve_corrected(b, u) : solver_.solve(b, u);
   } catch (const SolveFailure& e) {
-    // Never the method that has just failed.
+    // Suggests a method other than the failed one.
     throw SolveFailure(
         "{} The method is {}. If the loads are correct, try 'solution-method: {}'{}.", e.what(), name(),
         linear_ == linalg::LinearMethod::direct ? "{type: newton-krylov}" : "{linear-solver: direct}",

@@ -11,9 +11,9 @@
 
 namespace couplet::solid {
 
-/// The thesis's block-coupled method: all displacement components in one assembled matrix (2.77). The
-/// corrected face gradient comes by deferred correction: the assembled matrix solves for what the corrected
-/// operator leaves, again and again, Anderson-accelerated.
+/// Block-coupled method of the thesis: all displacement components in one assembled matrix (2.77). The
+/// corrected face gradient uses deferred correction: the assembled matrix repeatedly solves for the residual
+/// of the corrected operator, with Anderson acceleration.
 class BlockCoupled final : public SolutionMethod {
  public:
   BlockCoupled(const SolidProblem& problem, const MethodParameters& parameters);
@@ -28,7 +28,7 @@ class BlockCoupled final : public SolutionMethod {
   int max_iterations_;
   linalg::SparseMatrix matrix_;
   linalg::LinearSolver solver_;
-  std::optional<linalg::Accelerator> accelerator_;  // with the corrected gradient
+  std::optional<linalg::Accelerator> accelerator_;  // for the corrected gradient
   std::vector<double> residual_, step_;
 };
 

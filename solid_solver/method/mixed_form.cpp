@@ -17,23 +17,23 @@ namespace couplet::solid {
 
 namespace {
 
-// Scales of the elastic part by numerical experiment (in the plane Cook's membrane 8 to 64 a side, in space the elliptic
-// plate; nu 1/3 to 0.4999).
+// Empirical scales of the elastic part (2-D: Cook's membrane, 8 to 64 cells per side; 3-D: elliptic plate; nu
+// 1/3 to 0.4999).
 constexpr double elastic_of_gradients(int dim) { return dim == 2 ? 1.5 : 1; }
 constexpr double elastic_of_faces(int dim) { return dim == 2 ? 3 : 2; }
-// Of p of a cell beside its gradient times the cell's size, squared: constants have none.
+// Weight of p relative to its gradient times the cell size, squared; constants have no gradient.
 constexpr double of_values = 0.01;
-// Faces that may move give p more to do than those between cells.
+// Factor for free faces, where p does more work than between cells.
 constexpr double free_face = 2;
-// In space factors fill quickly (37 000 hexahedra: 545 MB); conjugate gradients with multigrid to this tolerance
-// cost a fifth more iterations outside.
+// Tolerance of CG with multigrid in 3-D, where factors fill quickly (37 000 hexahedra: 545 MB). It costs a
+// fifth more outer iterations.
 constexpr double close_enough = 0.01;
-// Inertia over mu V / h^2 from which steps are short.
+// Inertia over mu V/h^2 from which a step counts as short.
 constexpr double inertia_rules = 0.1;
 
 double size_squared(double volume, int dim) { return std::pow(volume, 2.0 / dim); }
 
-/// Cells with one face more than dimensions.
+/// True if all cells have one face more than dimensions.
 bool are_simplices(const mesh::Mesh& mesh) {
   std::vector<int> faces(mesh.cells.n_owned(), 0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
@@ -139,7 +139,7 @@ void PressureSchur::by_faces(const SolidProblem& problem, std::span<const double
   const mesh::Mesh& mesh = problem.mesh;
   const elastic::ElasticOperator& rows = problem.elastic;
   const Index n = mesh.cells.n_owned();
-  // Of one volume a cell on average: PETSc takes pivots to be zero by their size.
+  // Scaled to a mean cell volume of one, because PETSc detects zero pivots by their size.
   double mean = 0;
   for (const double v : volume) mean += v / double(n);
   Rows faces;
@@ -175,7 +175,7 @@ void PressureSchur::apply(std::span<const double> r, std::span<double> z) {
   try {
     solver_->solve(right, z);
   } catch (const SolveFailure&) {
-    // One rank alone must not leave the others: what it has found is a worse preconditioner, no wrong answer.
+    // A rank must not leave the others: a bad value only gives a worse preconditioner.
     for (double& p : z)
       if (!std::isfinite(p)) p = 0;
   }
@@ -184,9 +184,9 @@ void PressureSchur::apply(std::span<const double> r, std::span<double> z) {
 
 namespace {
 
-// What the rows of volumes may leave of forces in K u = b, over b: errors of the mean stress are as large.
+// Forces from volume residuals allowed in K u = b, relative to b; errors of the mean stress are as large.
 constexpr double finest_forces_left = 1e-6;
-// By so much more, and the answer is none.
+// Factor above that at which the solution is rejected.
 constexpr double too_much = 100;
 
 }  // namespace
@@ -215,8 +215,8 @@ MixedForm::MixedForm(const SolidProblem& problem, const MethodParameters& parame
   name_ = "newton-krylov (mixed form: mean stresses of the cells as additional unknowns)";
 }
 
-/// mu / h, by which both kinds of unknowns and rows are of one size; larger where the tolerance leaves so much of the
-/// volumes that K_P / mu of it would be forces.
+/// Scale mu/h, which makes both kinds of unknowns and rows similar. It is larger if the tolerance leaves
+/// volume residuals that K_P/mu would turn into forces.
 void MixedForm::find_scales() {
   const std::vector<double> volume = elastic::pyramid_volumes(problem_.mesh, problem_.geometry());
   for (std::size_t c = 0; c < n_p_; ++c) {
@@ -252,7 +252,7 @@ void MixedForm::precondition(std::span<const double> r, std::span<double> z) {
   for (std::size_t c = 0; c < n_p_; ++c) left[c] = p[c] / scale_[c];
 }
 
-/// K_P theta of the guess, unless it leaves more of b than none: errors of its volumes count K_P / mu times there.
+/// Initial p: K_P theta of the guess, unless volume errors, scaled by K_P/mu, increase the residual.
 void MixedForm::add_pressures(std::span<const double> b, std::span<double> x) {
   std::vector<double> of_none(x.size()), of_volumes(x.size());
   std::fill(x.begin() + std::ptrdiff_t(n_u_), x.end(), 0.0);

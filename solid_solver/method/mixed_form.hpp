@@ -13,19 +13,19 @@
 
 namespace couplet::solid {
 
-/// Approximate inverse of the Schur complement S = V / K_P + B (K' + mM)^-1 B^T of the mixed form, by a scalar
-/// matrix between the cells of each rank, made once (factors in the plane, conjugate gradients with multigrid in space). V / mu, as for Stokes' equations with elements that are stable, would
-/// do for smooth pressures alone: B^T p sees the means p_f of the faces, so that pressures which change their sign from
-/// cell to cell (rows, columns, checkerboards) do next to no work, and without them the iterations grow with the mesh.
+/// Approximate inverse of the Schur complement S = V/K_P + B (K' + mM)^-1 B^T. Uses one scalar matrix per
+/// rank, made once (factors in 2-D, CG with multigrid in 3-D). V/mu, as for stable elements in Stokes flow,
+/// works only for smooth pressures: B^T p uses face means p_f, so pressures alternating between cells (rows,
+/// checkerboards) do almost no work, and with V/mu the iterations grow with the mesh.
 ///
-/// Quadrilaterals, hexahedra, prisms: with W = B^T's part on cells (the Gauss gradient of p_f) squared over V and the
-/// two-point Laplacian L, which W is for smooth p but not for the others, S ~ V [s mu L + m rho V]^-1 W + V / K_P
-/// (commutators as in [elman2006], inertia as in [cahouet1988]). Triangles and tetrahedra, where inertia does not
-/// rule: S ~ sum_f V_f / (s mu) p_f^2 + V / K_P.
+/// Quadrilaterals, hexahedra, prisms: S ~ V [s mu L + m rho V]^-1 W + V/K_P, where W is the cell part of B^T
+/// (the Gauss gradient of p_f) squared over V, and L the two-point Laplacian, which equals W only for smooth
+/// p (commutators as in [elman2006], inertia as in [cahouet1988]). Triangles and tetrahedra, if inertia does
+/// not dominate: S ~ sum_f V_f/(s mu) p_f^2 + V/K_P.
 class PressureSchur {
  public:
   explicit PressureSchur(const SolidProblem& problem);
-  /// z ~ S^-1 r, r [m^3] and z [Pa] of the owned cells; this rank's alone.
+  /// z ~ S^-1 r with r [m^3] and z [Pa] of the owned cells, on this rank only.
   void apply(std::span<const double> r, std::span<double> z);
 
  private:
@@ -33,26 +33,26 @@ class PressureSchur {
   void by_gradients(const SolidProblem& problem, std::span<const double> volume);
   void by_faces(const SolidProblem& problem, std::span<const double> volume);
 
-  double unit_ = 1;                               // [Pa]: matrices without it are near 1
-  std::vector<double> inverse_volume_;            // by_gradients alone
-  std::unique_ptr<linalg::SparseMatrix> before_;  // by_gradients alone
-  std::unique_ptr<linalg::SparseMatrix> matrix_;  // that is solved with
+  double unit_ = 1;                               // [Pa]; scales matrices to about 1
+  std::vector<double> inverse_volume_;            // only by_gradients
+  std::unique_ptr<linalg::SparseMatrix> before_;  // only by_gradients
+  std::unique_ptr<linalg::SparseMatrix> matrix_;  // matrix of solver_
   std::unique_ptr<linalg::LinearSolver> solver_;
   std::vector<double> between_;
 };
 
-/// The symmetric operator with the mean stresses p of its cells as unknowns beside the displacements [boffi2013],
+/// Symmetric operator with the mean stresses p of its cells as additional unknowns [boffi2013],
 ///   [ K' + mM    B^T   ] [u]   [b]
-///   [    B     -V / K_P] [p] = [0],
-/// whose iterations hardly grow as nu goes to 1/2, where those of conjugate gradients on K = K' + B^T (K_P / V) B have no
-/// end. Preconditioner: block triangular, for p the Schur complement (PressureSchur), for u the compact
-/// component-wise operator of K' + mM (ElasticPreconditioner). p is no state of its own: the stress of u is K_P theta, so
-/// that rows of volumes are weighed by what is left of them there.
+///   [    B     -V / K_P] [p] = [0].
+/// The iterations hardly grow as nu goes to 1/2, whereas those of CG on K = K' + B^T (K_P/V) B diverge. The
+/// preconditioner is block triangular: PressureSchur for p, and the compact component-wise operator of K' +
+/// mM (ElasticPreconditioner) for u. p is not part of the state. The stress of u is K_P theta, so residuals
+/// of volume rows are weighted by it.
 class MixedForm final : public SolutionMethod {
  public:
   MixedForm(const SolidProblem& problem, const MethodParameters& parameters);
   linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
-  /// The rows of the mixed form and their preconditioner: displacements, then mean stresses over their scale. Collective.
+  /// Rows of the mixed form and their preconditioner: displacements, then scaled mean stresses. Collective.
   void apply(std::span<const double> x, std::span<double> y);
   void precondition(std::span<const double> r, std::span<double> z);
   std::size_t n_unknowns() const { return n_u_ + n_p_; }
@@ -63,7 +63,7 @@ class MixedForm final : public SolutionMethod {
 
   SolidProblem problem_;
   linalg::KrylovOptions options_;
-  double forces_left_;  // by the rows of volumes, over the right-hand side
+  double forces_left_;  // residual forces from volume rows, relative to the right-hand side
   std::size_t n_u_, n_p_;
   std::unique_ptr<elastic::ElasticPreconditioner> multigrid_;
   PressureSchur schur_;

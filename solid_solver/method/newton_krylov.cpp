@@ -15,25 +15,24 @@
 namespace couplet::solid {
 namespace {
 
-// Aggregates of the rigid coarse space: more gain little and their factors grow.
+// Maximum aggregates of the rigid coarse space: more hardly help, and their factors grow.
 constexpr int most_aggregates = 200;
-// Fewer cells than this in an aggregate, and its rigid motions are no longer smooth beside the cells.
+// Minimum cells per aggregate for its rigid motions to be smooth on the scale of cells.
 constexpr GlobalIndex cells_of_aggregate = 64;
-// The same of the symmetric operator, whose slender bodies alone have them; and fewest of either.
+// Likewise for the symmetric operator, only for slender bodies; and the minimum for both.
 constexpr GlobalIndex cells_of_slender_aggregate = 32;
 constexpr int fewest_aggregates = 8;
 constexpr GlobalIndex fewest_cells = 4;
-// Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube
-// has 3.
+// Length over thickness 2 V/S above which bending needs the rigid coarse space; a cube has 3.
 constexpr double slender = 12;
-// The same of the symmetric operator: from here on, or from the first where there are so many cells.
+// For the symmetric operator: slenderness, or this many cells for the first limit.
 constexpr double very_slender = 60;
 constexpr GlobalIndex many_cells = 4000;
-// Inertia over the stiffness of a cell's faces from which no motion is slow.
+// Inertia over the stiffness of a cell's faces above which no motion is slow.
 constexpr double heavy = 0.03;
-// Residual over right-hand side that double precision still gives.
+// Smallest relative residual attainable in double precision.
 constexpr double finest_tolerance = 1e-15;
-// Of a step of a motion by factors, which takes one or two: a product in three is saved.
+// For time steps with factors, which take one or two iterations; saves one product in three.
 constexpr int steps_carried = 3;
 
 }  // namespace
@@ -89,9 +88,9 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
     : problem_(problem),
       options_{parameters.relative_tolerance, parameters.max_iterations, problem.is_symmetric()} {
   using Preconditioner = MethodParameters::Preconditioner;
-  // Of a small step the right-hand side is nearly all inertia, rho V u 4/dt^2, and what is left of it would be a force
-  // of its own: the energy of free vibration drifted by 4e-3 in 1e5 steps at an elastic Courant number of 0.01. The
-  // tolerance is meant of the elastic part.
+  // In a small step the right-hand side is mostly inertia, rho V u 4/dt^2, and its residual would act as a
+  // force. The energy of free vibration drifted by 4e-3 in 1e5 steps at an elastic Courant number of 0.01.
+  // The tolerance therefore refers to the elastic part.
   if (problem.is_symmetric())
     options_.relative_tolerance =
         std::max(finest_tolerance, options_.relative_tolerance / std::max(1., heaviness(problem)));
@@ -169,12 +168,12 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
                         options.between ? " after " : " and ", multigrid_->coarse_space()->n_aggregates());
 }
 
-/// What bends a slender body varies too slowly for components by themselves: a beam 10:1 of 80x8x8 cells takes 53
-/// iterations with them and 143 without, one of 160x16x16 89 and 169, one 100:1 of 400x4x4 cubes 515 and 1945 (to 1e-10).
-/// A plate of 4600 cells gains six of its 46 iterations and no time; one of 295 000 takes 71 for 49.
+/// Bending of a slender body varies too slowly for component-wise multigrid. A beam 10:1 of 80x8x8 cells
+/// takes 53 iterations instead of 143, one of 160x16x16 89 instead of 169, one 100:1 of 400x4x4 cubes 515
+/// instead of 1945 (to 1e-10). A plate of 4600 cells saves 6 of 46 iterations; 295 000 take 71, not 49.
 void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
   const mesh::Mesh& mesh = problem_.mesh;
-  // Half as long as thick, where the cells are fine enough for that.
+  // Half as long as thick, if the cells are fine enough.
   const GlobalIndex cells = mesh.cells.n_global();
   const GlobalIndex aggregates = std::min<GlobalIndex>(
       most_aggregates, std::max(cells / cells_of_slender_aggregate,
@@ -230,7 +229,7 @@ linalg::SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span
     if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
     return statistics;
   } catch (const SolveFailure& e) {
-    // Never the method that has just failed.
+    // Suggests a method other than the failed one.
     const char* other = !problem_.is_symmetric() ? "{type: block-coupled, linear-solver: direct}"
                         : multigrid_             ? "{face-gradient: symmetric, preconditioner: factors}"
                                                  : "{face-gradient: corrected}";

@@ -15,9 +15,9 @@
 
 namespace couplet::solid {
 
-/// BiCGStab on the operator applied matrix-free. One Newton step: the problem is linear. Preconditioned by
-/// the compact component-wise operator and the rigid coarse space (ElasticPreconditioner), or, when the body
-/// is small and one matrix serves many steps, by the factors of the thesis's operator.
+/// BiCGStab on the matrix-free operator; one Newton step, because the problem is linear. Preconditioned by
+/// the compact component-wise operator and the rigid coarse space (ElasticPreconditioner). If the body is
+/// small and one matrix serves many steps, it uses factors of the thesis's operator instead.
 class NewtonKrylov final : public SolutionMethod {
  public:
   NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
@@ -34,24 +34,24 @@ class NewtonKrylov final : public SolutionMethod {
   linalg::KrylovOptions options_;
   std::unique_ptr<elastic::ElasticKernel> between_;
   std::unique_ptr<elastic::ElasticPreconditioner> multigrid_;
-  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // of slender bodies with the symmetric operator
+  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // for slender bodies with the symmetric operator
   std::unique_ptr<linalg::SparseMatrix> matrix_;
   std::unique_ptr<linalg::LinearSolver> factors_;
-  std::unique_ptr<elastic::TiedMatrix> tied_;  // in space
+  std::unique_ptr<elastic::TiedMatrix> tied_;  // in 3-D
   std::unique_ptr<linalg::KrylovSolver> krylov_;
 };
 
-/// A body as it lies in the reference configuration.
+/// Body in the reference configuration.
 elastic::DeformedBody at_rest(const mesh::Mesh& mesh);
 
-/// Largest extent of a body over its mean thickness 2 V / S: a beam in the plane L/h, one of square section 2 L/h, a cube 3. Collective.
+/// Largest extent over mean thickness 2 V/S: L/h (2-D beam), 2 L/h (square beam), 3 (cube). Collective.
 double slenderness(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
 
-/// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell; static: 0. On squares with the trapezoidal
-/// rule it is one over the elastic Courant number squared. Collective.
+/// Mean over cells of inertia over the sum of (2 mu + lambda) |S|/(d . n) over faces; 0 if static. For
+/// squares and the trapezoidal rule it is the inverse square of the elastic Courant number. Collective.
 double heaviness(const SolidProblem& problem);
 
-/// Row sums of the kernel's mass times its factor, one an unknown node; empty: static.
+/// Row sums of the kernel's mass times its factor, one per unknown node; empty if static.
 std::vector<double> node_inertia(const SolidProblem& problem);
 
 }  // namespace couplet::solid

@@ -13,7 +13,7 @@ namespace couplet::solid {
 
 namespace {
 
-// Of the residual of a component in one outer iteration, as in the thesis.
+// Reduction of a component's residual in one outer iteration, as in the thesis.
 constexpr double inner_tolerance = 1e-2;
 
 double stiffness(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index f) {
@@ -23,7 +23,7 @@ double stiffness(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, I
   return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
 
-/// What a boundary face adds on the diagonal of its cell.
+/// Contribution of a boundary face to the diagonal of its cell.
 double boundary_diagonal(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index f,
                          int component) {
   const mesh::Geometry& geometry = rows.geometry();

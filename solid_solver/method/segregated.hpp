@@ -15,16 +15,16 @@
 
 namespace couplet::solid {
 
-/// The implicit part of the segregated method, thesis (2.66)-(2.69): one scalar system a displacement component, face
-/// coefficient (2 mu + lambda) |S| / (d . n), solved by CG with incomplete Cholesky factors to a hundredth of its
-/// residual. Boundary unknowns follow from their own rows.
+/// Implicit part of the segregated method, thesis (2.66)-(2.69): one scalar system per displacement component
+/// with face coefficient (2 mu + lambda) |S|/(d . n). Solved by CG with incomplete Cholesky factors to a
+/// hundredth of the initial residual. Boundary unknowns follow from their own rows.
 class ScalarSystems {
  public:
-  /// `inertia` per owned cell [N/m], empty: static. Mesh (whose reference geometry counts) and rows by reference.
-  /// Collective.
+  /// `inertia`: per owned cell [N/m], empty if static. Keeps references to mesh (reference geometry) and
+  /// rows. Collective.
   ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                 std::span<const double> inertia);
-  /// The correction `step` that the systems make of a residual, both packed as the rows; gives their iterations.
+  /// Computes the correction `step` for a residual, both packed as the rows. Returns the iterations.
   /// Collective.
   int find_step(std::span<const double> residual, std::span<double> step);
 
@@ -38,18 +38,18 @@ class ScalarSystems {
   const mesh::Mesh& mesh_;
   const elastic::ElasticOperator& rows_;
   std::vector<Component> components_;
-  std::vector<double> own_;  // coefficient of each unknown of a face in its row
+  std::vector<double> own_;  // diagonal coefficient of each face unknown
   std::vector<double> b_, u_;
 };
 
-/// "segregated (Aitken every 5 iterations)"
+/// Name for the log, for example "segregated (Aitken every 5 iterations)".
 std::string segregated_name(const MethodParameters& parameters);
-/// What helps the outer iterations on.
+/// Acceleration of the outer iterations.
 linalg::Acceleration acceleration_of(const MethodParameters& parameters);
 
-/// The thesis's segregated method: outer iterations that each solve one scalar system a displacement component
-/// (ScalarSystems); what these leave out follows from the last iterate. The outer iteration is plain, or
-/// accelerated by Aitken (2.70) or Anderson.
+/// Segregated method of the thesis. Each outer iteration solves one scalar system per displacement component
+/// (ScalarSystems); the other terms use the last iterate. Outer iterations are plain, or accelerated by
+/// Aitken (2.70) or Anderson.
 class Segregated final : public SolutionMethod {
  public:
   Segregated(const SolidProblem& problem, const MethodParameters& parameters);

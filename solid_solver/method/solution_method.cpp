@@ -21,20 +21,20 @@ namespace {
 using MethodType = MethodParameters::Type;
 using Preconditioner = MethodParameters::Preconditioner;
 
-// Cells up to which factors of the least-squares gradient win, kept for all steps: in the plane they stay thin, in space they
-// fill quickly.
+// Largest number of cells for which factors of the least-squares gradient, kept for all steps, are faster;
+// they fill quickly in 3-D.
 constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 1500;
-// Bodies of so few cells have no coarser mesh.
+// Smaller bodies have no coarser mesh.
 constexpr GlobalIndex fewest_for_multigrid = 64;
-// Set-up of factors that spare a hard system the iterations, whatever the number of solves [s]: 60 000 cells in the plane and
-// 1500 hexahedra in space.
+// Set-up time of factors for a hard system, at any number of solves [s]: 60 000 cells in 2-D, 1500 hexahedra
+// in 3-D.
 constexpr double set_up_of_hard = 4.5;
-// In the plane, from so many cells up, steps in which a wave crosses less than a cell (heaviness 1) need so few iterations
-// that the factors cost more than they save: 9216 cells, 100 steps: 2.6 s of factors against 0.6, 1.0, 1.4 s at Courant
-// numbers of 0.1, 0.3, 1, in pairs; with 4096 cells factors still win. From about 3 up they win again, with any mesh.
+// Number of 2-D cells above which factors do not pay in steps in which a wave crosses less than a cell
+// (heaviness 1). With 9216 cells and 100 steps, factors take 2.6 s instead of 0.6, 1.0, 1.4 s at Courant
+// numbers of 0.1, 0.3, 1; with 4096 cells they are still faster. From about 3 they are faster on any mesh.
 constexpr GlobalIndex factors_beside_inertia = 5000;
 
-// K / mu from which conjugate gradients need more time than the mixed form, or never end: nu = 0.49.
+// K/mu above which CG takes longer than the mixed form or does not converge: nu = 0.49.
 constexpr double bulk_of_mixed_form = 49;
 
 bool wants_mixed_form(const SolidProblem& problem) {
@@ -47,7 +47,7 @@ bool wants_mixed_form(const SolidProblem& problem) {
   return parallel::max(problem.mesh.comm, ratio) >= bulk_of_mixed_form;
 }
 
-/// The mixed form has pressures where the volume strain is that of cells.
+/// The mixed form has pressures only if the volume strain is that of cells.
 void check_mixed_form(const SolidProblem& problem, const MethodParameters& parameters) {
   if (parameters.preconditioner != Preconditioner::mixed) return;
   if (!problem.is_symmetric())
@@ -58,20 +58,20 @@ void check_mixed_form(const SolidProblem& problem, const MethodParameters& param
         "selects cells from nu = 0.4): with the volume strain of faces there is no mean stress per cell.");
 }
 
-/// Steps so short that inertia makes the system easy. Collective.
+/// True if steps are so short that inertia makes the system easy. Collective.
 bool is_easy(const SolidProblem& problem) {
   return problem.mesh.dim == 2 && problem.mesh.cells.n_global() > factors_beside_inertia &&
          heaviness(problem) >= 1 && !wants_mixed_form(problem);
 }
 
-/// Whether the symmetric gradient's matrix is better factorised: the set-up is shared by all solves of the run.
+/// True if factorizing the symmetric gradient's matrix is cheaper; all solves of the run share the set-up.
 bool factors_pay(const SolidProblem& problem, const MethodParameters& parameters, bool is_hard) {
   if (is_axisymmetric(problem.elastic) || problem.mesh.cells.n_global() <= fewest_for_multigrid) return true;
   const FactorCost cost = factor_cost(problem.mesh, problem.geometry(), heaviness(problem));
   return cost.fits() && (is_hard ? cost.set_up <= set_up_of_hard : parameters.solves >= cost.pays_after());
 }
 
-/// Fills in what is left to the program; gives the reason.
+/// Resolves `automatic` settings. Returns the reason.
 std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   const GlobalIndex cells = problem.mesh.cells.n_global();
   const bool easy = is_easy(problem);
@@ -88,7 +88,7 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
           "'corrected'.");
     if (parameters.preconditioner == Preconditioner::automatic) {
       const bool mixed = wants_mixed_form(problem);
-      // Stiffnesses of several materials may be far apart.
+      // Stiffnesses of several materials may differ strongly.
       const bool is_hard = mixed || parallel::any(problem.mesh.comm, !problem.mesh.cell_material.empty());
       const bool direct = factors_pay(problem, parameters, is_hard);
       parameters.preconditioner = direct  ? Preconditioner::factors
@@ -98,8 +98,8 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
     parameters.type = MethodType::newton_krylov;
     return why;
   }
-  // As in NewtonKrylov for the symmetric pair: the tolerance is meant of the elastic part, or energies drift (2e-6 in 1000
-  // steps at a Courant number of 0.01, 1e-10 so).
+  // As in NewtonKrylov, the tolerance of the symmetric pair refers to the elastic part. Energies would drift
+  // otherwise (2e-6 instead of 1e-10 in 1000 steps at a Courant number of 0.01).
   if (easy)
     parameters.relative_tolerance = std::min(
         parameters.relative_tolerance, std::max(1e-13, parameters.relative_tolerance / heaviness(problem)));
@@ -189,15 +189,15 @@ double norm(MPI_Comm comm, std::span<const double> values) {
 
 namespace {
 
-// All measured by benchmarks/linalg/factors.py. Libraries of the factors [s], an entry of them read and multiplied twice [s].
+// Measured by benchmarks/linalg/factors.py. Loading of libraries [s]; reading an entry twice [s].
 constexpr double loading = 0.1, entry_time = 4e-9;
-// Entries a block of rows: two or three rows with as many columns, CHOLMOD's of the nodes and MUMPS's with the vertices.
+// Entries per block of two or three rows and columns: CHOLMOD's of the nodes, MUMPS's including vertices.
 constexpr double plane_entries = 25, space_entries = 75;
-// Set-up over a solve: analysis and elimination.
+// Ratio of set-up to a solve: analysis and elimination.
 constexpr double plane_set_up = 70, space_set_up = 120;
-// A term of a face in a product and a cycle of multigrid [s], iterations of a motion, whose guesses are good.
+// Time of a face's term in a product and a multigrid cycle [s]; iterations, and those with good guesses.
 constexpr double term_time = 11e-9, iterations = 30, iterations_of_simplices = 100;
-// The lighter the stiffness beside the inertia, the fewer: 21, 14, 8 for a heaviness of 1, 10, 100.
+// Exponent of the iterations in heaviness: 21, 14, 8 for 1, 10, 100.
 constexpr double lightening = 0.25;
 
 struct Counts {
@@ -233,7 +233,7 @@ FactorCost factor_cost(const mesh::Mesh& mesh, const mesh::Geometry& geometry, d
   if (mesh.dim == 2) {
     cost.entries = plane_entries * n.cells * std::max(1.0, std::log2(n.cells / length));
   } else {
-    // Each vertex with its multiplier.
+    // Each vertex includes its multiplier.
     const double rows = n.nodes + 2 * n.points;
     cost.entries = space_entries * rows * std::max(std::cbrt(rows / length), std::log2(rows) / 2);
     set_up = space_set_up;

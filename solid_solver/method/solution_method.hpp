@@ -15,16 +15,16 @@
 
 namespace couplet::solid {
 
-/// What a method solves: (diag(inertia) + A) u = b with the rows and unknowns of ElasticOperator. All that is
-/// referred to must outlive the method.
+/// Linear system (diag(inertia) + A) u = b with the rows and unknowns of ElasticOperator. All references must
+/// outlive the method.
 struct SolidProblem {
   const mesh::Mesh& mesh;
   const elastic::ElasticOperator& elastic;
-  std::span<const double> inertia;       ///< per owned cell [N/m]; empty: static
-  const elastic::ElasticKernel& kernel;  ///< A, with the face gradient that was chosen
-  double mass_factor = 0;                ///< of the kernel's own mass [1/s^2], where it has one
-  const RigidPatches* rigid = nullptr;   ///< null: no patch moves as a rigid body
-  /// Where the body stands.
+  std::span<const double> inertia;       ///< per owned cell [N/m]; empty if static
+  const elastic::ElasticKernel& kernel;  ///< A, with the selected face gradient
+  double mass_factor = 0;                ///< of the kernel's own mass [1/s^2], if it has one
+  const RigidPatches* rigid = nullptr;   ///< nullptr if no patch moves as a rigid body
+  /// Configuration of the body.
   const mesh::Geometry& geometry() const { return elastic.geometry(); }
   bool is_static() const { return inertia.empty(); }
   bool is_symmetric() const { return kernel.is_symmetric(); }
@@ -35,18 +35,18 @@ struct SolidProblem {
   void residual(std::span<const double> b, std::span<const double> u, std::span<double> r) const;
 };
 
-/// Solves one problem again and again: what does not change with b is made once. Collective.
+/// Solves one problem repeatedly; data that do not depend on b are created once. Collective.
 class SolutionMethod {
  public:
   virtual ~SolutionMethod() = default;
   /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
   /// SolveFailure if the tolerance was not reached.
   virtual linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
-  /// z near A^-1 r, symmetric and positive, by what the iteration has at hand; false: there is nothing. Collective.
+  /// Applies a symmetric positive approximation of A^-1 to r, if available; else returns false. Collective.
   virtual bool approximate_inverse(std::span<const double> /*r*/, std::span<double> /*z*/) { return false; }
-  /// What the next first guess learns from accepted steps; none: nothing.
+  /// Learns first guesses from accepted steps; nullptr if there is none.
   linalg::ResidualProjection* projection() const { return projection_.get(); }
-  /// "block-coupled (direct), thesis's face gradient": for the log, with the reason if the program chose.
+  /// For the log, such as "block-coupled (direct), thesis's face gradient", with the reason of `automatic`.
   const std::string& name() const { return name_; }
 
  protected:
@@ -57,34 +57,34 @@ class SolutionMethod {
   friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);
 };
 
-/// The method that the parameters ask for; `automatic` picks by size and scene, the name says what and why.
+/// Creates the requested method. `automatic` chooses by size and case; the name states the reason.
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& parameters);
 
-/// The face gradient that the parameters ask for; `automatic`: the symmetric one, which neither locks nor lets motion grow,
-/// or the thesis's where the symmetric one cannot be (symmetric_suits()).
+/// Requested face gradient. `automatic` is the symmetric one, which neither locks nor lets motion grow, or
+/// the thesis's if the symmetric one is not applicable (symmetric_suits()).
 elastic::FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
 
 /// Euclidean norm over all ranks.
 double norm(MPI_Comm comm, std::span<const double> values);
 
-/// What the factors of the symmetric gradient's matrix cost beside multigrid, processor seconds of one core of the machine
-/// that benchmarks/linalg/factors.csv was measured on; their ratios are what counts.
+/// Cost of factors of the symmetric gradient's matrix compared with multigrid. CPU seconds of one core of the
+/// machine used for benchmarks/linalg/factors.csv; only ratios matter.
 struct FactorCost {
   double entries;   ///< non-zeros of the factors
   double set_up;    ///< [s]
   double solve;     ///< with the factors [s]
-  double by_cycle;  ///< a solve by conjugate gradients with multigrid [s]
-  /// So many solves with one matrix are as cheap by factors as by multigrid; infinity: never.
+  double by_cycle;  ///< one solve by CG with multigrid [s]
+  /// Number of solves with one matrix at which factors become cheaper than multigrid; may be infinite.
   double pays_after() const;
-  /// They fit into the memory that a body of this size may take.
+  /// True if the factors fit into the memory allowed for a body of this size.
   bool fits() const { return entries <= most_entries; }
 
   static constexpr double most_entries = 1e8;  // 1 GB
 };
 
-/// Estimated from the mesh: nested dissection leaves N log2 N entries of a plane's matrix [george1973] and N (N / l)^(1/3) of
-/// a body l times as long as thick, N the blocks of rows. `heaviness`: see newton_krylov.hpp. Collective.
+/// Estimates the cost from the mesh. Nested dissection gives N log2 N entries in 2-D [george1973], and
+/// N (N/l)^(1/3) for a body of aspect ratio l; N: row blocks. `heaviness`: see newton_krylov.hpp. Collective.
 FactorCost factor_cost(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double heaviness);
 
 }  // namespace couplet::solid

@@ -10,7 +10,7 @@ namespace couplet::solid {
 
 namespace {
 
-/// A displacement with ghosts and points.
+/// Displacement including ghosts and points.
 struct Placed {
   std::vector<double> cells, faces, points;
   BodyField field() const { return {cells, faces, points}; }
@@ -47,8 +47,8 @@ SolidLedger::SolidLedger(const SolidBody& body)
       elastic_(body.elastic()),
       kernel_(body.kernel()) {}
 
-/// Work of the stress of one displacement on the change of another in cells and on faces, over all faces: sum
-/// of sigma . S . jump. `on_boundary`: the share of the boundary's forces on the boundary's change.
+/// Work of the stress of one displacement on the change of another over all faces: sum of sigma . S . jump.
+/// `on_boundary`: part of the boundary forces.
 double SolidLedger::stress_work(const BodyField& stressed, const BodyField& change,
                                 double* on_boundary) const {
   const int dim = mesh_.dim;
@@ -105,7 +105,7 @@ void SolidLedger::add_work(const SolvedStage& stage) const {
     add_finite_work(stage);
 }
 
-/// By the forces of the faces.
+/// Adds the work computed from face forces.
 void SolidLedger::add_face_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const int dim = mesh_.dim;
@@ -113,14 +113,14 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = after.cell_u[i] - before.cell_u[i];
   for (std::size_t i = 0; i < faces.size(); ++i) faces[i] = after.face_u[i] - before.face_u[i];
   mesh_.cells.update_ghosts(cells, dim);
-  // Supports: the change over the stage, which the state of the faces may not hold yet.
+  // Supports use the change over the stage, which the state of the faces may lack.
   elastic_.impose_known(work.known_change, faces);
   mesh_.boundary.update_ghosts(faces, dim);
   elastic_.join_twins(faces);
   const BodyField change{cells, faces, {}};
   double outside = 0;
   const double inside = stress_work(place_unknowns(body_, work, last.unknowns).field(), change, &outside);
-  // Body forces and effects stand in the rows without the known force of the faces.
+  // The rows contain body forces and effects without the known face forces.
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
   for (std::size_t i = 0; i < n_cells; ++i) outside += work.loads[i] * cells[i];
   const auto& free = elastic_.unknown_faces();
@@ -133,7 +133,7 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
   const double dt = work.stage.dt, beta = damping.stiffness;
   double loss = 0;
   if (beta > 0) {
-    // sigma(w) = sigma(x) + beta sigma(v); v is the change over the stage by its length.
+    // sigma(w) = sigma(x) + beta sigma(v); v is the change over the stage divided by its length.
     const std::vector<double> points = body_.to_points(cells, faces, work.known_change);
     loss = beta / dt * stress_work({cells, faces, points}, change, nullptr);
   }
@@ -154,7 +154,7 @@ std::vector<double> SolidLedger::change_over(const SolvedStage& stage) const {
   return change;
 }
 
-/// With the symmetric kernel, whose own products these are: all that acts by its trial functions.
+/// For the symmetric kernel, whose own products these are: work of all forces by its trial functions.
 void SolidLedger::add_symmetric_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const std::vector<double> change = change_over(stage);
@@ -176,7 +176,7 @@ void SolidLedger::add_symmetric_work(const SolvedStage& stage) const {
   energies.kinetic = kinetic(after);
 }
 
-/// At large strain the inner work is the scheme's inner force at its place on the change over the stage.
+/// At large strain: work of the scheme's internal force at its place on the change over the stage.
 void SolidLedger::add_finite_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const std::vector<double> change = change_over(stage);
@@ -199,8 +199,8 @@ void SolidLedger::add_finite_work(const SolvedStage& stage) const {
   energies.kinetic = kinetic(after);
 }
 
-/// Of the schemes other than the trapezoidal rule: the loads of a stage at its place become the mean of those at
-/// its ends, whose work on the change is second order.
+/// For schemes other than the trapezoidal rule: mean of the loads at both ends of a stage, whose work on the
+/// change is second order.
 std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
                                               const std::vector<double>& at_place) const {
   std::vector<double> rows = at_place;
@@ -256,10 +256,10 @@ SolidEnergies SolidLedger::summed(SolidEnergies e) const {
   return e;
 }
 
-// Work of what holds the body and of its loads.
+// Work of the supports and their loads.
 
-/// What holds the known nodes does: against stress, springs and damping on their change, against inertia on the mean of
-/// their velocities, so that the kinetic energy of both ends balances to rounding.
+/// Work of the supports on known nodes. Against stress, springs and damping it uses their change, against
+/// inertia their mean velocities, so that the kinetic energies balance to round-off.
 double SolidLedger::known_work(const SolvedStage& stage) const {
   const auto& [work, last, before, trial] = stage;
   const double dt = work.stage.dt;
@@ -268,7 +268,7 @@ double SolidLedger::known_work(const SolvedStage& stage) const {
   double sum = kernel_.product(elastic::ElasticPart::stiffness, w, known) +
                kernel_.product(elastic::ElasticPart::springs, w, known);
   if (!body_.prescribed().uses_time()) return sum;  // not by the size: a rank may hold nothing
-  // The mean over the stage, which the trapezoidal rule has at its place.
+  // Mean over the stage, which is the place of the trapezoidal rule.
   const std::vector<double> after = body_.unknowns_of(trial.cell_v, trial.face_v);
   std::vector<double> rate = body_.unknowns_of(before.cell_v, before.face_v), velocity = rate;
   for (std::size_t i = 0; i < rate.size(); ++i) {

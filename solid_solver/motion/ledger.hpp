@@ -9,7 +9,7 @@
 
 namespace couplet::solid {
 
-/// Between which states a stage led, and what was solved for it. The sums go into `after`.
+/// Start and end states of a stage, and its solution. Energies are accumulated in `after`.
 struct SolvedStage {
   const StageWork& work;
   const LastSolve& last;
@@ -17,26 +17,26 @@ struct SolvedStage {
   SolidState& after;
 };
 
-/// Energies of a body and what is done to it; it keeps none. Sums are this rank's unless said.
+/// Computes energies of a body and work done on it; stores none. Sums are over this rank unless stated.
 class SolidLedger final {
  public:
-  /// By reference.
+  /// Keeps a reference.
   explicit SolidLedger(const SolidBody& body);
 
-  /// [J]
+  /// Kinetic energy [J].
   double kinetic(const SolidState& state) const;
-  /// Kept in the springs of the seat, and what it kept when the body was placed; over all ranks [J]. Collective.
+  /// Energy in the springs of the seat, and its initial value; over all ranks [J]. Collective.
   double contact(const SolidState& state) const;
   double initial_contact() const;
-  /// Of the state that a run starts from, its supports moving from then on: their rate from the first step's length. [J]
+  /// Kinetic energy of the initial state, with the support velocities of the first step [J].
   double initial_kinetic(const SolidState& start, double dt) const;
-  /// Energies over all ranks; needs output.energies. `points`: its displacement there. Collective.
+  /// Energies over all ranks; requires output.energies. `points`: displacement there. Collective.
   SolidEnergies total(const SolidState& state, std::span<const double> points) const;
-  /// Work of a stage, damping and kinetic energy at its end. Collective.
+  /// Adds work, damping loss and final kinetic energy of a stage. Collective.
   void add_work(const SolvedStage& stage) const;
-  /// Work of body forces, tractions, pressures and the interface over a stage: what the audit holds against
-  /// the energy found. Moving supports and effects do work that is not counted; no audit then. `before`: of
-  /// cells and faces at the start of the stage.
+  /// Adds the work of body forces, tractions, pressures and interface over a stage, for the audit. Work of
+  /// moving supports and effects is not counted, so there is no audit then. `before`: cells and faces at the
+  /// start of the stage.
   void add_load_work(const StageWork& work, const LastSolve& last, const BodyField& before,
                      SolidState& after) const;
 

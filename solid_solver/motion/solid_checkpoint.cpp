@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of a solid and what its next first guesses learn from, on file.
+// State of a solid and data for its next first guesses in a file.
 #include <fmt/format.h>
 
 #include <array>
@@ -19,7 +19,7 @@ namespace {
 
 using mesh::Entries;
 
-/// The arrays of a state by their names on file; those that a scheme does not have are empty in a fresh state, too.
+/// Arrays of a state by their names in the file; those unused by a scheme are empty.
 template <class State, class Visit>
 void visit_arrays(State& s, bool has_mass, Visit visit) {
   visit(Entries::cells, "cell-displacement", s.cell_u);

@@ -93,7 +93,7 @@ void SolidStepper::start_from_rest() {
   trial_ = state_;
 }
 
-// All that was made for the old constants goes.
+// Discards all data made for the old constants.
 void SolidStepper::apply_stiffness() {
   if (!body_.apply_stiffness()) return;
   systems_.clear();
@@ -182,21 +182,21 @@ void SolidStepper::release_solver() {
   }
 }
 
-// The local error of a step, and the step size that follows from it.
+// Local error of a step, and the resulting step size.
 
 namespace {
 
-// The next step aims below the tolerance by this factor, so that few steps are refused.
+// Safety factor of the tolerance for the next step, so that few steps are rejected.
 constexpr double safety = 0.85;
 
-// The errors of several steps add up before damping and dissipation forget them.
+// Share of the tolerance per step, because errors add up until damping and dissipation reduce them.
 constexpr double share_of_a_step = 0.1;
 
 }  // namespace
 
-// Error of a step: constant dt^3 d3u/dt3 (Euler: constant dt^2 d2u/dt2), with d3u/dt3 from the mean
-// accelerations of this step and the last one. A coupled step is not refused here: its iterates come before
-// the load has settled.
+// Error of a step: constant dt^3 d3u/dt3 (Euler: constant dt^2 d2u/dt2) with d3u/dt3 from the mean
+// accelerations of the last two steps. A coupled step is not rejected here, because its iterates precede
+// convergence of the load.
 void SolidStepper::judge_step() {
   const time::LocalError local = time::local_error(scheme_of(parameters_));
   const double dt = step_.dt, apart = 0.5 * (dt + state_.dt);

@@ -14,50 +14,50 @@
 
 namespace couplet::solid {
 
-/// The motion of a body in the reference configuration. A dynamic step runs through the stages of its time
-/// scheme (common/time). At the place of a stage x is the displacement, v = c x + v_h the velocity and
-/// a = d x + a_h the acceleration, v_h and a_h being known. With Rayleigh damping (2.79), w = x + beta v and
-/// s = 1 + beta c, hence x = (w - beta v_h) / s, what is solved is
+/// Motion of a body in the reference configuration. A dynamic step runs through the stages of its time scheme
+/// (common/time). In a stage, x is the displacement, v = c x + v_h the velocity and a = d x + a_h the
+/// acceleration, with known v_h and a_h. With Rayleigh damping (2.79), w = x + beta v and s = 1 + beta c give
+/// x = (w - beta v_h)/s. The equation is
 ///   rho V (d + alpha c) / s w - sum_f sigma(w) . S_f =
 ///       loads - rho V (a_h + alpha v_h - (d + alpha c) / s beta v_h).
-/// The trapezoidal rule solves in the middle of the step, where the interface load lives, which keeps the
-/// coupled step second order. The other schemes take the interface load of the step in all their stages.
-/// Traction faces have no inertia: at n+1 their offset from the cell is extrapolated from the places of this
-/// stage and the last one, never fed back into the solution, so that they do not ring.
+/// The trapezoidal rule solves at mid-step, where the interface load is defined, so the coupled step is
+/// second order. The other schemes use the interface load of the step in all stages. Traction faces have no
+/// inertia. Their offset from the cell at n+1 is extrapolated from this stage and the last one, and never fed
+/// back, so that it does not ring.
 class SolidStepper final {
  public:
-  /// At rest, or with the initial velocity. The body by reference. Collective.
+  /// Starts at rest or with the initial velocity. Keeps a reference to the body. Collective.
   explicit SolidStepper(SolidBody& body);
 
   /// The accepted state.
   const SolidState& state() const { return state_; }
   /// State at the end of the last solve(); after accept_step() the state before the accepted one.
   const SolidState& trial() const { return trial_; }
-  /// The step under way, or the last one.
+  /// Current or last step.
   const coupling::Step& step() const { return step_; }
   const SolidLedger& ledger() const { return ledger_; }
   const LastSolve& last_solve() const { return last_; }
   const SolverEffort& effort() const { return effort_; }
-  /// What solved last; null: nothing has, or large strain by itself.
+  /// Last method used; nullptr if there is none or large strain has its own.
   SolutionMethod* method() const { return systems_.empty() ? nullptr : systems_.front()->method.get(); }
   /// Largest step that the estimated error allows [s]; infinity if it is not controlled.
   double suggest_dt() const;
 
-  /// A step is tried; its loads are those at hand if `has_loads`, else prepare_loads() follows before solve().
+  /// Starts a step. If `has_loads`, the loads are current; otherwise prepare_loads() must precede solve().
   void begin_step(const coupling::Step& step, bool has_loads);
-  /// Effects, systems and right-hand sides of the stages. Collective.
+  /// Prepares effects, systems and right-hand sides of the stages. Collective.
   void prepare_loads();
-  /// `interface_load`: forces, `dim` values a boundary face of owned cells; empty: none. Throws SolveFailure.
+  /// `interface_load`: forces, `dim` values per boundary face of owned cells, or empty. Throws SolveFailure.
   void solve(std::vector<double> interface_load);
-  /// What was tried is the state now. Cannot fail.
+  /// Accepts the current step. Cannot fail.
   void accept_step();
-  /// Frees what solves if nothing is solved any more: at the end of a static run, before its files, which need room.
+  /// Frees the solvers at the end of a static run, before its output, which needs memory.
   void release_solver();
 
   void save_state(io::CheckpointWriter& file) const;
   void load_state(io::CheckpointReader& file);
-  /// First guesses decide what is left below the tolerance: a run that continues makes the same ones. Loading
-  /// comes after that of the effects.
+  /// First guesses affect results below the tolerance, so a restarted run uses the same ones. Load them after
+  /// the effects.
   void save_guesses(io::CheckpointWriter& file) const;
   void load_guesses(io::CheckpointReader& file);
 
@@ -93,9 +93,9 @@ class SolidStepper final {
   const elastic::ElasticOperator& elastic_;
   const elastic::ElasticKernel& kernel_;
   const SolidLedger ledger_;
-  std::vector<std::unique_ptr<SolidSystem>> systems_;  // those used last, latest first
-  std::vector<StageWork> stages_;                      // of the step under way
-  std::string method_announced_;                       // what the log said last
+  std::vector<std::unique_ptr<SolidSystem>> systems_;  // most recent first
+  std::vector<StageWork> stages_;                      // of the current step
+  std::string method_announced_;                       // last one written to the log
   SolidState state_, trial_;
   coupling::Step step_;
   SolverEffort effort_;

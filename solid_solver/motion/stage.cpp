@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One stage of a step: the system, its right-hand side, its solution (equations: SolidStepper).
+// One stage of a step: system, right-hand side and solution (equations: SolidStepper).
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@
 namespace couplet::solid {
 namespace {
 
-// Systems of other step sizes that are kept: a step that was halved soon comes back to its length.
+// Number of systems kept for other step sizes, because a halved step soon returns to its length.
 constexpr std::size_t systems_kept = 2;
 
 }  // namespace
@@ -22,7 +22,7 @@ constexpr std::size_t systems_kept = 2;
 std::vector<time::Stage> SolidStepper::stages_of(double dt) const {
   if (body_.is_dynamic())
     return time::second_order_stages(scheme_of(parameters_), dt, {state_.steps, state_.dt});
-  // No inertia, no damping; velocities are differences.
+  // No inertia or damping; velocities are differences.
   time::Stage still{.dt = dt};
   still.end_value.x = 1;
   still.end_rate.x = 1 / dt;
@@ -91,7 +91,7 @@ void SolidStepper::prepare_stage(StageWork& work) {
   if (!body_.prescribed().is_zero()) subtract_prescribed(work);
 }
 
-// Known w = x + beta v: the value between the ends is the same mean of them as in the cells.
+// Known w = x + beta v: interpolated between the ends as in the cells.
 void SolidStepper::subtract_prescribed(StageWork& work) {
   const double place = work.stage.place, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
   std::vector<double> start(trial_.known.size());
@@ -144,7 +144,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
   if (first) trial_.energies = state_.energies, trial_.load_work = state_.load_work;
   if (first && state_.steps == 0 && body_.prescribed().uses_time())
     trial_.energies.initial_kinetic = ledger_.initial_kinetic(state_, step_.dt);
-  // A second stage starts from the trial state, which is about to change.
+  // A second stage starts from the trial state, which will change.
   const bool keeps = body_.is_dynamic() && !first;
   const std::vector<double> cells = keeps ? now.cell_u : std::vector<double>();
   const std::vector<double> faces = keeps ? now.face_u : std::vector<double>();
@@ -160,7 +160,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
   ledger_.add_work({work, last_, before, trial_});
 }
 
-/// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
+/// A static guess uses the previous known displacements; a dynamic one is extrapolated with its velocity.
 linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work, const SolidState& now) {
   LoadPath* path = body_.equilibrium().load_path();
   if (path) body_.set_load_factor(1);
@@ -186,7 +186,7 @@ linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work, co
   return found;
 }
 
-/// The loads of the solve are those at a load factor.
+/// Scales the loads of the solve by a load factor.
 void SolidStepper::scale_loads(const StageWork& work, double factor) {
   body_.set_load_factor(factor);
   for (double& v : last_.rhs) v *= factor;
@@ -212,7 +212,7 @@ void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
   }
 }
 
-/// All nodes have inertia, known ones that of their own acceleration (and mass damping of their velocity).
+/// All nodes have inertia, known ones by their own acceleration (and mass damping by their velocity).
 void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& now,
                                       const time::Levels& known) {
   const History cells(now, state_, false), faces(now, state_, true);
@@ -234,7 +234,8 @@ void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& n
   for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
 }
 
-/// A partner's load is its mean over the step: that of the middle. Where the stage is solved it is continued from the middle of the last step.
+/// A partner's load is its mean over the step, valid at mid-step. It is extrapolated to the stage from the
+/// last mid-step.
 void SolidStepper::add_face_forces(const StageWork& work) {
   if (last_.interface.empty()) {
     last_.face_force = kernel_.add_face_forces(work.face_force, last_.rhs);
@@ -249,11 +250,10 @@ void SolidStepper::add_face_forces(const StageWork& work) {
   last_.face_force = kernel_.add_face_forces(force, last_.rhs);
 }
 
-// The first guess of a stage and what follows from its solution (equations: SolidStepper).
+// First guess of a stage and data from its solution (equations: SolidStepper).
 
-// For iterative methods: where the accepted motion leads, so that equal loads give equal answers.
-// Thesis (2.73): u^n + a v^n; (2.74): and a^2 / (2 dt^n) (v^n - v^{n-1}), a the way to the place of the
-// stage.
+// Guess for iterative methods from the accepted motion, so that equal loads give equal results. Thesis
+// (2.73): u^n + a v^n; (2.74) adds a^2/(2 dt^n) (v^n - v^{n-1}), with a the time to the place of the stage.
 void SolidStepper::guess(const StageWork& work, const SolidState& now) {
   using Predictor = MethodParameters::Predictor;
   const Predictor predictor = parameters_.method.predictor;
@@ -299,7 +299,7 @@ void SolidStepper::finish_cells(const StageWork& work, const SolidState& now) {
     }
 }
 
-/// As the cells, where faces have inertia. What a support knows is imposed at the end of the step.
+/// Like the cells, if faces have inertia. Known support values are imposed at the end of the step.
 void SolidStepper::finish_faces(const StageWork& work, const SolidState& now) {
   const time::Stage& stage = work.stage;
   const double s = work.damping_scale, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
@@ -319,10 +319,10 @@ void SolidStepper::finish_faces(const StageWork& work, const SolidState& now) {
     }
 }
 
-// Leaves in the faces what finish_cells() adds to their cells' values:
-// delta = u_B - u_P at the end of the stage from the places of this solve and the last one (the trapezoidal
-// rule with equal steps: 3/2 and -1/2), its rate likewise from the difference of the ends, which lives in the
-// middle. Stiffness damping makes w of the solve lead: w_B - w_P = delta + beta d(delta)/dt.
+// Stores in the faces the offset that finish_cells() adds to cell values: delta = u_B - u_P at the end of the
+// stage, extrapolated from this solve and the last one (trapezoidal rule with equal steps: 3/2 and -1/2). Its
+// rate, valid at mid-step, follows from the ends. With stiffness damping w leads: w_B - w_P = delta + beta
+// d(delta)/dt.
 void SolidStepper::finish_offsets(const time::Stage& stage, const SolidState& now) {
   if (body_.has_mass()) return;
   const int dim = mesh_.dim;
@@ -350,8 +350,8 @@ void SolidStepper::finish_offsets(const time::Stage& stage, const SolidState& no
   trial_.offset_lag = lag;
 }
 
-// The mean over a step lives in its middle, in every scheme; at n+1 it is extrapolated from the last two.
-// Traction faces have that of their cell and the change of their offset's rate.
+// The mean over a step is valid at mid-step in every scheme; at n+1 it is extrapolated from the last two.
+// Traction faces use that of their cell and the change of their offset's rate.
 void SolidStepper::finish_acceleration() {
   const double dt = step_.dt, slope = state_.steps > 0 ? dt / (dt + state_.dt) : 0;
   for (std::size_t i = 0; i < trial_.acceleration.size(); ++i) {
@@ -364,7 +364,7 @@ void SolidStepper::finish_acceleration() {
     for (int a = 0; a < dim; ++a) {
       const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
       const std::size_t c = std::size_t(mesh_.owner[f]) * dim + a;
-      // Faces with inertia: as their cell, with what their own velocity changes more.
+      // Faces with inertia: that of their cell plus the additional change of their own velocity.
       const double rate = trial_.face_v[b] - trial_.cell_v[c], before = state_.face_v[b] - state_.cell_v[c];
       trial_.face_acceleration[b] = trial_.acceleration[c] + (rate - before) / dt;
     }

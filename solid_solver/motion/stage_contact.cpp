@@ -5,7 +5,7 @@ namespace couplet::solid {
 
 namespace {
 
-/// The part of a displacement shown that does not depend on w: of levels `shown` of x = (w - beta v_h) / s.
+/// Part of a displacement independent of w, from levels `shown` of x = (w - beta v_h)/s.
 std::vector<double> known_part(const SolidBody& body, const StageWork& work, const time::Levels& shown,
                                const SolidState& now, const SolidState& start) {
   const mesh::Mesh& mesh = body.mesh();

@@ -11,8 +11,8 @@
 
 namespace couplet::solid {
 
-/// Combinations of levels for one component after another, of cells or of faces. `start`: the state at the start of
-/// the step, which is the old level of a second stage.
+/// Linear combinations of time levels per component of cells or faces. `start`: state at the start of the
+/// step, which is the old level of a second stage.
 class History {
  public:
   History(const SolidState& now, const SolidState& start, bool of_faces)
@@ -34,9 +34,9 @@ class History {
   std::span<const double> u_, v_, a_, u_old_, v_old_;
 };
 
-/// The answer of the seat to what a stage solves for, w = x + beta v: with the conserving rule by the penetration at the end of the
-/// step, else where the stage has its equilibrium. `now`: where the stage starts, `start`: where its step does. None: there is no
-/// seat. Collective.
+/// Response of the seat to the unknown w = x + beta v of a stage. The conserving rule uses the penetration at
+/// the end of the step, other schemes that at the stage's equilibrium. `now`: start of the stage, `start`:
+/// start of the step. Empty without a seat. Collective.
 std::optional<Pressing> pressing_of(const SolidBody& body, const StageWork& work, const SolidState& now,
                                     const SolidState& start);
 

@@ -35,11 +35,11 @@ double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress) 
 
 namespace {
 
-// Ratios sought beyond those wanted, for a gap in which the pivots are counted.
+// Additional ratios computed, for a gap in which the pivots are counted.
 constexpr int extra = 3;
-// A ratio 1/lambda below this part of the largest one is rounding of a load that buckles nothing.
+// A ratio 1/lambda below this part of the largest one is round-off of a load without buckling.
 constexpr double ratio_rounding = 1e-9;
-// Of the lowest frequency's square of the body's own size, see modal_analysis: where the shift lies.
+// Shift relative to the scale of the lowest squared frequency, see modal_analysis.
 constexpr double loaded_shift_part = 1e-4;
 
 void check_buckling_of(const SolidBody& body) {
@@ -57,7 +57,7 @@ void make_largest_one(MPI_Comm comm, std::vector<double>& shape) {
     for (double& v : shape) v /= largest;
 }
 
-/// Whether exactly `n` factors lie below `s`.
+/// True if exactly `n` factors are below `s`.
 bool counts(const SolidBody& body, const elastic::Prestress& prestress, double s, std::size_t n) {
   elastic::TiedMatrix loaded(body.mesh(), body.elastic(), {.stress = s, .prestress = &prestress});
   loaded.factorise();
@@ -70,7 +70,7 @@ double largest_stress(const SolidBody& body, const elastic::Prestress& prestress
   return parallel::max(body.mesh().comm, largest);
 }
 
-/// The factor at which the stress is as large as Young's modulus: what does not buckle below buckles nowhere.
+/// Factor at which the stress equals Young's modulus; buckling beyond is ignored.
 double overload(const SolidBody& body, const elastic::Prestress& prestress) {
   double stiffest = 0;
   for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
@@ -112,7 +112,7 @@ Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestres
       make_largest_one(mesh.comm, result.shape.back());
     }
     if (result.factor.size() < 2) return result;
-    // In the widest gap beyond the wanted ones.
+    // Uses the widest gap beyond the wanted ones.
     std::size_t end = std::min(std::size_t(n), result.factor.size() - 1);
     double widest = 0;
     for (std::size_t i = end; i < result.factor.size(); ++i)

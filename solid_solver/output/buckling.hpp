@@ -9,25 +9,25 @@
 
 namespace couplet::solid {
 
-/// Of the linear solution that the fields hold, under the pressures at `time` (type: pressure), which follow the surface; tractions and
-/// forces keep their direction. Collective.
+/// Prestress of the linear solution in `fields` with the pressures at `time` (type: pressure), which follow
+/// the surface. Tractions and forces keep their direction. Collective.
 elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time);
 
-/// The largest compression in it [Pa], at least 0. Collective.
+/// Largest compression in it [Pa], at least 0. Collective.
 double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress);
 
-/// (K + lambda K_sigma) x = 0: the given loads times lambda make the equilibrium of the linear theory neutral.
+/// (K + lambda K_sigma) x = 0: lambda times the loads make the linear equilibrium neutral.
 struct Buckling {
-  std::vector<double> factor;              ///< lambda above 0, ascending; empty: these loads buckle nothing
+  std::vector<double> factor;  ///< lambda above 0, ascending; empty if these loads cause no buckling
   std::vector<std::vector<double>> shape;  ///< x on the rows of ElasticOperator, largest component 1
 };
 
-/// The lowest `n` (fewer if there are fewer). None is missed: the negative pivots of K + s K_sigma, s above the last, are counted.
-/// `body`: static, with the symmetric gradient. Throws SolveFailure. Collective.
+/// Finds the lowest `n` factors, or all if fewer. Counting negative pivots of K + s K_sigma, s above the
+/// last, ensures that none is missed. `body`: static, symmetric gradient. Throws SolveFailure. Collective.
 Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestress, int n);
 
-/// The lowest n free vibrations about the loaded equilibrium, (K + K_sigma) x = omega^2 M x. Tells the kernel its density. Throws
-/// SolveFailure, also where the equilibrium is not stable. Collective.
+/// Lowest n free vibrations about the loaded equilibrium, (K + K_sigma) x = omega^2 M x. Sets the density of
+/// the kernel. Throws SolveFailure, also for an unstable equilibrium. Collective.
 modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestress& prestress, int n);
 
 }  // namespace couplet::solid

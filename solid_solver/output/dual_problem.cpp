@@ -25,7 +25,7 @@ Values rows_of_points(const SolidBody& body, std::span<const double> weights) {
   return rows;
 }
 
-/// The transpose of the gradient of FaceRows: forces of sum_f stress_f : G_f.
+/// Transpose of the gradient of FaceRows: forces of sum_f stress_f : G_f.
 Values rows_of_stress(const SolidBody& body, const std::vector<Tensor3>& stress) {
   elastic::SymmetricSpace space(body.mesh(), body.elastic());
   space.clear_forces();
@@ -39,7 +39,7 @@ Values rows_of_stress(const SolidBody& body, const std::vector<Tensor3>& stress)
   return rows;
 }
 
-/// take(owned cell, face, volume of its pyramid).
+/// Calls take(owned cell, face, volume of its pyramid).
 template <class Take>
 void visit_pyramids(const SolidBody& body, const Take& take) {
   const mesh::Mesh& mesh = body.mesh();

@@ -9,22 +9,22 @@
 
 namespace couplet::solid {
 
-/// How a number J(u) of a linear static body answers to what its mesh leaves in the strains. J(u) = j . u of the unknowns; the operator
-/// of an energy is symmetric, so that K z = j has the matrix, preconditioner and factors of K u = b, and
-///   J(u_exact) - J(u) near sum_f V_f dE_f(u) : C : dE_f(z)
-/// with dE the difference of two face gradients' strains in place of the errors of u and z ([becker2001]; recovered strains in it:
-/// Zienkiewicz and Zhu, Int. J. Numer. Meth. Engng 24 (1987) 337). Terms have their sign, so that what cancels in J cancels.
-/// Needs a kernel that is symmetric.
+/// Sensitivity of a functional J(u) = j . u of a linear static body to its mesh error. A symmetric operator
+/// lets K z = j use the matrix, preconditioner and factors of K u = b:
+///   J(u_exact) - J(u) ~ sum_f V_f dE_f(u) : C : dE_f(z)
+/// The strain difference dE of two face gradients replaces the errors of u and z ([becker2001]; with
+/// recovered strains: Zienkiewicz and Zhu, IJNME 24 (1987) 337). Terms keep their sign, so they cancel as in
+/// J. Requires a symmetric kernel.
 class DualProblem {
  public:
-  /// All by reference. Compares the gradients of u. Collective.
+  /// Keeps references. Compares the gradients of u. Collective.
   DualProblem(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known);
 
-  /// j of the weighted sum of point displacements: `weights`, `dim` values a local point, of this rank alone. Collective.
+  /// j of a weighted sum of point displacements. `weights`: `dim` values per local point. Collective.
   std::vector<double> of_points(std::span<const double> weights) const;
-  /// j of the mean over the owned `cells` of all ranks of weights : stress. Collective.
+  /// j of the mean of weights : stress over the owned `cells` of all ranks. Collective.
   std::vector<double> of_stress(std::span<const Index> cells, const Tensor3& weights) const;
-  /// The sum above. Throws SolveFailure. Collective.
+  /// Evaluates the sum above. Throws SolveFailure. Collective.
   double missed(std::span<const double> j, SolutionMethod& method) const;
 
  private:
@@ -32,7 +32,7 @@ class DualProblem {
 
   const SolidBody& body_;
   const elastic::ElasticKernel other_;
-  std::vector<Tensor3> gap_;  // of u, one a flux face
+  std::vector<Tensor3> gap_;  // of u, one per flux face
 };
 
 }  // namespace couplet::solid

@@ -15,15 +15,15 @@
 
 namespace couplet::solid {
 
-/// Where a solid stands among the other programs.
+/// Name, output folder and restart time of a solid.
 struct SolidContext {
   std::string name = "solid";
-  std::filesystem::path output_folder;  ///< empty: nothing is written
+  std::filesystem::path output_folder;  ///< empty if nothing is written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   io::FieldChoice fields{};
 };
 
-/// Fields together with the values that were made for them.
+/// Fields and their values.
 class FieldList {
  public:
   void add(std::string name, const char* unit, io::OutputField::Place place, int components,
@@ -31,7 +31,7 @@ class FieldList {
     values_.push_back(std::move(values));
     list.push_back({std::move(name), unit, place, components, values_.back()});
   }
-  /// One field a component; a 2-D scene has no shear across it. `packed`: tensor after tensor.
+  /// Adds one field per component, in 2-D without out-of-plane shear. `packed`: tensor after tensor.
   void add_tensor(const std::string& name, const char* unit, io::OutputField::Place place, int dim,
                   std::span<const double> packed) {
     for (std::size_t i = 0; i < (dim == 2 ? 4 : tensor_size); ++i) {

@@ -20,7 +20,7 @@ using Conduction = fv::ConductionOperator;
 
 constexpr double not_skew = 1e-12;  // of the skewness squared
 
-/// A quadratic around a cell, fitted to the cells that share a vertex with it, of its zone, and to their boundary faces:
+/// Quadratic fit to the cells of a cell's zone that share a vertex with it, and to their boundary faces:
 /// T(x) = value + slope . (x - x_P) + (x - x_P) . second . (x - x_P) / 2
 struct LocalHeat {
   double value = 0;
@@ -31,7 +31,7 @@ struct LocalHeat {
   }
 };
 
-/// Cells around each local point; of each local cell its boundary faces that have a value, and those that mirror.
+/// Cells around each local point; per local cell its boundary faces with values, and mirrored ones.
 struct CellsAround {
   std::vector<std::vector<Index>> cells, faces, mirrors;
   explicit CellsAround(const Conduction& conduction) {
@@ -44,20 +44,20 @@ struct CellsAround {
       (conduction.condition(f) == fv::HeatCondition::symmetry ? mirrors : faces)[std::size_t(mesh.owner[f])]
           .push_back(f);
   }
-  /// Its own and those beside it, of its zone.
+  /// The cell itself and its neighbors in the zone.
   std::vector<Index> of(const mesh::Mesh& mesh, Index cell) const {
     std::vector<Index> found;
     for (const Index v : mesh.cell_points[cell])
       for (const Index c : cells[std::size_t(v)])
         if (mesh.cell_zone[c] == mesh.cell_zone[cell]) found.push_back(c);
-    // By numbers of the mesh file, so that sums are the same on any ranks.
+    // Sorted by numbers of the mesh file, so that sums do not depend on the ranks.
     std::ranges::sort(found, {}, [&](Index c) { return mesh.cell_id[c]; });
     found.erase(std::ranges::unique(found).begin(), found.end());
     return found;
   }
 };
 
-/// Of its terms x_a x_b of places over the reach.
+/// From coefficients of the terms x_a x_b, scaled by the reach.
 LocalHeat local_of(const Eigen::VectorXd& c, int dim, double reach) {
   LocalHeat result;
   Eigen::Index i = 0;
@@ -69,7 +69,7 @@ LocalHeat local_of(const Eigen::VectorXd& c, int dim, double reach) {
   return result;
 }
 
-/// Faces of planes of symmetry beside these cells, one for each plane.
+/// Faces on symmetry planes of these cells, one per plane.
 std::vector<Index> planes_beside(const mesh::Geometry& g, const CellsAround& around,
                                  std::span<const Index> cells) {
   std::vector<Index> planes;
@@ -110,7 +110,7 @@ LocalHeat fitted_heat(const Conduction& conduction, const CellsAround& around, I
   return result;
 }
 
-/// n . gradient that the scheme has of (x - x_f) . second . (x - x_f) / 2, whose own is zero.
+/// The scheme's n . gradient of (x - x_f) . second . (x - x_f)/2, whose exact value is zero.
 double defect_of_gradient(const Conduction& conduction, Index f, const Tensor3& second) {
   const mesh::Mesh& mesh = conduction.mesh();
   const mesh::Geometry& g = conduction.geometry();
@@ -135,7 +135,7 @@ double defect_of_gradient(const Conduction& conduction, Index f, const Tensor3& 
   return gradient;
 }
 
-/// Of third derivatives, on one side of a face, by parts.
+/// Contribution of third derivatives on one side of a face, after summation by parts.
 double varied_flux(const mesh::Mesh& mesh, const mesh::Geometry& g, Index f, const Vec3& arm,
                    const Tensor3& t, const Tensor3& z) {
   const Vec3 normal = g.face_area[f].normalized(), of_t = t * arm, of_z = z * arm;
@@ -144,7 +144,7 @@ double varied_flux(const mesh::Mesh& mesh, const mesh::Geometry& g, Index f, con
   return mesh.dim / 6. * pyramid * (2 * across - of_t.dot(of_z));
 }
 
-/// Quadratics around all local cells. Collective.
+/// Quadratic fits around all local cells. Collective.
 std::vector<LocalHeat> local_heat(const Heat& heat, const HeatState& field) {
   const mesh::Mesh& mesh = heat.conduction().mesh();
   const CellsAround around(heat.conduction());
@@ -170,14 +170,14 @@ std::vector<LocalHeat> local_heat(const Heat& heat, const HeatState& field) {
   return all;
 }
 
-/// The fluxes of the scheme have a defect tau_f = exact - scheme's on the exact field. A number that answers to a source by z ([becker2001];
-/// for finite volumes: Venditti and Darmofal, J. Comput. Phys. 164 (2000) 204) errs by -S + sum_P z_P s_P with s the defect of the source,
+/// The fluxes of the scheme have a defect tau_f = exact - scheme's on the exact field. For a functional
+/// with dual solution z and source defect s ([becker2001]; [Venditti, Darmofal 2000]) the error is -S + z.s,
 ///   S = sum_f tau_f (z_N - z_P)
-/// Of a quadratic with the second derivatives H of T around the face tau_f is what its gradient (2.53)-(2.58) is wrong by. It is
-/// 0 between regular cells; there the third derivatives count, which summed by parts are
+/// tau_f is the gradient error (2.53)-(2.58) for a quadratic with the second derivatives H of T. It is zero
+/// between regular cells; there third derivatives dominate, which after summation by parts give
 ///   dim/6 sum_P sum_f V_fP k (d_n d'_n - d_t . d'_t) - sum_b k |S| d_b^2 / 6 H_nn dz/dn,   d = H (x_f - x_P), d' that of z
-/// with n and t across and along the face, d_b the distance of the cell from a boundary face: exact for regular cells.
-/// Values prescribed at boundaries count as exact between face centres. Collective.
+/// with n normal and t tangential to the face, d_b the distance of a cell from a boundary face; exact for
+/// regular cells. Boundary values are taken as exact between face centers. Collective.
 double weighted_defect(const Heat& heat, std::span<const LocalHeat> of_t, const HeatState& z) {
   const Conduction& conduction = heat.conduction();
   const mesh::Mesh& mesh = conduction.mesh();
@@ -245,7 +245,7 @@ class HeatEstimates {
     return e;
   }
 
-  /// All of its vertices have a prescribed temperature.
+  /// True if all of its vertices have a prescribed temperature.
   bool is_given(const io::Probe& probe) const {
     double solved = 0;
     for (std::size_t i = 0; i < probe.points().size(); ++i)
@@ -254,14 +254,14 @@ class HeatEstimates {
     return parallel::sum(mesh_.comm, solved) < 1e-9;
   }
 
-  /// A source of 1 W where the temperature is read, in the nodes that it is read from.
+  /// Source of 1 W at the probe, in the nodes used for its value.
   std::vector<double> rows_of(const io::Probe& probe) const {
     std::vector<double> cells(std::size_t(mesh_.cells.n_local()), 0),
         faces(std::size_t(mesh_.boundary.n_local()), 0);
     std::vector<double> shares(std::size_t(mesh_.points.n_local()), 0);
     for (std::size_t i = 0; i < probe.points().size(); ++i)
       shares[std::size_t(probe.points()[i])] += probe.weights()[i];
-    // Points have their nodes on their owner.
+    // The nodes of points are on their owner.
     mesh_.points.add_to_owners(shares);
     for (Index v = 0; v < mesh_.points.n_owned(); ++v) {
       if (shares[std::size_t(v)] == 0 || std::ranges::count(conduction_.known_points(), v)) continue;
@@ -277,7 +277,7 @@ class HeatEstimates {
     return in_rows(cells, faces);
   }
 
-  /// Heat that enters at a flux face stands in the face's row and in its cell's.
+  /// Heat entering at a flux face is in the rows of the face and of its cell.
   std::vector<double> in_rows(std::span<const double> cells, std::span<const double> faces) const {
     std::vector<double> rows(conduction_.n_unknowns(), 0);
     const auto n_owned = std::size_t(mesh_.cells.n_owned());
@@ -292,7 +292,7 @@ class HeatEstimates {
     return rows;
   }
 
-  /// w = 1 on the patch, 0 on the others that have a temperature; a film's ambient temperature likewise.
+  /// w = 1 on the patch, 0 on others with a temperature; likewise for the ambient temperature of a film.
   QuantityEstimate through(const std::string& name, const std::string& patch) const {
     QuantityEstimate e{.name = name, .what = "heat into the solid through", .unit = "W", .patch = patch};
     for (const PatchHeat& h : heat_.patch_heat())

@@ -10,12 +10,12 @@
 
 namespace couplet::solid {
 
-/// Throws Error for a place or patch that the mesh does not have, and for conductivities that vary. Collective.
+/// Throws Error for a missing place or patch and for varying conductivities. Collective.
 void check_heat_quantities(const Heat& heat, const std::map<std::string, SolidQuantity>& quantities);
 
-/// Temperatures at places and heat through patches of a steady field, each with what its mesh leaves in it (weighted_defect() in the source): one
-/// more solve with the same matrix for each. A temperature also has what the mean of vertices misses at its place, with the same sign. The same on all
-/// ranks. Throws SolveFailure. Collective.
+/// Temperatures at places and heat flows through patches of a steady field, with their mesh errors
+/// (weighted_defect() in the source). Each needs one solve with the same matrix. A temperature adds the
+/// signed interpolation error at its place. Equal on all ranks. Throws SolveFailure. Collective.
 std::vector<QuantityEstimate> estimate_heat_quantities(
     const Heat& heat, const std::map<std::string, SolidQuantity>& quantities);
 

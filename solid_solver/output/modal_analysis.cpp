@@ -15,13 +15,13 @@
 namespace couplet::solid {
 namespace {
 
-// Of mu / (rho L^2): below the first bending of a body a hundred times longer than thick, and above what the rounding
-// of the stiffness makes of a rigid motion.
+// Shift relative to mu/(rho L^2): below the first bending mode of a body 100 times longer than thick, above
+// round-off in rigid motions.
 constexpr double shift_part = 1e-4;
-// A frequency whose square is below this part of mu / (rho L^2) is a rigid motion.
+// A squared frequency below this part of mu/(rho L^2) is a rigid motion.
 constexpr double rigid_part = 1e-8;
 
-/// mu / (rho L^2) of the slowest cell, with L the diagonal of the body's box [1/s^2].
+/// mu/(rho L^2) of the slowest cell, with L the diagonal of the body's bounding box [1/s^2].
 double slowest_scale(const SolidProblem& problem, std::span<const double> cell_mass) {
   const mesh::Geometry& geometry = problem.geometry();
   const mesh::Mesh& mesh = problem.mesh;
@@ -32,13 +32,13 @@ double slowest_scale(const SolidProblem& problem, std::span<const double> cell_m
   return parallel::min(mesh.comm, slowest) / (length * length);
 }
 
-/// A vertex of the surface as it travels to rank 0; its shapes go beside it.
+/// Surface vertex sent to rank 0; its shapes are sent separately.
 struct SurfacePoint {
   GlobalIndex id;
   double x[3];
 };
 
-/// Sum over this rank's rows of M x with a rigid motion along each axis.
+/// Sum over this rank's rows of M x for a unit translation along each axis.
 std::vector<double> participation(const SolidProblem& problem, const modes::EigenModes& modes) {
   const std::size_t dim = problem.mesh.dim, n = problem.elastic.n_unknowns(), count = modes.shape.size();
   std::vector<double> along(n), inertia(n), sums(3 * count, 0);
@@ -54,12 +54,12 @@ std::vector<double> participation(const SolidProblem& problem, const modes::Eige
   return sums;
 }
 
-// Rows of the narrow matrix up to which its factors are taken unasked: in space they fill (33 000 tetrahedra have 2e5 rows).
+// Largest number of rows factorized by default: factors fill in 3-D (33 000 tetrahedra have 2e5 rows).
 constexpr GlobalIndex most_rows_2d = 2000000, most_rows_3d = 400000;
-// Residual over force that factors of the right matrix leave.
+// Relative residual left by factors of the exact matrix.
 constexpr double exact = 1e-6;
 
-/// The factors are those of this operator: nothing in the scene that the narrow matrix does not know.
+/// Throws SolveFailure if the factors do not match this operator (effects missing in the narrow matrix).
 void check_factors(const SolidProblem& problem, elastic::TiedMatrix& factors, double shift) {
   const std::size_t n = problem.elastic.n_unknowns();
   std::vector<double> x(n), force(n), back(n);
@@ -71,7 +71,7 @@ void check_factors(const SolidProblem& problem, elastic::TiedMatrix& factors, do
     throw SolveFailure("The factors do not match the stiffness.");
 }
 
-/// Whether the search goes by factors. Collective.
+/// True if the search uses factors. Collective.
 bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method) {
   using Preconditioner = MethodParameters::Preconditioner;
   if (!elastic::TiedMatrix::suits(problem.mesh) || !problem.is_symmetric()) return false;
@@ -82,7 +82,7 @@ bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method
   return parallel::sum(mesh.comm, blocks) * mesh.dim <= (mesh.dim == 2 ? most_rows_2d : most_rows_3d);
 }
 
-/// The search with factors of the shifted stiffness.
+/// Search with factors of the shifted stiffness.
 modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
                                     double shift) {
   const mesh::Geometry& geometry = problem.geometry();
@@ -103,7 +103,7 @@ modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const
   return modes::lowest_modes(of, n, -shift);
 }
 
-/// The search with one preconditioner.
+/// Search with one preconditioner.
 modes::EigenModes search(const SolidProblem& problem, const MethodParameters& method,
                          std::span<const double> cell_mass, int n, double shift) {
   std::vector<double> inertia;
@@ -193,8 +193,8 @@ modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenMod
   if (parallel::comm_rank(mesh.comm) != 0) return {};
   for (const double value : modes.eigenvalue)
     model.frequency.push_back(std::sqrt(std::max(0.0, value)) / (2 * std::numbers::pi));
-  std::map<GlobalIndex, std::size_t>
-      source;  // a vertex between ranks comes more than once, with the same values
+  // A vertex shared by ranks appears more than once, with equal values.
+  std::map<GlobalIndex, std::size_t> source;
   for (std::size_t i = 0; i < all.size(); ++i) source.try_emplace(all[i].id, i);
   std::map<GlobalIndex, Index> number;
   for (const auto& [id, i] : source) {

@@ -11,19 +11,19 @@
 
 namespace couplet::solid {
 
-/// K of free vibrations, with a kernel that has M; none where the kernel has no mass of its own. `body` by reference.
+/// K of free vibrations; empty if the kernel has no mass. Keeps a reference to `body`.
 std::optional<SolidProblem> vibration(const SolidBody& body);
 
-/// The n lowest free vibrations of the body as it is held, K x = omega^2 M x with the kernel's own stiffness and
-/// mass, shift-inverted with the solution method of a time step; supports and springs count, prescribed motions are
-/// held at rest. `problem`: static, with a kernel that has a mass (face-gradient: symmetric, dynamic analysis).
-/// `cell_mass`: per owned cell [kg]. Shapes are mass-normalised, on this rank's unknowns. Throws
+/// Lowest n free vibrations of the supported body, K x = omega^2 M x with stiffness and mass of the kernel.
+/// Uses shift-invert with the solution method of a time step. Supports and springs count, prescribed motions
+/// are held at rest. `problem`: static, with a kernel that has mass (face-gradient: symmetric, dynamic
+/// analysis). `cell_mass`: per owned cell [kg]. Shapes are mass-normalized, on this rank's unknowns. Throws
 /// SolveFailure. Collective.
 modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
                               std::span<const double> cell_mass, int n);
 
-/// What the surface shows of these modes, on rank 0 (empty elsewhere): vertices by ascending point_id, faces by
-/// ascending boundary_id; of a plane body the depth is 1 m and the third component 0. Collective.
+/// Surface values of these modes on rank 0 (empty elsewhere): vertices by ascending point_id, faces by
+/// ascending boundary_id. A 2-D body has a depth of 1 m and a zero third component. Collective.
 modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenModes& modes);
 
 }  // namespace couplet::solid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Free vibrations and buckling of SolidOutput.
+// Free vibrations and buckling in SolidOutput.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,9 +19,8 @@
 namespace couplet::solid {
 namespace {
 
-/// Relative error of the strain energies of these shapes where what is held rests, the largest: twice that of their
-/// frequencies. The square of the difference of two gradients' strains, or what InnerVariation takes if that is more.
-/// Collective.
+/// Largest relative strain energy error of these shapes with supports at rest, twice that of the frequencies.
+/// Uses the squared difference of two gradients' strains, or InnerVariation if larger. Collective.
 double energy_error(const SolidBody& body, const modes::EigenModes& modes) {
   const mesh::Mesh& mesh = body.mesh();
   const elastic::ElasticOperator& rows = body.elastic();
@@ -63,7 +62,7 @@ double energy_error(const SolidBody& body, const modes::EigenModes& modes) {
   return most;
 }
 
-/// [kg]
+/// Mass per owned cell [kg].
 std::vector<double> cell_masses(const SolidBody& body) {
   std::vector<double> mass;
   for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
@@ -95,7 +94,7 @@ void SolidOutput::write_modes() {
       error > 0 ? fmt::format("; estimated error due to the mesh up to {:.2g} %", 100 * error) : "");
 }
 
-/// `of`: of what, for the log; `errs`: what the mesh leaves.
+/// `of`: subject for the log. `errs`: mesh error.
 void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::EigenModes& found,
                                    const char* of, const std::string& errs) {
   const mesh::Mesh& mesh = body_.mesh();

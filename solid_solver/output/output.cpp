@@ -53,7 +53,7 @@ namespace {
 
 using Place = io::OutputField::Place;
 
-/// Of all local cells; ghosts, which are not written, hold zeros.
+/// Values of all local cells; ghosts, which are not written, contain zeros.
 std::vector<double> packed_cells(const mesh::Mesh& mesh, std::span<const Tensor3> owned) {
   std::vector<double> values(std::size_t(mesh.cells.n_local()) * tensor_size, 0);
   for (std::size_t c = 0; c < owned.size(); ++c)
@@ -190,7 +190,7 @@ void SolidOutput::write_energies(double time, std::span<const double> points) {
                                           e.damping_loss, e.lost()});
 }
 
-/// Of springs at the accepted time, of a rigid seat what the last solve found.
+/// Uses spring forces at the accepted time, for a rigid seat those of the last solve.
 void SolidOutput::write_contact(double time) {
   const Seat& seat = *body_.seat();
   const SolidState& state = stepper_.state();
@@ -249,8 +249,8 @@ void SolidOutput::write_path(double time) {
 
 void SolidOutput::write_effort(double time) {
   const SolverEffort& effort = stepper_.effort();
-  if (effort.solves == 0 || parallel::comm_rank(body_.mesh().comm) != 0)
-    return;  // at the start nothing was solved
+  // At the start there was no solve.
+  if (effort.solves == 0 || parallel::comm_rank(body_.mesh().comm) != 0) return;
   if (!solver_series_)
     solver_series_.emplace(
         context_.output_folder / "solver.csv",

@@ -18,13 +18,13 @@
 
 namespace couplet::solid {
 
-/// surface-<patch>.h5 of the patches in `output.surfaces`: displacement and stress at the points, traction of the faces, and
-/// what effects know there (temperature, heat flux).
+/// Writes surface-<patch>.h5 for `output.surfaces`: displacement and stress at points, traction of faces, and
+/// fields of effects (temperature, heat flux).
 class SolidSurfaces {
  public:
-  /// All by reference. Throws Error for a name that is no patch. Collective.
+  /// Keeps references. Throws Error for an unknown patch. Collective.
   SolidSurfaces(const SolidFields& derived, const SolidBody& body, const SolidContext& context);
-  /// `points`: displacement of all local points; `places`: where they are. Collective.
+  /// `points`: displacement of all local points. `places`: their positions. Collective.
   void write(double time, std::span<const double> points, std::span<const Vec3> places);
 
  private:
@@ -36,26 +36,26 @@ class SolidSurfaces {
   bool is_open_ = false;
 };
 
-/// The files of a solid: fields, surfaces, probes.csv, reactions.csv, solver.csv. They are opened when first written
-/// to.
+/// Writes the files of a solid: fields, surfaces, probes.csv, reactions.csv, solver.csv. Each is opened on
+/// first use.
 class SolidOutput {
  public:
-  /// All by reference.
+  /// Keeps references.
   SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
               const SolidContext& context);
 
-  /// Of output `number`, and surfaces. `points`: displacement of all local points.
+  /// Writes fields of output `number`, and surfaces. `points`: displacement of all local points.
   void write_fields(double time, int number, std::span<const double> points);
   void write_series(double time, std::span<const double> points);
-  /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
+  /// Writes spectrum.csv and a log entry for steps of dt. Collective.
   void write_spectrum(double dt);
-  /// modes.csv and, of a body in space, modes.h5; in the log also what the mesh leaves in the frequencies. Collective.
+  /// Writes modes.csv and, in 3-D, modes.h5. The log includes the mesh error of the frequencies. Collective.
   void write_modes();
-  /// modes.csv and modes.h5 of the accepted state of a linear static run. Collective.
+  /// Writes modes.csv and modes.h5 of the accepted state of a linear static run. Collective.
   void write_preloaded_modes();
-  /// buckling.csv, buckling.xdmf and a sentence in the log of its loads. Collective.
+  /// Writes buckling.csv, buckling.xdmf and a log entry. Collective.
   void write_buckling();
-  /// The lowest load factor that write_buckling() found; none: not looked for, or the loads buckle nothing.
+  /// Lowest load factor of write_buckling(); empty if not computed or there is none.
   std::optional<double> buckling_factor() const { return buckling_factor_; }
   const SolidProbes& probes() const { return probes_; }
 

@@ -21,7 +21,7 @@ bool is_stress(std::string_view field) {
   return field == "stress" || field == "equivalent-stress" || field == "principal-stress";
 }
 
-/// A field that an effect keeps at points; its name and unit are the effect's.
+/// Field of an effect at points, with its name and unit.
 io::OutputField effect_field(const SolidBody& body, const std::string& name) {
   std::vector<io::OutputField> fields;
   if (ThermalStrain* thermal = body.thermal()) thermal->add_fields(fields);
@@ -111,7 +111,7 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
         values = watched.probe.sample(strain, tensor_size);
       } else if (is_stress(field)) {
         values = watched.probe.sample(stress, tensor_size);
-        // Of the interpolated tensor; other ranks hold nothing.
+        // Derived from the interpolated tensor; other ranks have no values.
         if (field == "equivalent-stress" && !values.empty()) values = {equivalent_stress(unpack(values))};
         if (field == "principal-stress" && !values.empty()) {
           const auto principal = principal_stresses(unpack(values));
@@ -145,7 +145,7 @@ namespace {
 
 double larger_of(double left, double mesh) { return std::isnan(left) ? left : std::fmax(left, mesh); }
 
-/// Flags of the points of the cell with the largest equivalent stress, its own or that of a boundary face. Collective.
+/// Flags of the points of the cell with the largest stress in it or its boundary faces. Collective.
 std::vector<std::uint8_t> points_of_largest(const SolidBody& body, const SolidFields& fields,
                                             std::span<const double> points) {
   const mesh::Mesh& mesh = body.mesh();
@@ -159,7 +159,7 @@ std::vector<std::uint8_t> points_of_largest(const SolidBody& body, const SolidFi
   const std::vector<Tensor3> faces = fields.face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
   for (Index b = 0; b < mesh.boundary.n_owned(); ++b)
     see(mesh.owner[mesh.n_interior + b], faces[std::size_t(b)]);
-  // The same cell whatever the number of ranks.
+  // Selects the same cell on any number of ranks.
   const double largest = parallel::max(mesh.comm, most);
   const double id = most == largest && at >= 0 ? double(mesh.cell_id[at]) : 1e300;
   std::vector<double> flags(std::size_t(mesh.points.n_local()), 0);

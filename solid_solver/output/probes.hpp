@@ -12,26 +12,26 @@
 
 namespace couplet::solid {
 
-/// The probes of a solid: which columns they fill, and their values.
+/// Probes of a solid: their columns and values.
 class SolidProbes {
  public:
-  /// Throws Error if a probe lies outside or watches a field the scene does not have. All by reference. Collective.
+  /// Throws Error if a probe is outside or its field does not exist. Keeps references. Collective.
   SolidProbes(const SolidBody& body, const SolidFields& derived);
   bool empty() const { return probes_.empty(); }
-  /// "tip x [m]", "tip velocity x [m/s]", "tip stress-xx [Pa]", ...
+  /// For example "tip x [m]", "tip velocity x [m/s]", "tip stress-xx [Pa]".
   const std::vector<std::string>& columns() const { return columns_; }
-  /// One value a column at the accepted time on rank 0, empty elsewhere. `points`: displacement of all local
+  /// Values per column at the accepted time on rank 0, empty elsewhere. `points`: displacement of all local
   /// points. Collective.
   std::vector<double> sample(std::span<const double> points) const;
 
-  /// Stress at a probe that watches it.
+  /// Stress at a probe.
   struct Stress {
     std::string probe;
     Vec3 place;
     double equivalent;  ///< von Mises [Pa]
     double left;        ///< StressRecovery::left_at_points() [1]
   };
-  /// At the accepted state, on rank 0 (empty elsewhere). Collective.
+  /// Stresses of the accepted state on rank 0, empty elsewhere. Collective.
   std::vector<Stress> stresses(std::span<const double> points) const;
 
  private:
@@ -44,7 +44,7 @@ class SolidProbes {
   bool watches_stress() const;
   bool any_watches(std::initializer_list<const char*> fields) const;
 
-  /// Flags of the local points from which stresses are watched, on all ranks that share them. Collective.
+  /// Flags of local points needed for stresses, on all ranks that share them. Collective.
   std::vector<std::uint8_t> points_with_stress() const;
 
   const SolidBody& body_;
@@ -54,23 +54,23 @@ class SolidProbes {
   std::vector<std::uint8_t> stressed_;
 };
 
-/// An equivalent stress (von Mises) of the accepted state, and what it may err by.
+/// Von Mises stress of the accepted state with its estimated error.
 struct ReportedStress {
-  std::string where;  ///< "probe 'D'", "largest"
+  std::string where;  ///< for example "probe 'D'", "largest"
   Vec3 place;         ///< undeformed [m]
   double value;       ///< [Pa]
-  double error;       ///< estimated, over it; NaN: not known
+  double error;       ///< estimated relative error; NaN if unknown
 };
 
-/// Where the equivalent stress is largest [m], on all ranks. `points`: displacement of all local points. Collective.
+/// Position of the largest equivalent stress [m], on all ranks. `points`: point displacements. Collective.
 Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
                              std::span<const double> points);
 
-/// At the probes that watch a stress and, of static runs, where it is largest. The error of the tensor over its norm: the larger of
-/// what the fits of the recovery leave there (StressRecovery::left_at_points) and of what the mesh leaves in the displacement
-/// (`mesh`, a share), which strains and stresses follow. Where the largest stress grows with each refinement (a clamped or inner corner), the
-/// first of them stays large. Within a factor of 3 of the true error in 81 % of 81 readings on 14 bodies, none below a third
-/// (scripts/validate solid-accuracy). On rank 0; empty elsewhere, and where nothing is recovered. Collective.
+/// Stresses at probes and, in static runs, the largest one. The relative error of the tensor is the larger of
+/// the residual of the recovery (StressRecovery::left_at_points) and the mesh error of the displacement
+/// (`mesh`), which strains follow. If the largest stress grows with refinement (clamped or reentrant corner),
+/// the former stays large. In 81 readings on 14 bodies, 81 % are within a factor of 3 of the true error and
+/// none below a third (scripts/validate solid-accuracy). On rank 0, else empty. Collective.
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
                                               const SolidProbes& probes, double mesh);
 

@@ -85,14 +85,14 @@ Vec3 quadratic_displacement(const mesh::Mesh& mesh, const elastic::ElasticOperat
 
 namespace {
 
-constexpr double least_weight =
-    1e-9;  // of a point in the value at a place; below, the place lies on a side without it
+// Smallest weight of a point in a value; below, the place is on a side without it.
+constexpr double least_weight = 1e-9;
 
 std::string method_of(const QuantityEstimate& q) {
   return q.body > 0 && q.error() == q.body ? "as the whole body" : "dual-weighted";
 }
 
-/// Of rank 0, which probes give their values to, on all ranks.
+/// Distributes a probe value from rank 0 to all ranks.
 double shared(MPI_Comm comm, const std::vector<double>& sampled, std::size_t i) {
   return parallel::sum(comm, sampled.empty() ? 0 : sampled[i]);
 }
@@ -199,7 +199,7 @@ Vec3 place_of(const SolidQuantity& quantity) {
   return place;
 }
 
-// Not a number is more than all others.
+// NaN is treated as largest.
 double QuantityEstimate::error() const {
   if (std::isnan(local) || std::isnan(dual)) return std::nan("");
   const double larger = std::max(std::abs(local), std::abs(dual));

@@ -11,7 +11,7 @@
 namespace couplet::solid {
 namespace {
 
-/// A column by column, from unit vectors; rows rank by rank. On rank 0.
+/// Applies A to unit vectors; rows rank by rank. On rank 0.
 Eigen::MatrixXd probe(MPI_Comm comm, std::size_t n_local, GlobalIndex n, const ElasticApplication& apply) {
   const GlobalIndex first = parallel::exclusive_scan(comm, GlobalIndex(n_local));
   const bool root = parallel::comm_rank(comm) == 0;
@@ -55,7 +55,7 @@ std::vector<std::complex<double>> symmetric_spectrum(const mesh::Mesh& mesh, std
   if (!massless.empty()) k -= a(massive, massless) * a(massless, massless).ldlt().solve(a(massless, massive));
   k = (0.5 * (k + k.transpose())).eval();
   m = (0.5 * (m + m.transpose())).eval();
-  // An oblique support leaves a direction without mass on the diagonal blocks.
+  // An oblique support leaves a massless direction on the diagonal blocks.
   m.diagonal().array() += 1e-13 * m.trace() / double(m.rows());
   const std::vector<double> values = linalg::symmetric_eigenvalues(columns(k), columns(m), int(k.rows()));
   return {values.begin(), values.end()};
@@ -67,7 +67,7 @@ std::vector<std::complex<double>> spectrum(const mesh::Mesh& mesh, std::span<con
   const GlobalIndex n = parallel::sum(mesh.comm, GlobalIndex(n_unknowns)),
                     n_massive = parallel::sum(mesh.comm, GlobalIndex(n_cells));
   check_size(n_massive);
-  // The mass of each row, 0 for faces, in the order of the gathered rows.
+  // Mass of each row, 0 for faces, in the order of the gathered rows.
   std::vector<double> local_mass(n_unknowns, 0);
   for (std::size_t i = 0; i < n_cells; ++i) local_mass[i] = cell_mass[i / mesh.dim];
   const std::vector<double> mass = parallel::gather(mesh.comm, local_mass);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a body of revolution cannot have, each with the key to change.
+// Settings incompatible with a body of revolution, reported at the key to change.
 #include <algorithm>
 
 #include "solid_solver/parameters/parameter_checks.hpp"

@@ -17,7 +17,7 @@ namespace {
 
 using Texts = std::vector<config::ExpressionText>;
 
-/// Of a total, which has no place: a function of time alone.
+/// Checks an expression for a total, which may depend only on time.
 std::string problem_of_total(const config::ExpressionText& text) {
   if (std::string problem = fv::problem_of(text); !problem.empty()) return problem;
   return fv::Expression(text).uses_space()
@@ -146,7 +146,7 @@ namespace {
 
 using Type = SolidCondition::Type;
 
-/// Nothing, or one expression a component.
+/// Either empty, or one expression per component.
 void declare_vector(config::Section& s, const char* key, std::vector<config::ExpressionText>& texts,
                     const int& dimension, const char* unit, const char* doc) {
   constexpr std::pair usual_length{1e-9, 1e4}, usual_pressure{1e-9, 1e11};

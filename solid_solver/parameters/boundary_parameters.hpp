@@ -11,32 +11,32 @@
 
 namespace couplet::solid {
 
-/// Loads by their total: of the patches of type force, remote-load, bearing-load and hydrostatic-pressure. In 2-D forces and
-/// moments are those of one metre of depth.
+/// Loads given by their total, for patches of type force, remote-load, bearing-load and hydrostatic-pressure.
+/// In 2-D, forces and moments are per meter of depth.
 struct TotalLoad {
-  std::vector<config::ExpressionText> force;  ///< [N], of t, one a component; empty: none
-  std::vector<config::ExpressionText>
-      moment;                    ///< about `point` [N m], of t: 3 components, in 2-D 1; empty: none
+  std::vector<config::ExpressionText> force;  ///< [N], function of t, one per component; empty if none
+  /// About `point` [N m], function of t: 3 components, in 2-D 1; empty if there is none.
+  std::vector<config::ExpressionText> moment;
   Vec3 point = Vec3::Zero();     ///< remote-load: where the force acts [m]
   bool is_rigid = false;         ///< remote-load: the faces move as a rigid body
   double density = 0;            ///< hydrostatic-pressure: of the liquid [kg/m^3]
   std::vector<double> gravity;   ///< hydrostatic-pressure: [m/s^2]
-  config::ExpressionText level;  ///< hydrostatic-pressure: height of the free surface [m], of t
+  config::ExpressionText level;  ///< hydrostatic-pressure: height of the free surface [m], function of t
 };
 
-/// A force and a moment at a point of the surface.
+/// Force and moment at a point of the surface.
 struct PointLoad : TotalLoad {
-  double radius = 0;  ///< of the faces that take it [m]; 0: the nearest one does
+  double radius = 0;  ///< of the loaded faces [m]; 0 selects the nearest face
 };
 
-/// `dimension`: of the scene; read before the loads, so it is a reference.
+/// `dimension`: a reference, because the key of the case is read before the loads.
 void declare_total_force(config::Section& section, TotalLoad& load, const int& dimension);
 void declare_remote_load(config::Section& section, TotalLoad& load, const int& dimension);
 void declare_bearing_load(config::Section& section, TotalLoad& load, const int& dimension);
 void declare_hydrostatic_pressure(config::Section& section, TotalLoad& load, const int& dimension);
 void declare(config::Section& section, PointLoad& load, const int& dimension);
 
-/// What happens on a patch or a part of it. The members below `type` are used by the types that name them.
+/// Boundary condition on a patch or a part of it. Only the types named use the members below `type`.
 struct SolidCondition {
   enum class Type {
     fixed_displacement,
@@ -57,41 +57,41 @@ struct SolidCondition {
     interface_
   };
   Type type = Type::free;
-  /// fixed-displacement: displacement [m]; traction: [Pa]; spring: displacement of its far end [m]; one a
+  /// fixed-displacement: displacement [m]; traction: [Pa]; spring: displacement of its far end [m]; one per
   /// component.
   std::vector<config::ExpressionText> value;
-  /// fixed-displacement: the components that are known, in place of `value` [m].
+  /// fixed-displacement: the known components [m], instead of `value`.
   std::array<std::optional<config::ExpressionText>, 3> components;
-  /// fixed-displacement by component, spring: force per area beside it [Pa], one a component; empty: none.
+  /// fixed-displacement by component, spring: additional traction [Pa], one per component; empty if none.
   std::vector<config::ExpressionText> traction;
-  config::ExpressionText pressure;   ///< pressure: [Pa], pushes into the solid
-  Vec3 normal = Vec3::UnitZ();       ///< roller, soft and hard support: the direction that is held
+  config::ExpressionText pressure;   ///< pressure: [Pa], positive into the solid
+  Vec3 normal = Vec3::UnitZ();       ///< roller, soft and hard support: direction that is held
   config::ExpressionText along;      ///< roller: displacement along it [m]
   config::ExpressionText stiffness;  ///< spring: [N/m^3]
   bool along_normal = false;         ///< spring: resists the normal displacement only
   TotalLoad load;                    ///< force, remote-load, bearing-load, hydrostatic-pressure
 };
 
-/// The faces of a patch whose centre fulfils a condition.
+/// Faces of a patch whose center fulfills a condition.
 struct SolidPart : SolidCondition {
   config::ExpressionText where;
 };
 
 struct SolidBoundary : SolidCondition {
-  std::vector<SolidPart> parts;  ///< the first one that selects a face counts; faces of none: the patch's own
+  std::vector<SolidPart> parts;  ///< the first match applies; other faces use the patch's own condition
 };
 
-/// Knows no more than the force there.
+/// True if only the force is prescribed.
 bool is_load(const SolidCondition& condition);
-/// The load comes from the coupler.
+/// True if the load comes from the coupler.
 bool is_interface(const SolidCondition& condition);
-/// The faces of a remote-load move as one rigid body.
+/// True if the faces of a remote-load move as one rigid body.
 bool is_rigid(const SolidCondition& condition);
 bool is_symmetry_plane(const SolidCondition& condition);
-/// No functional has it as its condition, so that the symmetric gradient cannot have it.
+/// True if the condition derives from no functional, so that the symmetric gradient cannot apply it.
 bool has_no_energy(const SolidCondition& condition);
 
-/// `dimension`: of the scene; read before the boundaries, so it is a reference.
+/// `dimension`: a reference, because the key of the case is read before the boundaries.
 void declare(config::Section& section, SolidBoundary& boundary, const int& dimension);
 
 }  // namespace couplet::solid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What large strain cannot have, each with the key to change.
+// Settings incompatible with large strain, reported at the key to change.
 #include <algorithm>
 
 #include "solid_solver/parameters/parameter_checks.hpp"
@@ -13,7 +13,7 @@ bool presses(const SolidParameters& p) {
   });
 }
 
-/// What the thesis's own method at finite strain cannot have, each with the key to change.
+/// Settings incompatible with the thesis's own method at finite strain, reported at the key to change.
 void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;
   const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
@@ -40,7 +40,7 @@ void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
       "(or 'auto')");
 }
 
-/// What a sheet in plane stress cannot have at finite strain.
+/// Settings incompatible with a sheet in plane stress at finite strain.
 void check_finite_sheet(config::Section& s, SolidParameters& p) {
   const auto refuse = [&](const char* key, const auto& is_wrong, const char* why) {
     s.check(
@@ -70,7 +70,7 @@ void check_finite_sheet(config::Section& s, SolidParameters& p) {
       "thickness, which is not supported; use 'traction' (per undeformed area), or model the sheet in 3-D");
 }
 
-/// A law belongs to large strain; the energy-momentum stress to one time scheme.
+/// A law requires large strain; the energy-momentum stress requires one time scheme.
 void check_law(config::Section& s, SolidParameters& p) {
   s.check(
       [&p]() -> std::string {
@@ -94,7 +94,7 @@ void check_law(config::Section& s, SolidParameters& p) {
 
 }  // namespace
 
-/// What finite strain cannot have, each with the key to change.
+/// Settings incompatible with finite strain, reported at the key to change.
 void check_finite_strain(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;
   const auto refuse = [&](const char* key, bool is_wrong, const char* why) {

@@ -115,7 +115,7 @@ namespace {
 
 bool takes_temperature(const SolidParameters& p) { return p.interface_data && p.interface_data->temperature; }
 
-/// What the temperature needs and what excludes another source of it.
+/// Requirements of the temperature, and conflicts with other sources of it.
 void check_heat(config::Section& s, SolidParameters& p) {
   s.check(
       [&] {

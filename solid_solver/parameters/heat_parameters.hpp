@@ -9,24 +9,24 @@
 
 namespace couplet::solid {
 
-/// Thermal properties of a material; each is needed by the effects that use it only. Tables are of T [K].
+/// Thermal properties of a material; each is required only by effects that use it. Tables depend on T [K].
 struct HeatMaterial {
   std::optional<config::ExpressionText> conductivity;                    // [W/(m K)]
   std::optional<config::ExpressionText> specific_heat;                   // [J/(kg K)]
   std::optional<config::ExpressionText> expansion;                       // instantaneous coefficient [1/K]
-  std::optional<config::ExpressionText> youngs_modulus, poissons_ratio;  // tables; none: they do not vary
+  std::optional<config::ExpressionText> youngs_modulus, poissons_ratio;  // tables; absent if constant
 };
 
-/// What is known of the temperature on one patch.
+/// Thermal boundary condition on one patch.
 struct HeatBoundary {
   enum class Type { temperature, flux, convection, adiabatic, symmetry };
   Type type = Type::adiabatic;
   config::ExpressionText value;        // temperature [K] or heat flux into the solid [W/m^2]
   config::ExpressionText coefficient;  // of convection [W/(m^2 K)]
-  config::ExpressionText ambient;      // temperature beyond the film [K]
+  config::ExpressionText ambient;      // ambient temperature [K]
 };
 
-/// Conduction of heat, thesis (2.35).
+/// Heat conduction, thesis (2.35).
 struct HeatParameters {
   enum class Analysis { transient, steady };
   enum class Scheme { euler, three_point, trapezoidal };
@@ -35,12 +35,12 @@ struct HeatParameters {
   config::ExpressionText initial_temperature{"293.15"};  // [K]
   config::ExpressionText source;                         // [W/m^3]
   std::map<std::string, HeatBoundary> boundaries;
-  double tolerance = 1e-8;  // of the temperature, relative, when properties depend on it
+  double tolerance = 1e-8;  // relative, of the temperature, if properties depend on it
   int max_iterations = 50;
   double linear_tolerance = 1e-12;
 };
 
-/// Thermal strain from a reference temperature on.
+/// Thermal strain relative to a reference temperature.
 struct ThermalExpansion {
   double reference_temperature = 293.15;  // [K]
 };

@@ -14,7 +14,7 @@
 namespace couplet::solid {
 namespace {
 
-/// A face, the faces around it, and what turns the differences of their values into a gradient (3 x k).
+/// A face, its neighbors, and the matrix from differences of their values to a gradient (3 x k).
 struct FaceSurroundings {
   std::vector<Index> around;
   Eigen::Matrix3Xd gradient;
@@ -26,10 +26,10 @@ FaceSurroundings surroundings_of(Index face, const std::vector<Vec3>& centres, c
   std::erase(others, face);
   const std::size_t n = std::min(most, others.size());
   others.resize(n);
-  // Beyond the nearest ring of faces nothing is needed: in a strip that is one face to each side.
+  // Only the nearest ring of faces is needed; in a strip that is one face on each side.
   Eigen::MatrixX3d offsets(Eigen::Index(n), 3);
   for (std::size_t i = 0; i < n; ++i) offsets.row(Eigen::Index(i)) = centres[others[i]] - centres[face];
-  // Weighted by the inverse squared distance, so that near faces decide.
+  // Weighted by the inverse squared distance, so that near faces dominate.
   Eigen::VectorXd weight = offsets.rowwise().squaredNorm().cwiseInverse();
   const Eigen::MatrixX3d weighted = weight.asDiagonal() * offsets;
   FaceSurroundings found{std::move(others), Eigen::Matrix3Xd::Zero(3, Eigen::Index(n))};
@@ -113,7 +113,7 @@ std::vector<coupling::Interface::Datum> taken(const InterfaceData& data) {
   return list;
 }
 
-// All centres are here while the nearest are looked for, and no longer.
+// All centers are stored on each rank only during the search for the nearest ones.
 InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres,
                                            const std::vector<std::span<const Vec3>>& places)
     : comm_(comm) {

@@ -191,11 +191,11 @@ std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials) {
   return zones;
 }
 
-// What the parameters say of the elastic body: constants and matrices of its materials, what suits them.
+// The elastic body from the parameters: constants and matrices of its materials, and applicable methods.
 
 namespace {
 
-/// Elastic matrices of the materials at places.
+/// Elastic matrices of the materials as a function of position.
 class Matrices {
  public:
   explicit Matrices(const SolidParameters& p) : parameters_(p) {
@@ -224,7 +224,7 @@ class Matrices {
   bool is_constant_ = true;
 };
 
-/// A matrix a material where its axes are the same everywhere, else one a cell.
+/// Adds one matrix per material if its axes are uniform, else one per cell.
 void add_matrices(const SolidParameters& p, const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                   elastic::ElasticBody& body) {
   const Matrices matrices(p);
@@ -239,7 +239,7 @@ void add_matrices(const SolidParameters& p, const mesh::Mesh& mesh, const mesh::
   }
 }
 
-// Of the norm of a matrix: by so much its mirror image may differ.
+// Tolerance of the mirror image relative to the norm of a matrix.
 constexpr double mirror_tolerance = 1e-6;
 
 }  // namespace
@@ -259,7 +259,7 @@ elastic::LameConstants lame_constants(const SolidParameters& p, const SolidMater
   elastic::LameConstants lame = material.orthotropic
                                     ? elastic::isotropic_mean(matrix_of(*material.orthotropic))
                                     : lame_constants(material.youngs_modulus, material.poissons_ratio);
-  // sigma_zz = 0 eliminates the strain across the plane.
+  // sigma_zz = 0 eliminates the out-of-plane strain.
   if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
     lame.lambda = 2 * lame.lambda * lame.mu / (lame.lambda + 2 * lame.mu);
   return lame;

@@ -13,28 +13,28 @@
 
 namespace couplet::solid {
 
-/// A material with three planes of symmetry, and where its axes lie.
+/// Material with three planes of symmetry, and its axes.
 struct Orthotropic {
   std::vector<double> youngs_moduli, poissons_ratios, shear_moduli;  // 1 2 3; 12 23 13; 12 23 13 [Pa]
-  /// Of x, y, z, any length; empty: x and y. In the plane the first alone; the third is z there. Of the second counts
-  /// what lies across the first.
+  /// In x, y, z, of any length; empty: x and y. In 2-D only the first is used and the third is z. Only the
+  /// part of the second normal to the first is used.
   std::vector<config::ExpressionText> first_axis, second_axis;
 };
 
-/// The keys of `material.orthotropic`.
+/// Declares the keys of `material.orthotropic`.
 void declare(config::Section& section, Orthotropic& material);
 
-/// In the axes of the material.
+/// Elastic matrix in the axes of the material.
 elastic::ElasticMatrix matrix_of(const Orthotropic& material);
 
-/// Axes of a material at places.
+/// Axes of a material as a function of position.
 class MaterialAxes {
  public:
   /// `dimension` 2 or 3.
   MaterialAxes(const Orthotropic& material, int dimension);
-  /// They are the same everywhere.
+  /// True if the axes are uniform.
   bool is_constant() const { return is_constant_; }
-  /// Columns 1, 2, 3, orthonormal. Throws Error where they are no axes.
+  /// Axes 1, 2, 3 as orthonormal columns. Throws Error where they are undefined.
   Tensor3 at(const Vec3& place) const;
 
  private:
@@ -48,25 +48,25 @@ struct SolidMaterial {
   double youngs_modulus = 0;  // [Pa]
   double poissons_ratio = 0;
   HeatMaterial heat{};
-  std::optional<double> yield_strength{};    // [Pa]; for the verdict on yielding alone
+  std::optional<double> yield_strength{};    // [Pa]; only for the finding about yielding
   std::string law{};                         // of finite strain, see laws/; empty: Saint Venant-Kirchhoff
-  std::vector<double> law_coefficients{};    // beside E and nu
-  std::optional<Orthotropic> orthotropic{};  // in place of E and nu
+  std::vector<double> law_coefficients{};    // in addition to E and nu
+  std::optional<Orthotropic> orthotropic{};  // instead of E and nu
 };
 
 /// One of several materials.
 struct ZoneMaterial : SolidMaterial {
-  std::vector<std::string>
-      zones;  ///< physical volumes (2-D: surfaces) of the mesh; empty: the one of its own name
+  /// Physical volumes (2-D: surfaces) of the mesh; empty for the zone of the material's own name.
+  std::vector<std::string> zones;
 };
 
 using ZoneMaterials = std::map<std::string, ZoneMaterial>;
 
-/// `is_elastic`: the elastic constants are needed.
+/// `is_elastic`: the elastic constants are required.
 void declare(config::Section& section, SolidMaterial& material, bool is_elastic = true);
 void declare(config::Section& section, ZoneMaterial& material, bool is_elastic = true);
 
-/// The zones of each material, as the mesh wants them (RawMesh::materials).
+/// Zones of each material, for RawMesh::materials.
 std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials);
 
 }  // namespace couplet::solid

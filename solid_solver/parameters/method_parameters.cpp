@@ -140,7 +140,7 @@ void declare(config::Section& s, MethodParameters& m) {
 
 namespace {
 
-/// Forces of a partner on some patch or part of one.
+/// True if a partner's forces act on some patch or part of one.
 bool is_loaded_by_partner(const SolidParameters& p) {
   if (p.interface_data && p.interface_data->temperature) return false;
   return std::ranges::any_of(p.boundaries, [](const auto& entry) {
@@ -186,7 +186,7 @@ namespace {
 
 using Texts = std::vector<config::ExpressionText>;
 
-/// The first text that depends on t; empty: none does, or it cannot be read, which is reported elsewhere.
+/// First text that depends on t; empty if none does, or it is invalid, which is reported elsewhere.
 std::string first_in_time(const Texts& texts) {
   for (const config::ExpressionText& e : texts)
     if (fv::problem_of(e).empty() && fv::Expression(e).uses_time()) return e.text;

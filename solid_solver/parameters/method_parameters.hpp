@@ -6,7 +6,7 @@
 
 namespace couplet::solid {
 
-/// How the equations of a step are solved.
+/// Solution method of the equations of a step.
 struct MethodParameters {
   enum class Type { automatic, block_coupled, segregated, newton_krylov };
   enum class FaceGradient { automatic, thesis, corrected, symmetric };
@@ -25,7 +25,7 @@ struct MethodParameters {
   int anderson_history = 10;
   Predictor predictor = Predictor::euler;
   int corrections_kept = 12;
-  double solves = 1;  // no key: with one matrix, as many as the run will make
+  double solves = 1;  // not a key: number of solves of the run with one matrix
   double relative_tolerance = 1e-10;
   int max_iterations = 2000;
 };
@@ -38,9 +38,9 @@ struct SolidDamping {
   double stiffness = 0;  // [s]
 };
 
-/// Step sizes that follow the local error.
+/// Adaptive step size based on the local error.
 struct TimeStepControl {
-  double tolerance = 0;  // wanted accuracy of the displacement, rms over the volume [m]
+  double tolerance = 0;  // target accuracy of the displacement, rms over the volume [m]
 };
 
 void declare(config::Section& section, SolidDamping& damping);
@@ -48,17 +48,17 @@ void declare(config::Section& section, TimeStepControl& control);
 
 struct SolidParameters;
 
-/// How a static run at large strain goes from one equilibrium to the next.
+/// Stepping between the equilibria of a static run at large strain.
 struct LoadStepping {
   enum class Type { load, arc_length };
   Type type = Type::load;
   double first_load_factor = 0.05;  // of the first step
-  int iterations = 5;               // that a step should take
-  double longest = 10;              // step over the first one
+  int iterations = 5;               // target number per step
+  double longest = 10;              // largest step over the first one
 };
 
 void declare(config::Section& section, LoadStepping& stepping);
-/// What the arc length cannot have, each told at the key to change.
+/// Rejects settings that are incompatible with the arc length, at the key to change.
 void check_load_stepping(config::Section& section, SolidParameters& parameters);
 
 }  // namespace couplet::solid

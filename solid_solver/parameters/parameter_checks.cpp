@@ -10,7 +10,7 @@
 namespace couplet::solid {
 namespace {
 
-/// Of any condition, those of parts of patches too.
+/// Tests all conditions, including those of parts of patches.
 template <class Test>
 bool any_condition(const SolidParameters& p, const Test& test) {
   return std::any_of(p.boundaries.begin(), p.boundaries.end(), [&](const auto& entry) {
@@ -21,13 +21,13 @@ bool any_condition(const SolidParameters& p, const Test& test) {
 
 bool has_interface(const SolidParameters& p) { return any_condition(p, is_interface); }
 
-/// Whether a condition of any kind keeps some displacement from being free.
+/// True if some condition holds a displacement.
 bool is_held(const SolidParameters& p) {
   return any_condition(
       p, [](const SolidCondition& c) { return (!is_load(c) || is_interface(c)) && !has_no_energy(c); });
 }
 
-/// What an analysis without inertia, or without a beginning, cannot have.
+/// Settings incompatible with an analysis without inertia or initial state.
 void check_motion(config::Section& s, SolidParameters& p) {
   s.check(
       [&] {
@@ -120,7 +120,7 @@ void check_buckling(config::Section& s, SolidParameters& p) {
 
 bool has_rigid_patch(const SolidParameters& p) { return any_condition(p, is_rigid); }
 
-/// What a patch that moves as a rigid body cannot have, each with the key to change.
+/// Settings incompatible with a patch that moves as a rigid body, reported at the key to change.
 void check_rigid_patches(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;
   const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
@@ -193,7 +193,7 @@ void check_quantities(config::Section& s, SolidParameters& p) {
       "quantities");
 }
 
-/// What a solid that meets a seat cannot have, each with the key to change.
+/// Settings incompatible with contact at a seat, reported at the key to change.
 void check_contact(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;
   using Analysis = SolidParameters::Analysis;
@@ -230,7 +230,7 @@ void check_contact(config::Section& s, SolidParameters& p) {
          "'buckling' and 'large-strain-estimate' know nothing of a seat; remove them, or 'contact'");
 }
 
-/// What an elastic matrix cannot have, each with the key to change.
+/// Settings incompatible with an elastic matrix, reported at the key to change.
 void check_orthotropic(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;
   const auto refuse = [&](const char* key, bool is_wrong, const char* why) {

@@ -5,29 +5,29 @@
 
 namespace couplet::solid {
 
-/// Keys of the temperature: solved for, prescribed or received, and what follows from it.
+/// Declares the keys of the temperature, solved for, prescribed or received, and of its effects.
 void declare_heat(config::Section& section, SolidParameters& parameters);
-/// Rules between the keys of a solid, each told at the key to change.
+/// Checks combinations of keys of a solid, and reports each at the key to change.
 void check_together(config::Section& section, SolidParameters& parameters);
-/// What finite strain cannot have.
+/// Rejects settings that are incompatible with finite strain.
 void check_finite_strain(config::Section& section, SolidParameters& parameters);
-/// What patches that move as rigid bodies cannot have.
+/// Rejects settings that are incompatible with patches that move as rigid bodies.
 void check_rigid_patches(config::Section& section, SolidParameters& parameters);
-/// What buckling cannot have.
+/// Rejects settings that are incompatible with a buckling analysis.
 void check_buckling(config::Section& section, SolidParameters& parameters);
-/// What the estimate of large strain cannot have.
+/// Rejects settings that are incompatible with the estimate of large strain.
 void check_large_strain_estimate(config::Section& section, SolidParameters& parameters);
-/// What quantities of interest cannot have.
+/// Rejects settings that are incompatible with quantities of interest.
 void check_quantities(config::Section& section, SolidParameters& parameters);
-/// What a body of revolution cannot have.
+/// Rejects settings that are incompatible with a body of revolution.
 void check_axisymmetric(config::Section& section, SolidParameters& parameters);
-/// Whether a condition pushes along the normal.
+/// True if a condition acts along the normal.
 bool is_pressure(const SolidCondition& condition);
-/// Whether a body of revolution can have a condition.
+/// True if a condition is possible in a body of revolution.
 bool can_be_revolved(const SolidCondition& condition);
-/// What a solid that meets a seat cannot have.
+/// Rejects settings that are incompatible with contact at a seat.
 void check_contact(config::Section& section, SolidParameters& parameters);
-/// What an orthotropic material cannot have.
+/// Rejects settings that are incompatible with an orthotropic material.
 void check_orthotropic(config::Section& section, SolidParameters& parameters);
 
 }  // namespace couplet::solid

@@ -27,7 +27,7 @@ std::string unknown_field(const std::vector<std::string>& chosen) {
 const std::vector<std::string> quantity_fields{"displacement", "stress", "equivalent-stress", "temperature",
                                                "heat"};
 
-/// Of a heat flow or a temperature.
+/// Problem of a quantity that is a heat flow or a temperature.
 std::string wrong_heat(const SolidQuantity& q) {
   if (!q.component.empty()) return fmt::format("a {} has no component", q.field);
   if (q.field == "temperature") return q.point.empty() ? "a temperature needs a 'point'" : "";
@@ -186,7 +186,7 @@ void declare_materials(config::Section& s, SolidParameters& p) {
       "material");
 }
 
-/// What holds the solid and what acts on it.
+/// Declares supports and loads.
 void declare_loads(config::Section& s, SolidParameters& p) {
   s.map<SolidBoundary>(
       "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare(b, v, p.dimension); },
@@ -233,7 +233,7 @@ void declare_output(config::Section& s, SolidParameters& p) {
       "output",
       [&](config::Section& o) {
         declare(o, p.output);
-        // Patches that conduct heat alone need no entry: SurfaceSeries looks at those.
+        // Patches that only conduct heat need no entry; SurfaceSeries checks those.
         if (!p.heat) o.check([&] { return io::wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
       },
       "fields written at the output interval");

@@ -23,12 +23,12 @@ struct SolidProbe {
   std::vector<std::string> fields{"displacement"};
 };
 
-/// A number that the run is made for, and whose error it estimates at its end.
+/// Quantity of interest, whose error the run estimates at its end.
 struct SolidQuantity {
   std::vector<double> point;  // [m]; empty: where the equivalent stress is largest
   std::string field = "displacement";
   std::string patch{};    // of a heat flow
-  std::string component;  // "x" of a displacement, "xx" of a stress; of an equivalent stress none
+  std::string component;  // "x" of a displacement, "xx" of a stress; empty for an equivalent stress
 };
 
 /// Fields written at the output interval, and the energies.
@@ -45,8 +45,8 @@ struct SolidOutputParameters {
   bool moments = false;
   Vec3 moment_centre = Vec3::Zero();  // [m]
   std::vector<std::string> surfaces;  // patches, or "all"
-  int modes = 0;                      // frequencies and shapes that are asked for
-  int buckling = 0;                   // load factors and shapes
+  int modes = 0;                      // number of frequencies and shapes
+  int buckling = 0;                   // number of load factors and shapes
 };
 
 void declare(config::Section& section, SolidProbe& probe);
@@ -54,7 +54,7 @@ void declare(config::Section& section, SolidQuantity& quantity, int dimension);
 void declare(config::Section& section, SolidOutputParameters& output);
 
 struct SolidParameters {
-  enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: static_ once it is read
+  enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: becomes static_ after parsing
   enum class Plane { strain, stress, axisymmetric };
   enum class Kinematics { small_strain, finite_strain };
   std::string mesh;
@@ -64,52 +64,52 @@ struct SolidParameters {
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;
   Kinematics kinematics = Kinematics::small_strain;
-  bool energy_momentum = false;  // finite strain: the stress of a step is one that conserves
+  bool energy_momentum = false;  // finite strain: use the conserving stress within a step
   SolidMaterial material;
-  std::optional<bool> material_given;  // `material` stands in the YAML
+  std::optional<bool> material_given;  // `material` is present in the YAML file
   ZoneMaterials materials;             // by zone of the mesh
   std::map<std::string, SolidBoundary> boundaries;
   std::map<std::string, PointLoad> point_loads;
-  std::optional<contact::ContactParameters> contact;     // none: the solid meets nothing
-  std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
-  std::vector<double> gravity;                           // [m/s^2]; empty: none
+  std::optional<contact::ContactParameters> contact;     // absent if the solid touches nothing
+  std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty if none
+  std::vector<double> gravity;                           // [m/s^2]; empty if none
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
   time::TimeSchemeParameters time_scheme{.type = time::TimeScheme::automatic};  // see scheme_of()
   LoadStepping load_stepping;
   std::optional<SolidDamping> damping;
   std::optional<HeatParameters> heat;
-  std::optional<config::ExpressionText> temperature;  // prescribed [K]; none: solved for or not known
-  std::optional<InterfaceData> interface_data;        // none: forces only
+  std::optional<config::ExpressionText> temperature;  // prescribed [K]; absent if solved for or unknown
+  std::optional<InterfaceData> interface_data;        // absent: forces only
   std::optional<ThermalExpansion> expansion;
   bool thermoelastic_coupling = false;
   std::optional<TimeStepControl> step_control;
-  double stiffness_tolerance = 1e-3;  // change of elastic constants with the temperature that is let pass
+  double stiffness_tolerance = 1e-3;  // change of elastic constants with temperature that is tolerated
   MethodParameters method;
   std::map<std::string, SolidProbe> probes;
   std::map<std::string, SolidQuantity> quantities;
   SolidOutputParameters output;
 };
 
-/// The keys of `participants.<name>` of a solid_solver.
+/// Declares the keys of `participants.<name>` of a solid_solver.
 void declare(config::Section& section, SolidParameters& parameters);
 
 /// The material, or the materials in the order of their names, which is that of Mesh::cell_material.
 std::vector<SolidMaterial> materials_of(const SolidParameters& parameters);
 
-/// Of a body in space.
+/// Lame constants in 3-D.
 elastic::LameConstants lame_constants(double youngs_modulus, double poissons_ratio);
-/// Lame's constants of a material (of an orthotropic one an isotropic mean); in plane stress lambda is the effective one of the plane problem.
+/// Lame constants of a material (isotropic mean if orthotropic); in plane stress lambda is the effective one.
 elastic::LameConstants lame_constants(const SolidParameters& parameters, const SolidMaterial& material);
 inline elastic::LameConstants lame_constants(const SolidParameters& parameters) {
   return lame_constants(parameters, parameters.material);
 }
 
-/// A body of revolution, x being the radius.
+/// True for a body of revolution; x is the radius.
 inline bool is_axisymmetric(const SolidParameters& p) {
   return p.dimension == 2 && p.plane == SolidParameters::Plane::axisymmetric;
 }
 
-/// Large strain by the thesis's own method.
+/// True for large strain by the method of the thesis.
 inline bool is_updated_lagrangian(const SolidParameters& p) {
   return p.kinematics == SolidParameters::Kinematics::finite_strain &&
          p.analysis != SolidParameters::Analysis::thermal &&
@@ -119,26 +119,26 @@ inline bool has_finite_strain(const SolidParameters& p) {
   return p.kinematics == SolidParameters::Kinematics::finite_strain &&
          p.analysis != SolidParameters::Analysis::thermal;
 }
-/// What integrates a dynamic analysis in time. `auto` is generalised-alpha for a body of large strain that a partner loads: the trapezoidal rule
-/// neither keeps the energy of a nonlinear law nor damps the highest modes, which a coupling excites. Else the trapezoidal rule.
+/// Time scheme of a dynamic analysis. `auto` is generalized-alpha at large strain with loads from a partner:
+/// there the trapezoidal rule neither conserves energy nor damps the highest modes. Else it is that rule.
 time::TimeSchemeParameters scheme_of(const SolidParameters& parameters);
-/// Some patch moves as a rigid body (remote-load with coupling: rigid).
+/// True if some patch moves as a rigid body (remote-load with coupling: rigid).
 bool has_rigid_patch(const SolidParameters& parameters);
-/// Some material is orthotropic: all cells have an elastic matrix.
+/// True if some material is orthotropic; then all cells have an elastic matrix.
 bool has_orthotropic(const SolidParameters& parameters);
-/// From here up the volume strain of faces locks.
+/// Poisson's ratio above which the volume strain of faces locks.
 inline constexpr double nearly_incompressible = 0.4;
 double largest_poissons_ratio(const SolidParameters& parameters);
-/// Whose volume strain the symmetric gradient takes.
+/// Volume strain used by the symmetric gradient.
 elastic::VolumeStrain volume_strain_of(const SolidParameters& parameters);
-/// The symmetric gradient can have all of the scene's boundaries and the method that is asked for.
+/// True if the symmetric gradient supports all boundaries and the requested method.
 bool symmetric_suits(const SolidParameters& parameters);
 
-/// For ElasticOperator: the constants of the cells.
+/// Elastic constants of the cells for ElasticOperator.
 elastic::ElasticBody elastic_body(const SolidParameters& parameters, const mesh::Mesh& mesh,
                                   const mesh::Geometry& geometry);
-/// Throws Error where a symmetry plane does not mirror an orthotropic material into itself: it would be no plane of
-/// symmetry. Collective.
+/// Throws Error if a symmetry plane does not map an orthotropic material onto itself, because the solution
+/// would not be symmetric. Collective.
 void check_symmetry(const SolidParameters& parameters, const mesh::Mesh& mesh,
                     const elastic::ElasticOperator& rows);
 

@@ -11,10 +11,10 @@
 namespace couplet::solid {
 namespace {
 
-// Up to here LU wins in time and has the memory.
+// Size up to which LU is faster and has enough memory.
 constexpr GlobalIndex direct_heat_up_to = 60000;
 
-// The three-point scheme is stable up to steps that grow by 1 + sqrt 2; beyond, Euler's begins anew.
+// The three-point scheme is stable for step ratios up to 1 + sqrt 2; beyond, it restarts with Euler.
 constexpr double largest_growth = 2.4;
 
 linalg::LinearOptions options_of(const HeatParameters& p, GlobalIndex n_unknowns) {
@@ -102,8 +102,8 @@ Heat::Coefficients Heat::coefficients(double dt) const {
   return {(1 + 2 * r) / (1 + r) / dt, -(1 + r) / dt, r * r / (1 + r) / dt, 1};
 }
 
-// Between different materials that are not bonded the conductance is that of the two layers in series, exact
-// for layers along the face: k = d . n / (d_P / k_P + d_N / k_N).
+// Between different unbonded materials the conductance is that of two layers in series, exact for layers
+// parallel to the face: k = d . n/(d_P/k_P + d_N/k_N).
 void Heat::set_conductivity(const HeatState& state, std::span<double> conductivity) const {
   const std::vector<double> at_faces = face_temperature(state);
   const mesh::Geometry& g = *geometry_;
@@ -146,7 +146,7 @@ void Heat::solve(const coupling::Step& step, std::span<const double> source) {
   boundaries_.known(conduction_, end, trial_.known);
   boundaries_.fluxes(end, face_heat_, transfer_);
   const std::vector<double> in_cells = sources(end, source);
-  // Matrix of the last step: still right if nothing in it has changed.
+  // The matrix of the last step is reused if none of its data have changed.
   const bool kept = !properties_vary_ && !boundaries_.transfer_uses_time() &&
                     std::abs(filled_for_ - c.next) <= 1e-12 * c.next;
   if (!kept) filled_for_ = -1;
@@ -184,7 +184,7 @@ void Heat::assemble(const Coefficients& c, std::span<const double> source) {
     filled_for_ = c.next;
   }
   std::ranges::fill(rhs_, 0.0);
-  // Newton for the stored heat: h(T) = h(T^k) + c(T^k) (T - T^k).
+  // Newton's method for the stored heat: h(T) = h(T^k) + c(T^k)(T - T^k).
   for (Index i = 0; i < std::ssize(capacity_); ++i) {
     const HeatProperties& m = materials_[mesh_->cell_zone[i]];
     const double mass = m.density * geometry_->volume[i];
@@ -205,7 +205,7 @@ void Heat::assemble(const Coefficients& c, std::span<const double> source) {
     unknowns_[n_owned + i] = trial_.boundary[faces[i] - mesh_->n_interior];
 }
 
-/// Largest change of a cell over the range of all temperatures (at least a thousandth of their level).
+/// Largest change of a cell relative to the range of all temperatures (at least a thousandth of their level).
 double Heat::take_solution() {
   const Index n_owned = mesh_->cells.n_owned();
   double change = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
@@ -231,7 +231,7 @@ double Heat::take_solution() {
   return parallel::max(mesh_->comm, change) / std::max({range, 1e-3 * std::abs(level), 1e-300});
 }
 
-/// R(T^{n+1}), which the next step of the trapezoidal rule needs.
+/// R(T^{n+1}), required by the next step of the trapezoidal rule.
 void Heat::set_inflow(std::span<const double> source) {
   if (is_steady() || parameters_.scheme != HeatParameters::Scheme::trapezoidal) return;
   if (properties_vary_) set_conductivity(trial_, conductivity_);
@@ -239,7 +239,7 @@ void Heat::set_inflow(std::span<const double> source) {
   const std::vector<double> points = point_temperature(trial_);
   std::vector<double> heat(mesh_->n_flux_faces());
   conduction_.face_heat(conductivity_, trial_.cells, trial_.boundary, points, heat);
-  // What is known of a flux face counts, as in the cell's row.
+  // Known data of a flux face enter as in the cell's row.
   const auto& faces = conduction_.flux_faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (conduction_.condition(faces[i]) == fv::HeatCondition::bonded) continue;

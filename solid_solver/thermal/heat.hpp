@@ -15,7 +15,7 @@
 
 namespace couplet::solid {
 
-/// What conduction needs to know of one material.
+/// Thermal properties of one material.
 struct HeatProperties {
   double density = 0;          // [kg/m^3]
   fv::Property conductivity;   // [W/(m K)]
@@ -23,9 +23,9 @@ struct HeatProperties {
   bool is_constant() const { return conductivity.is_constant() && specific_heat.is_constant(); }
 };
 
-/// Temperatures [K] at one accepted time, ghosts up to date.
+/// Temperatures [K] at one accepted time, ghosts current.
 struct HeatState {
-  double time = 0, dt = 0;                        ///< dt: of the step that ended here
+  double time = 0, dt = 0;                        ///< dt: size of the step that ended here
   int steps = 0;                                  ///< accepted so far
   std::vector<double> cells, boundary;            ///< per local cell, per local boundary face
   std::vector<double> known;                      ///< prescribed values, see ConductionOperator
@@ -33,26 +33,25 @@ struct HeatState {
   std::vector<double> inflow;                     ///< per owned cell [W]; trapezoidal rule only
 };
 
-/// Heat that flows through a patch into the solid [W].
+/// Heat flow through a patch into the solid [W].
 struct PatchHeat {
   std::string patch;
   double heat = 0;
 };
 
-/// Conduction of heat in a solid at rest, thesis (2.35):
+/// Heat conduction in a solid at rest, thesis (2.35):
 ///   rho V sum_i a_i h(T^i) / dt = theta R(T^{n+1}) + (1 - theta) R(T^n),  R = sum_f k S . grad T + V source
-/// with h the integral of the specific heat, so that energy is kept also when it depends on T; a = (1, -1)
+/// h is the integral of the specific heat, so that energy is conserved even if it depends on T. a = (1, -1)
 /// and theta = 1 for Euler, theta = 1/2 for the trapezoidal rule, three levels for three-point backward
-/// (2.46)-(2.47). Properties that depend on T are iterated: conductivities at the last temperature, heat
-/// capacities by Newton's method.
+/// (2.46)-(2.47). Temperature-dependent conductivities use the last iterate, heat capacities Newton's method.
 class Heat final {
  public:
-  /// `materials`: one a zone of the mesh. Collective. Throws Error.
+  /// `materials`: one per zone of the mesh. Throws Error. Collective.
   Heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<HeatProperties> materials,
        const HeatParameters& parameters, const std::vector<std::string>& symmetry_patches);
   ~Heat();
 
-  /// Solves for the temperature at the end of the step; `source`: further heat per owned cell [W/m^3] or
+  /// Solves for the temperature at the end of the step. `source`: additional heat per owned cell [W/m^3], or
   /// empty. Throws SolveFailure. Collective.
   void solve(const coupling::Step& step, std::span<const double> source = {});
   void accept_step();
@@ -68,26 +67,26 @@ class Heat final {
   const HeatBoundaries& boundaries() const { return boundaries_; }
   bool is_steady() const { return parameters_.analysis == HeatParameters::Analysis::steady; }
   bool properties_vary() const { return properties_vary_; }
-  /// Of all local points. Collective.
+  /// Temperature of all local points. Collective.
   std::vector<double> point_temperature(const HeatState& state) const;
-  /// Of the flux faces of the mesh. Collective.
+  /// Temperature of the flux faces of the mesh. Collective.
   std::vector<double> face_temperature(const HeatState& state) const;
   /// Heat through each patch at the accepted time. Collective.
   std::vector<PatchHeat> patch_heat() const;
-  /// Heat flux through each boundary face of owned cells into the solid at the accepted time [W/m^2]. Collective.
+  /// Heat flux into the solid per boundary face of owned cells at the accepted time [W/m^2]. Collective.
   std::vector<double> boundary_inflow() const;
-  /// Heat stored in the whole solid, from an arbitrary level on [J]. Collective.
+  /// Heat stored in the whole solid relative to an arbitrary level [J]. Collective.
   double stored_heat() const;
 
-  // The matrix of a steady field with constant conductivities and other data: what the dual problem needs.
+  // Linear steady problem with constant conductivities, for other data: used by the dual problem.
 
   /// Conductivity in the last step, per local face [W/(m K)].
   std::span<const double> conductivity() const { return conductivity_; }
-  /// h |S| of the flux faces [W/K], entry by entry of conduction().flux_faces(); empty: no convection.
+  /// h |S| of the flux faces [W/K], per entry of conduction().flux_faces(); empty without convection.
   std::vector<double> transfer() const;
-  /// What the value at a cell's center leaves out of the source in the cell [W], accepted time; empty: no source.
+  /// Quadrature error of the source in each cell [W], accepted time; empty without a source.
   std::vector<double> source_missed() const;
-  /// The field of other `sources` [W], one a row, and known values. Throws SolveFailure. Collective.
+  /// Solves for other `sources` [W], one per row, and known values. Throws SolveFailure. Collective.
   HeatState answer(std::vector<double> sources, std::vector<double> known) const;
 
  private:
@@ -95,7 +94,7 @@ class Heat final {
   void start();
   std::pair<std::vector<double>, std::vector<double>> known_fields() const;
   Coefficients coefficients(double dt) const;
-  std::vector<double> face_heat() const;  // of the flux faces, into their owners [W]
+  std::vector<double> face_heat() const;  // through flux faces into their owners [W]
   void set_conductivity(const HeatState& state, std::span<double> conductivity) const;
   std::vector<double> sources(double t, std::span<const double> further) const;
   void assemble(const Coefficients& c, std::span<const double> source);
@@ -115,7 +114,7 @@ class Heat final {
   std::vector<double> conductivity_, face_heat_, transfer_, capacity_, rhs_, unknowns_;
   linalg::SparseMatrix matrix_;
   std::unique_ptr<linalg::LinearSolver> solver_;
-  double filled_for_ = -1;  // a_0 / dt of the matrix now there; -1: none
+  double filled_for_ = -1;  // a_0/dt of the present matrix; -1 if none
 };
 
 }  // namespace couplet::solid

@@ -48,7 +48,7 @@ HeatBoundaries::HeatBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geo
     conditions_.push_back(condition_of(here.type));
     on_patch_.push_back(std::move(here));
   }
-  // The patch of the faces between materials is the last one.
+  // The last patch contains the faces between materials.
   if (names.size() == mesh.patches.size()) return;
   conditions_.push_back(fv::HeatCondition::bonded);
   on_patch_.emplace_back();
@@ -81,7 +81,7 @@ template <class Value>
 void HeatBoundaries::each_known(const fv::ConductionOperator& conduction, std::span<double> values,
                                 const Value& value) const {
   const auto& points = conduction.known_points();
-  // A vertex on two such patches takes the value of the first one (order of the mesh file).
+  // A vertex on two such patches takes the value of the first (order of the mesh file).
   std::vector<Index> column(mesh_->points.n_local(), -1);
   for (std::size_t i = 0; i < points.size(); ++i) column[points[i]] = static_cast<Index>(i);
   std::size_t next = points.size();
@@ -127,7 +127,7 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
   }
 }
 
-// The corners of a segment or a parallelogram are three times as far from the centre's value as the mean of a quadratic.
+// For a quadratic, corners of a segment or parallelogram differ from the center 3 times as much as the mean.
 void HeatBoundaries::fluxes_missed(const fv::ConductionOperator& conduction, double t,
                                    std::span<double> missed) const {
   const std::vector<Index> patch_of = mesh_->patch_of_boundary();

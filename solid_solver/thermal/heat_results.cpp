@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Heat on file, at points and faces, through patches, and the answers of its matrix to other data.
+// Heat in files, at points and faces, through patches, and solutions of its matrix for other data.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +12,7 @@
 
 namespace couplet::solid {
 
-/// The known values as fields, zeros elsewhere: per local point, per boundary face of owned cells.
+/// Known values as fields, zero elsewhere: per local point, per boundary face of owned cells.
 std::pair<std::vector<double>, std::vector<double>> Heat::known_fields() const {
   std::pair<std::vector<double>, std::vector<double>> fields;
   fields.first.assign(mesh_->points.n_local(), 0.);
@@ -54,7 +54,7 @@ void Heat::load(io::CheckpointReader& file) {
   state_.steps = static_cast<int>(file.read_scalar("heat-steps"));
 }
 
-// What is made of the temperature: values at points and faces, heat through patches, what was neglected.
+// Results from the temperature: values at points and faces, heat through patches, neglected effects.
 
 std::vector<double> Heat::point_temperature(const HeatState& state) const {
   std::vector<double> points(mesh_->points.n_local());
@@ -140,8 +140,8 @@ std::vector<double> Heat::transfer() const {
   return all;
 }
 
-// The mean of the values at the faces, by the volumes of their pyramids, is 3 / dim times as far from the centre's value as that of a
-// source of second order in a regular cell.
+// The pyramid-weighted mean of the face values differs from the center value 3/dim times as much as the mean
+// of a quadratic source in a regular cell.
 std::vector<double> Heat::source_missed() const {
   std::vector<double> missed;
   if (source_.is_zero()) return missed;

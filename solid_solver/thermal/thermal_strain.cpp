@@ -75,7 +75,7 @@ ThermalStrain::ThermalStrain(const mesh::Mesh& mesh, const elastic::ElasticOpera
   is_large_ = has_finite_strain(parameters);
   if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
   if (varies_) lame_ = lame_trial_ = lame_at(cell_temperature(0, false));
-  // What is given at the interface comes later: see set_interface().
+  // Interface temperatures arrive later, see set_interface().
   start_ = given_ ? std::vector<double>(mesh.n_flux_faces(), reference_) : face_temperature(0, false);
   lowest_ = *std::ranges::min_element(start_);
   highest_ = *std::ranges::max_element(start_);
@@ -103,7 +103,7 @@ std::vector<elastic::LameConstants> ThermalStrain::lame_at(std::span<const doubl
   return result;
 }
 
-// The constants of the accepted step hold as long as they are good enough: a new matrix costs more.
+// Keeps the constants of the accepted step while they are accurate enough, because a new matrix costs more.
 void ThermalStrain::choose_stiffness(double t) {
   lame_trial_ = lame_at(cell_temperature(t, true));
   double change = 0;
@@ -115,7 +115,7 @@ void ThermalStrain::choose_stiffness(double t) {
   if (parallel::max(mesh_->comm, change) <= parameters_.stiffness_tolerance) lame_trial_ = lame_;
 }
 
-// All ranks answer alike: new matrices are made together.
+// Equal on all ranks, because new matrices are created collectively.
 std::span<const elastic::LameConstants> ThermalStrain::stiffness() const {
   if (!varies_) return {};
   bool differs = false;
@@ -135,7 +135,7 @@ std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const 
   return values;
 }
 
-/// Before anything was given the solid has its reference temperature.
+/// Before any value is given, the solid has its reference temperature.
 std::vector<double> ThermalStrain::given_at(Places places, bool trial) const {
   const std::vector<double>& faces = trial ? given_trial_ : given_accepted_;
   const FaceInterpolation& at = interface_.value().at(places);
@@ -192,7 +192,7 @@ void ThermalStrain::add_loads(double t, const elastic::ElasticKernel& kernel, st
 std::vector<double> ThermalStrain::expansion(double t) {
   if (expansion_.empty()) return {};
   if (prescribed_) return strain(face_temperature(t, true));
-  // After the step has been accepted `start_` is its end.
+  // After the step is accepted, `start_` is its end.
   const double part = t > time_ ? (t - step_.time) / step_.dt : 0;
   std::vector<double> temperature = start_;
   if (part > 0)

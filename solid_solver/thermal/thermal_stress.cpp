@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From temperature to strain and stress.
+// Strain and stress from the temperature.
 #include <algorithm>
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
@@ -13,7 +13,7 @@ double ThermalStrain::modulus(Index cell) const {
   return (plane_stress_ ? 2 : 3) * lame.lambda + 2 * lame.mu;
 }
 
-// As the operator has its constants: the mean within a material.
+// Constants as in the operator: mean within a material.
 double ThermalStrain::face_modulus(Index face) const {
   const double here = modulus(mesh_->owner[face]);
   return face < mesh_->n_interior ? 0.5 * (here + modulus(mesh_->neighbour[face])) : here;
@@ -94,7 +94,7 @@ void ThermalStrain::add_cell_stress(std::span<Tensor3> stress) const {
   for (Index c = 0; c < std::ssize(strain); ++c) stress[c].diagonal().array() -= modulus(c) * strain[c];
 }
 
-// tr(sigma) = 3 K [tr(eps) - 3 epsilon], in plane strain and plane stress, too.
+// tr(sigma) = 3 K [tr(eps) - 3 epsilon], also in plane strain and plane stress.
 void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
   const std::vector<double> strain = cell_strain();
   for (std::size_t c = 0; c < stress.size(); ++c) {
@@ -105,8 +105,7 @@ void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
   }
 }
 
-/// (3 K alpha)^2 T / ((lambda + 2 mu) rho c): what the coupling adds to the stiffness, relatively; of the
-/// material where it is most.
+/// (3 K alpha)^2 T/((lambda + 2 mu) rho c): relative stiffening by the coupling, largest over the materials.
 double ThermalStrain::coupling_number() const {
   double most = 0;
   const double temperature = parallel::max(mesh_->comm, highest_);
@@ -123,7 +122,7 @@ double ThermalStrain::coupling_number() const {
   return most;
 }
 
-// The temperature in files of fields.
+// Temperature fields in files.
 
 std::vector<double> ThermalStrain::point_temperature() const {
   if (heat_) return heat_->point_temperature(heat_->accepted());

@@ -84,7 +84,7 @@ BedGrid::BedGrid(const std::vector<BedLayer>& layers, int cells) {
     throw Error("bed: {} cells are not enough for {} layers; each layer needs at least one.", cells,
                 layers.size());
   for (const BedLayer& l : layers) height += l.height;
-  // Faces of the layers at the nearest face of the uniform grid, each layer with a cell at least.
+  // Layer boundaries at the nearest face of the uniform grid, with at least one cell per layer.
   std::vector<int> ends;
   double below = 0;
   const int n_layers = int(layers.size());

@@ -10,17 +10,17 @@
 
 namespace couplet::thermocline {
 
-/// A horizontal layer of the bed.
+/// Horizontal layer of the bed.
 struct BedLayer {
   double height = 0;                    ///< [m]
-  double porosity = 0;                  ///< volume of the liquid [1]
-  double diameter = 0;                  ///< effective, of the grains [m]
-  std::optional<Filler> filler = {};    ///< grains of its own; else those of the tank
-  std::optional<Melting> melting = {};  ///< capsules in place of grains
+  double porosity = 0;                  ///< volume fraction of the liquid [1]
+  double diameter = 0;                  ///< effective grain diameter [m]
+  std::optional<Filler> filler = {};    ///< grains of this layer; else those of the tank
+  std::optional<Melting> melting = {};  ///< capsules instead of grains
 };
 
-/// Cells from the bottom up. Layers begin and end at cell faces, so masses are exact; within a layer cells
-/// are equal.
+/// Cells from the bottom up. Layer boundaries are cell faces, so masses are exact; the cells of a layer are
+/// equal.
 struct BedGrid {
   struct Run {
     int first, count;
@@ -28,28 +28,28 @@ struct BedGrid {
   };
   BedGrid(const std::vector<BedLayer>& layers, int cells);
 
-  std::vector<double> z, dz;  ///< centres and heights [m]
+  std::vector<double> z, dz;  ///< centers and heights [m]
   std::vector<int> layer;     ///< of each cell
   std::vector<Run> runs;      ///< the cells of each layer
   double height = 0;
   int size() const { return int(z.size()); }
 };
 
-/// How the front is carried.
+/// Advection scheme of the front.
 enum class Advection {
-  upwind,    ///< explicit, first order, as the thesis: its numerical diffusion is G c dz (1 - Courant)/2
+  upwind,    ///< explicit, first order, as in the thesis; numerical diffusion G c dz (1 - Courant)/2
   tvd,       ///< explicit, van Leer's limiter, second order in space and time, bounded
-  implicit,  ///< first-order upwind at the new time: any step, stays bounded
+  implicit,  ///< first-order upwind at the new time: any step, bounded
 };
 
 struct BedParameters {
   int cells = 500;
   std::vector<BedLayer> layers;  ///< from the bottom up
-  int shells = 5;                ///< in a grain
+  int shells = 5;                ///< per grain
   Advection advection = Advection::upwind;
-  double courant = 0.5;           ///< step over the advective limit; at most 0.5 for tvd, 1 for upwind
-  bool conducting_inlet = false;  ///< heat conduction through the inlet face too
-  bool mix_inversions = false;    ///< cold fluid above hot is mixed
+  double courant = 0.5;           ///< step relative to the advective limit; at most 0.5 for tvd, 1 for upwind
+  bool conducting_inlet = false;  ///< heat conduction through the inlet face, too
+  bool mix_inversions = false;    ///< mix cold fluid above hot fluid
   ClosureParameters closures;
   double initial_temperature = 293.15;                 ///< [K]
   std::vector<double> profile_z, profile_temperature;  ///< or a profile, piecewise linear

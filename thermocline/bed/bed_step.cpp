@@ -10,7 +10,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Half the limited difference at a cell, van Leer: the harmonic mean of the differences on its two sides.
+/// Half the limited difference at a cell (van Leer): harmonic mean of the differences on both sides.
 inline double half_slope(double behind, double ahead) {
   const double product = behind * ahead;
   const double divisor = product > 0 ? behind + ahead : 1;
@@ -61,7 +61,7 @@ PackedBed::Stage PackedBed::explicit_terms(const double* t, double flux, double 
   }
   const bool up = flux > 0;
   const double gc = flux * c_->fluid.specific_heat;
-  // Temperature that crosses face i (below cell i), from the side where the flow comes from.
+  // Temperature transported across face i (below cell i), from the upwind side.
   double* face = work_.face.data();
   std::copy_n(t, n, up ? face + 1 : face);
   face[up ? 0 : n] = inlet;
@@ -107,22 +107,22 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
   return heat;
 }
 
-/// IMEX-SSP2(2,2,2) of Pareschi and Russo (2005): Heun's strong-stability-preserving method for advection, an
-/// L-stable SDIRK with gamma = 1 - 1/sqrt(2) for conduction and exchange, second order together:
+/// IMEX-SSP2(2,2,2) of Pareschi and Russo (2005), second order: Heun's strong-stability-preserving method for
+/// advection, and an L-stable SDIRK with gamma = 1 - 1/sqrt(2) for conduction and exchange:
 ///   U1 = u + gamma dt L U1
 ///   U2 = u + dt A(U1) + dt (1 - 2 gamma) L U1 + gamma dt L U2
 ///   u' = u + dt/2 (A(U1) + A(U2)) + dt/2 (L U1 + L U2)
-/// False if the result leaves the range of what went in, which second order cannot exclude for exchange much
-/// faster than the step; the state is then as before.
+/// Returns false, with the state unchanged, if the result leaves the range of the input, which is possible
+/// for fast exchange.
 ///
-/// Written without L: gamma dt L U1 = U1 - u, gamma dt L U2 = U2 - R2 with R2 the right-hand side of U2,
+/// L is eliminated: gamma dt L U1 = U1 - u and gamma dt L U2 = U2 - R2 with the right-hand side R2 of U2,
 /// hence u' = u + dt/2 (A(U1) + A(U2)) + (U1 - u + U2 - R2)/(2 gamma).
 bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   const std::size_t n = fluid_.size(), ns = shell_.size();
   const double gamma = prepared_.main.tau / prepared_.dt, carry = (1 - 2 * gamma) / gamma, half = 0.5 / gamma;
   const double through_inlet = flux != 0 ? inlet_conductance(flux > 0) : 0;
   const std::size_t entry = flux > 0 ? 0 : n - 1;
-  // Conduction through the inlet counts as part of L.
+  // Conduction through the inlet is part of L.
   const auto only_inlet = [&] {
     std::fill(work_.extra.begin(), work_.extra.end(), 0.0);
     work_.extra[entry] = through_inlet * inlet;
@@ -133,7 +133,7 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   solve(prepared_.main, work_.fluid1.data(), shell_.data(), work_.shell1.data(), work_.extra.data(), false);
   const double conducted1 = through_inlet * (inlet - work_.fluid1[entry]);
   const Stage first = explicit_terms(work_.fluid1.data(), flux, inlet, true);
-  // R2 in work_.fluid2, work_.shell2; work_.fluid1 becomes u' as far as it is known.
+  // R2 in work_.fluid2, work_.shell2; work_.fluid1 contains the known part of u'.
   for (std::size_t i = 0; i < n; ++i) {
     const double a = prepared_.dt / capacity_[i] * work_.extra[i], l = work_.fluid1[i] - fluid_[i];
     work_.fluid2[i] = fluid_[i] + a + carry * l;
@@ -169,7 +169,7 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
 }
 
 PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
-  // The matrix of the implicit scheme belongs to one flow.
+  // The matrix of the implicit scheme depends on the flow.
   const double flux = mass_flow / c_->area;
   const bool other_inlet = c_->conducting_inlet && ((flux > 0) != (prepared_.mass_flow > 0) ||
                                                     (flux < 0) != (prepared_.mass_flow < 0));
@@ -191,11 +191,11 @@ PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
   return heat;
 }
 
-// Capsules that melt: Newton's method on the heat of each shell [swaminathan1993]. With h_m, T_m of the last pass
-// and c = dh/dT there,
-//   (h_m + c (T - T_m) - h^n)/tau = what flows in at T
-// is linear. h_m + c (T - T_m) is then exactly what flowed in, whatever the number of passes, and T_{m+1} the
-// temperature that belongs to it.
+// Melting capsules use Newton's method for the heat of each shell [swaminathan1993]. With h_m, T_m of the
+// last pass and c = dh/dT,
+//   (h_m + c (T - T_m) - h^n)/tau = inflow at T
+// is linear. h_m + c (T - T_m) then equals the inflow exactly after any number of passes, and T_{m+1} is its
+// temperature.
 
 /// Apparent capacity and right-hand side of each shell at its temperature of the last pass [J/(m^3 K)],
 /// [J/m^3].
@@ -211,7 +211,7 @@ void PackedBed::linearise_melting(const BedGrid::Run& run, const PhaseChange& ph
     }
 }
 
-/// The elimination of GrainElimination with a capacity of each shell of each cell; adds to the fluid's rows.
+/// GrainElimination with a capacity per shell and cell; adds to the fluid's rows.
 void PackedBed::eliminate_melting(const Operator& op, const BedGrid::Run& run, const Grains& grains,
                                   const double* extra) {
   const int n = c_->grid.size();
@@ -235,8 +235,8 @@ void PackedBed::eliminate_melting(const Operator& op, const BedGrid::Run& run, c
   }
 }
 
-/// Temperatures that belong to the heat that each shell got; by how much the linear ones were off at most
-/// [K].
+/// Computes the temperatures for the heat received by each shell. Returns the largest error of the linearized
+/// ones [K].
 double PackedBed::settle_melting(const BedGrid::Run& run, const PhaseChange& phase) {
   const int n = c_->grid.size();
   const double share = (1 - run.layer.porosity) / c_->shells;
@@ -246,7 +246,7 @@ double PackedBed::settle_melting(const BedGrid::Run& run, const PhaseChange& pha
     for (int j = 0; j < c_->shells; ++j) {
       const std::size_t k = std::size_t(j) * n + i;
       outside = work_.melt.alpha[k] + work_.melt.beta[k] * outside;
-      // capacity T - right = h - h^n, per volume of the bed
+      // capacity T - right = h - h^n, per volume of the bed.
       const double heat =
           phase.heat(work_.shell1[k]) + (work_.melt.capacity[k] * outside - work_.melt.right[k]) / share;
       shell_[k] = phase.temperature(heat);

@@ -14,7 +14,7 @@ const int n_nodes = 257;  // every 4 K over 1000 K
 double zehner_schluender(double porosity, double kappa) {
   const double b = 1.25 * std::pow((1 - porosity) / porosity, 10.0 / 9), n = 1 - b / kappa;
   const double root = std::sqrt(1 - porosity);
-  // The bracket over N; near kappa = B both vanish, and the first terms of its series serve.
+  // The bracket over N; near kappa = B both vanish, so the first terms of its series are used.
   const double bridge =
       std::abs(n) < 1e-3
           ? (2 * b + 1) / 6 + n * (3 * b + 1) / 12
@@ -32,7 +32,7 @@ MassFlux::MassFlux(double g_abs)
 LayerClosure::LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler,
                            double porosity, double diameter)
     : parameters_(parameters), fluid_(fluid), filler_(filler), porosity_(porosity), diameter_(diameter) {
-  // A little beyond the fluid's limits: a run that leaves them is warned about, not stopped.
+  // Slightly beyond the fluid's limits, because a run that leaves them is only warned about.
   const double lowest = std::max(fluid.lowest - 50, 150.0), highest = std::min(fluid.highest + 100, 1500.0);
   first_ = lowest;
   inverse_spacing_ = (n_nodes - 1) / (highest - lowest);
@@ -45,8 +45,8 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
   const double pr = mu * fluid_.specific_heat / k, re = d / mu;  // Re per unit flux
   const double stagnant = zehner_schluender(std::min(porosity_, 0.999), filler_.conductivity / k) * k;
   Node n{};
-  // Nu = 2 + 1.1 Pr^(1/3) Re^0.6, Re on the superficial velocity (Wakao and Kaguei 1982, fitted to 15 < Re < 8500; Nu = 2,
-  // pure conduction, at rest).
+  // Nu = 2 + 1.1 Pr^(1/3) Re^0.6, Re on the superficial velocity (Wakao and Kaguei 1982, fitted to 15 < Re <
+  // 8500; Nu = 2, pure conduction, at rest).
   n.film_still = 2 * k / d;
   n.film_flow = 1.1 * k / d * std::cbrt(pr) * std::pow(re, 0.6);
   if (parameters_.film_coefficient > 0) n.film_still = parameters_.film_coefficient, n.film_flow = 0;
@@ -65,8 +65,8 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
       break;
   }
   // Beek 1962: (k/d) [0.203 (Re Pr)^(1/3) + 0.220 Re^0.8 Pr^0.4]. Yagi and Wakao 1959: Nu = 0.6 Pr^(1/3)
-  // Re^(1/2) up to Re = 40, 0.2 Pr^(1/3) Re^0.8 beyond. At least 2 k0/d, k0 the
-  // stagnant bed: grains that touch the wall conduct too, also below a slow flow.
+  // Re^(1/2) up to Re = 40, 0.2 Pr^(1/3) Re^0.8 beyond. At least 2 k0/d of the stagnant bed, because grains
+  // at the wall conduct also in a slow flow.
   n.wall_still = 2 * stagnant / d;
   if (parameters_.wall_film == WallFilm::beek) {
     n.wall_third = 0.203 * k / d * std::cbrt(re * pr);

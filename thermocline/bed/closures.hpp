@@ -12,10 +12,10 @@ namespace couplet::thermocline {
 enum class Conduction {
   wakao,      ///< 0.7 eps k + 0.5 Re Pr k: molecular and dispersion (Wakao and Kaguei 1982)
   molecular,  ///< eps k
-  stagnant,   ///< Zehner-Schluender's stagnant bed (grains conduct too) and the dispersion of wakao
-  constant,   ///< a given value
+  stagnant,   ///< stagnant bed of Zehner and Schluender (grains conduct, too) and the dispersion of wakao
+  constant,   ///< prescribed value
 };
-/// Between fluid and wall; at least that of the stagnant bed, 2 k0/d.
+/// Correlation between fluid and wall; at least that of the stagnant bed, 2 k0/d.
 enum class WallFilm { beek, yagi_wakao, constant };
 
 struct ClosureParameters {
@@ -37,24 +37,24 @@ struct Closure {
   double wall = 0;          ///< fluid-wall [W/(m^2 K)]
 };
 
-/// Powers of the mass flux G = |m|/S, shared by all cells of a step.
+/// Powers of the mass flux G = |m|/S, used by all cells of a step.
 struct MassFlux {
   explicit MassFlux(double g);
   double g, g_film, g_third, g_wall, g_half;
 };
 
-/// The closures of one layer of the bed (porosity, grain diameter). What depends on temperature is tabulated
-/// once; at a given flux a cell costs one look-up. Re and Pr never appear: every correlation used here is a
-/// sum of f(T) G^n.
+/// Closures of one layer of the bed (porosity, grain diameter). Temperature-dependent parts are tabulated
+/// once, so that a cell needs one look-up at a given flux. Every correlation used here is a sum of f(T) G^n,
+/// so Re and Pr are not needed.
 class LayerClosure {
  public:
   LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler, double porosity,
                double diameter);
   Closure at(double temperature, const MassFlux& flux) const;
-  /// Evaluates many cells at once: film, conductivity and wall coefficient of each.
+  /// Evaluates film, conductivity and wall coefficients of many cells at once.
   void fill(std::span<const double> temperature, const MassFlux& flux, double* film, double* conductivity,
             double* wall) const;
-  /// Re on the superficial velocity.
+  /// Re based on the superficial velocity.
   double reynolds(double temperature, double flux) const;
 
  private:

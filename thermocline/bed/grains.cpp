@@ -8,7 +8,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// N shells, or as many as e.n for N = 0.
+/// N shells, or e.n shells for N = 0.
 template <int N>
 [[gnu::always_inline]] inline void gather(const GrainElimination& e, const GrainCells& c,
                                           const double* shells, const double* extra, double* fluid,
@@ -53,8 +53,8 @@ template <int N>
   }
 }
 
-/// Calls f with the number of shells as a constant where it is one of N, which unrolls the loops over them; otherwise
-/// with 0: as many as the grain has.
+/// Calls f with the number of shells as a compile-time constant if it is one of N, which unrolls the loops;
+/// otherwise with 0.
 template <int... N, typename F>
 [[gnu::always_inline]] inline void with_shells(int n, F&& f) {
   const bool known = ((n == N && (f(std::integral_constant<int, N>{}), true)) || ...);
@@ -67,13 +67,13 @@ Grains::Grains(const Filler& filler, double porosity, double diameter, int shell
     : n(shells),
       capacity((1 - porosity) * filler.volumetric() / shells),
       area(6 * (1 - porosity) / diameter) {
-  // In units of the radius: shell j lies between radii (1 - j/n)^(1/3) and (1 - (j+1)/n)^(1/3); its mean of
-  // r^2 is (3/5)(r_out^5 - r_in^5)/(r_out^3 - r_in^3).
+  // In units of the radius, shell j is between (1 - j/n)^(1/3) and (1 - (j+1)/n)^(1/3); its mean of r^2 is
+  // (3/5)(r_out^5 - r_in^5)/(r_out^3 - r_in^3).
   const auto radius = [&](int j) { return std::cbrt(1 - double(j) / n); };
   const auto mean_square = [&](int j) {
     return 0.6 * (std::pow(radius(j), 5) - std::pow(radius(j + 1), 5)) * n;
   };
-  // 8 pi k R r^3/(difference) a grain, 3 (1 - eps)/(4 pi R^3) grains a volume.
+  // 8 pi k R r^3/(difference) per grain, 3 (1 - eps)/(4 pi R^3) grains per volume.
   const double radius_m = 0.5 * diameter;
   const double scale = 6 * (1 - porosity) * filler.conductivity / (radius_m * radius_m);
   surface = scale / (1 - mean_square(0));
@@ -90,7 +90,7 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
     return;
   }
   // Row j: (store + a_{j-1} + a_j) theta_j - a_{j-1} theta_{j-1} - a_j theta_{j+1} = store theta_j^n.
-  // 1 - beta is carried along by itself: in tiny grains it is far below the rounding of beta.
+  // 1 - beta is computed separately, because in tiny grains it is far below the round-off of beta.
   double rest_inside = 1;  // 1 - beta of the shell further in
   for (int j = n - 1; j >= 1; --j) {
     const double outward = grains.between[j - 1], inward = j + 1 < n ? grains.between[j] : 0;

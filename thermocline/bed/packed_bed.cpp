@@ -73,7 +73,7 @@ void PackedBed::set_temperature(std::span<const double> temperature) {
   follow_density();
 }
 
-/// Capacities of the fluid's temperatures as they are.
+/// Sets the capacities for the current fluid temperatures.
 void PackedBed::follow_density() {
   if (!c_->fluid.real_density) return;
   settled_ = fluid_;
@@ -88,7 +88,7 @@ void PackedBed::settle() {
   const DensityLaw& law = *c_->fluid.real;
   for (int i = 0; i < c_->grid.size(); ++i) {
     const double from = settled_[i], heat = law.at(from) * (fluid_[i] - from);
-    // Newton's method from a start that is right to first order: two steps reach rounding.
+    // Newton's method with a first-order accurate start: two steps converge to round-off.
     for (int k = 0; k < 3; ++k) fluid_[i] -= (law.between(from, fluid_[i]) - heat) / law.at(fluid_[i]);
   }
   follow_density();
@@ -163,7 +163,7 @@ void PackedBed::build(Operator& op, double tau) {
 void PackedBed::set_source(std::span<const double> source) {
   source_rate_ = 0;
   for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = source[i] / c_->area;
-  if (c_->advection != Advection::tvd) return;  // which alone asks for it
+  if (c_->advection != Advection::tvd) return;  // others do not use it
   for (std::size_t i = 0; i < source_.size(); ++i)
     source_rate_ = std::max(source_rate_, std::abs(source_[i]) / capacity_[i]);
 }
@@ -216,7 +216,7 @@ void PackedBed::filler_temperature(std::vector<double>& mean) const {
     for (std::size_t i = 0; i < n; ++i) mean[i] += shell_[j * n + i];
   const double share = c_->shells;
   for (double& t : mean) t /= share;
-  for (const BedGrid::Run& run : c_->grid.runs)  // fluid alone: there are no grains
+  for (const BedGrid::Run& run : c_->grid.runs)  // without grains, only the fluid
     if (run.layer.porosity >= 1) std::copy_n(fluid_.begin() + run.first, run.count, mean.begin() + run.first);
 }
 
@@ -263,7 +263,7 @@ void PackedBed::resume() {
   work_.sums_of = 0;
   follow_density();
   if (prepared_.dt == 0) return;
-  // The walls use the coefficients of the last steps, not those of the temperatures now.
+  // The walls use the coefficients of the last steps, not those of the current temperatures.
   const std::vector<double> wall = prepared_.wall;
   prepare(prepared_.dt, prepared_.mass_flow);
   prepared_.wall = wall;

@@ -8,9 +8,9 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Spreading of a front that crosses the bed by steps and cells. First order in time: a front of speed v is spread as by a
-/// diffusion v^2 dt / 2, over the way H by sqrt(v dt H). Four hundred steps a crossing are 0.05 (and within 0.1 % of
-/// Schumann's gas bed, docs/validation/tank-tables.md). Cells spread it by G c dz (1 - Co)/2 of the bed's whole capacity.
+/// Numerical spreading of a front that crosses the bed. First order in time acts like a diffusion v^2 dt/2 at
+/// front speed v, over the height H sqrt(v dt H). Four hundred steps per crossing give 0.05 (within 0.1 % of
+/// Schumann's gas bed, docs/validation/tank-tables.md). Cells add G c dz (1 - Co)/2 of the bed.
 class FirstOrderAdvection final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -25,7 +25,7 @@ class FirstOrderAdvection final : public TankDiagnostic {
           .what = fmt::format("implicit advection with this step smears a front that crosses the bed over "
                               "{:.2g} of its height (standard deviation)",
                               std::sqrt(part)),
-          // A tenth to spare.
+          // With a margin of a tenth.
           .advice = fmt::format("use 'simulation.time-step: {:.2g} s'",
                                 0.9 * limit * limit / part * seen_->advance / seen_->flow),
           .left_out = false});

@@ -8,7 +8,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Heat that was moved and lost, the error of its balance, and the steps that it took.
+/// Heat transported and lost, the error of the balance, and the number of steps.
 class EnergyBalance final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;

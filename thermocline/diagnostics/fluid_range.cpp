@@ -6,7 +6,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Fluid beyond the limits of its liquid state or of its tables, and what its constant density leaves out.
+/// Fluid outside its liquid range or tables, and the effect of its constant density.
 class FluidRange final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;

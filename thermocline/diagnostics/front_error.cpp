@@ -9,8 +9,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// How many standard deviations from the middle of a front that spread like a diffusion a `share` of its step is left
-/// beyond.
+/// Standard deviations from the middle of a diffusive front to where a `share` of its step remains.
 double deviations(double share) {
   double low = 0, high = 10;
   for (int i = 0; i < 50; ++i) {
@@ -20,11 +19,11 @@ double deviations(double share) {
   return low;
 }
 
-/// Error of the profile. Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over
-/// the way w by s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the
-/// largest flow can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
-/// profile's distance from its mean, sums over the height. With a plant at least the part of the storage that the
-/// spreading leaves unused.
+/// Error of the profile. Upwind advection spreads a front like a diffusion v dz/2, implicit steps like v^2
+/// dt/2: over a way w by s^2 = dz w and v dt w, which changes the profile by s^2/2 of its second derivative.
+/// w is the way at the largest flow since time 0, at most the height. The limited scheme spreads by a cell.
+/// Relative to the profile's distance from its mean, as sums over the height. With a plant at least the
+/// storage capacity lost by spreading.
 class FrontError final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -32,7 +31,7 @@ class FrontError final : public TankDiagnostic {
     report.errors = spread_profile();
     if (const double unused = unused_by_spreading(1); unused > 0 && !(report.errors.mesh > unused)) {
       report.errors.mesh = unused;
-      // Upwind: a front widens with the root of the cell size.
+      // Upwind: a front widens with the square root of the cell size.
       report.errors.mesh_order = std::log2(unused / unused_by_spreading(2));
     }
     report.errors.dimension = 1;
@@ -40,7 +39,7 @@ class FrontError final : public TankDiagnostic {
 
  private:
   Advection scheme() const { return view_.parameters().bed.advection; }
-  /// Share of the bed that the largest flow can have crossed.
+  /// Share of the bed that can have been crossed at the largest flow.
   double crossed() const { return std::min(1., seen_->flow * view_.time() / crossing_mass()); }
 
   diagnostics::ErrorParts spread_profile() const {
@@ -54,7 +53,7 @@ class FrontError final : public TankDiagnostic {
       size += std::abs(t[i] - mean);
       if (i > 0 && i + 1 < n) bends += std::abs(t[i - 1] - 2 * t[i] + t[i + 1]);
     }
-    if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
+    if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // uniform temperature does not spread
     const double one_cell = 0.5 * bends / size;                  // s = dz
     const double way = double(n) * crossed();                    // in cells
     diagnostics::ErrorParts parts{.mesh =
@@ -66,9 +65,9 @@ class FrontError final : public TankDiagnostic {
     return parts;
   }
 
-  /// A plant ends a charge or a discharge when the outlet differs by the cut-off, while the front's middle is still some
-  /// deviations inside. That much of the bed stays unused at either end; gives what the scheme adds to it with `finer`
-  /// times the cells, the front being spread by film and grains anyway.
+  /// A plant ends charging or discharging when the outlet deviates by the cut-off, while the front's middle
+  /// is still some deviations inside. That part of the bed stays unused at both ends. Returns the
+  /// contribution of the scheme with `finer` times the cells, besides that of film and grains.
   double unused_by_spreading(double finer) const {
     const FlowParameters& flow = view_.parameters().flow;
     if (flow.type != FlowParameters::Type::plant || !(seen_->flow > 0)) return 0;
@@ -76,15 +75,15 @@ class FrontError final : public TankDiagnostic {
     double variance = 1;  // in cells
     if (scheme() != Advection::tvd)
       variance = way * (1 + (scheme() == Advection::implicit ? seen_->advance / crossing_mass() * n : 0));
-    // A new front in each charge adds variances; tails that stay in the bed from cycle to cycle add widths. The truth of
-    // the map tank-plant and of configs/thermocline-rock-air lies between: the mean.
+    // A new front in each charge adds variances; tails that remain in the bed between cycles add widths. The
+    // map tank-plant and configs/thermocline-rock-air are in between, so the mean is used.
     const double of_scheme = std::sqrt(variance) / n, of_grains = std::sqrt(variance_of_grains());
     const double added = 0.5 * (of_scheme + std::hypot(of_scheme, of_grains) - of_grains);
     return 2 * deviations(flow.plant.cut_off / (flow.plant.hot - flow.plant.cold)) * added;
   }
 
-  /// Variance of a front that film and grains spread on its way through the bed, over the square of the height:
-  /// 2 (G c/(h a)) (1 - beta)^2 of each metre, beta the fluid's share of the heat capacity (Schumann's model at late
+  /// Relative variance of a front by film and grains on its way through the bed: 2 (G c/(h a)) (1 - beta)^2
+  /// per meter over the squared height, beta the fluid's share of the heat capacity (Schumann's model at late
   /// times).
   double variance_of_grains() const {
     const std::span<const double> fluid = bed().fluid();

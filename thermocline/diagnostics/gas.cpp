@@ -9,7 +9,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// An ideal gas of constant specific heat: its speed against that of sound, and the specific heat against the mean.
+/// Checks an ideal gas of constant specific heat: its Mach number, and the mean of the true specific heat.
 class Gas final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -30,7 +30,7 @@ class Gas final : public TankDiagnostic {
   }
 
  private:
-  /// Mach number where the gas is hottest and the pores are narrowest, at the pressure at which it leaves.
+  /// Mach number at the hottest gas and narrowest pores, at the outlet pressure.
   void look_at_speed(diagnostics::Report& report) const {
     const Fluid& f = view_.fluid();
     double narrowest = 1;

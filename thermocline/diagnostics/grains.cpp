@@ -8,9 +8,9 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Grains of one temperature. It takes a parabola inside them (linear driving force), late by d^2/(60 a) for what changes
-/// slowly, wrong for what changes faster: 1/h becomes (1 + Bi/5)/h. Behind a front the fluid was measured
-/// (docs/stability.md) within 0.1 % of 20 shells at Bi 10, within 1.2 % at Bi 100.
+/// Checks grains with a single shell. It assumes a parabolic profile (linear driving force), delayed by
+/// d^2/(60 a) for slow changes and inaccurate for fast ones: 1/h becomes (1 + Bi/5)/h. Behind a front the
+/// fluid was within 0.1 % of 20 shells at Bi 10, within 1.2 % at Bi 100 (docs/stability.md).
 class ResolvedGrains final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -54,7 +54,7 @@ class ResolvedGrains final : public TankDiagnostic {
   }
 
  private:
-  /// Film d / (2 conductivity) of the layers of grains, at the largest flow and the bed's mean temperature.
+  /// Film times d/(2 conductivity) of grain layers at the largest flow and the bed's mean temperature.
   double largest_biot() const {
     double mean = 0, largest = 0;
     for (const double t : bed().fluid()) mean += t / double(bed().fluid().size());

@@ -7,8 +7,8 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Cold fluid above hot, which sinks (docs/thermocline.md, inversions). How far that changes the answer depends on flow
-/// and grains: no share of the error.
+/// Detects cold fluid above hot fluid, which sinks (docs/thermocline.md, inversions). The effect depends on
+/// flow and grains, so there is no error estimate.
 class Inversions final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;

@@ -6,7 +6,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Power of pump or fan at the largest flow, over the heat that this carries between the coldest and the hottest fluid.
+/// Power of pump or fan at the largest flow, over the heat flow between the coldest and hottest fluid.
 class Pumping final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -51,8 +51,8 @@ class Pumping final : public TankDiagnostic {
                   .share = share});
   }
 
-  /// A power block makes some 0.4 of the heat electricity, and pump or fan run in charge and in discharge: a tenth of the
-  /// heat is half of all that is sold. The bed is taken to be at the mean of both temperatures.
+  /// A power block converts some 0.4 of the heat, and pump or fan run during charge and discharge: a tenth of
+  /// the heat is half of the electricity sold. The bed is assumed at the mean temperature.
   void look_at_pump(diagnostics::Report& report, double cold, double hot) const {
     const Fluid& f = view_.fluid();
     const std::vector<double> mean(std::size_t(bed().grid().size()), 0.5 * (cold + hot));

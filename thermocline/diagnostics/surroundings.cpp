@@ -6,7 +6,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Borders of the tank that lose no heat because an element is left out.
+/// Boundaries of the tank without heat loss because an element is missing.
 class NeglectedLosses final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;

@@ -16,7 +16,7 @@ namespace couplet::thermocline {
 
 namespace {
 
-/// Keeps the extremes that the others read.
+/// Records the extreme values that others read.
 class ExtremesOfRun final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;

@@ -9,7 +9,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Parts of the case that had no effect: rows of the schedule that never ran, capsules that neither melted nor froze, days
+/// Reports input without effect: schedule rows that never ran, capsules that neither melted nor froze, days
 /// that the report could not use.
 class UnusedInput final : public TankDiagnostic {
  public:

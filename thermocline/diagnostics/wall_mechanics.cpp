@@ -9,7 +9,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Grains that the wall has pushed in, or the stress that neglecting them leaves out.
+/// Grains displaced by the wall, or the stress neglected without them.
 class WallMechanics final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;

@@ -10,8 +10,8 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Stress of the wall against its yield strength, with the bending that the rings leave out, which is sampled every two
-/// hours; temperatures beyond the metal's.
+/// Wall stress relative to the yield strength, including bending (sampled every two hours), which the rings
+/// neglect; also temperatures beyond the metal's range.
 class WallStrength final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -32,7 +32,7 @@ class WallStrength final : public TankDiagnostic {
         axial_ = {axial, rings().z[i], view_.time()};
     }
   }
-  // The shares of the strength are compared, so that a wall that carries next to nothing is no reason for a word.
+  // Compares shares of the strength, so that an almost unloaded wall is not reported.
   void look(diagnostics::Report& report) override {
     const WallStress& stress = view_.model.stress();
     double share = 0;
@@ -58,7 +58,7 @@ class WallStrength final : public TankDiagnostic {
   }
   void conclude(diagnostics::Report& report) override {
     if (view_.parameters().external_wall) return;
-    // beta^4 = 3 (1 - nu^2)/(a^2 e^2): edge effects of a cylinder fade as exp(-beta z).
+    // beta^4 = 3 (1 - nu^2)/(a^2 e^2): edge effects of a cylinder decay as exp(-beta z).
     const double nu = steel().poissons_ratio, e = std::ranges::max(rings().thickness);
     std::string line = fmt::format("bending of the wall neglected: it smooths variations within {:.2f} m",
                                    std::sqrt(rings().diameter / 2 * e) / std::pow(3 * (1 - nu * nu), 0.25));
@@ -81,7 +81,7 @@ class WallStrength final : public TankDiagnostic {
     const std::vector<double>& wall = view_.model.shell()->temperature();
     const auto [coldest, hottest] = std::ranges::minmax_element(wall);
     const auto z = [&](auto ring) { return rings().z[std::size_t(ring - wall.begin())]; };
-    // A tenth of the table's width is left to the walls that cool a little below the coldest fluid.
+    // Allows a tenth of the table's width for walls slightly below the coldest fluid.
     const double low = steel().yield_strength.x.front(), high = steel().yield_strength.x.back();
     const double slack = 0.1 * (high - low);
     const auto outside = *coldest < low - slack ? coldest : hottest;
@@ -97,7 +97,7 @@ class WallStrength final : public TankDiagnostic {
                        steel().name, celsius(*hottest), z(hottest), celsius(steel().highest)));
   }
 
-  /// A largest stress [Pa], where [m] and when [s].
+  /// Largest stress [Pa] with its position [m] and time [s].
   struct Peak {
     double stress = 0, z = 0, time = 0;
     template <class Numbers>

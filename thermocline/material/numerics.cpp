@@ -17,7 +17,7 @@ namespace {
 #pragma GCC ivdep
   for (std::size_t i = 0; i < n; ++i) {
     const double a = std::max(0.0, from[i] - at), b = std::max(0.0, to[i] - at), way = to[i] - from[i];
-    // Both beyond the bend: their mean; otherwise half the difference of the squares over the way.
+    // Mean if both are beyond the bend, otherwise half the difference of the squares over the distance.
     const bool both = (a > 0) == (b > 0);
     value[i] += bend * (both ? 0.5 * (a + b) : 0.5 * (b * b - a * a) / (way == 0 ? 1 : way));
   }
@@ -31,10 +31,10 @@ struct Rows {
   double *low, *up, *inverse;
 };
 
-/// The pivots d_i = b_i - a_i c_{i-1} / d_{i-1} wait for a division each. Quotients of a continuant do not: with the
-/// rows divided by their diagonals d_i / b_i = p_i / p_{i-1}, p_i = p_{i-1} - e_i p_{i-2}, e_i = a_i c_{i-1} / (b_i
-/// b_{i-1}), a subtraction a row, and all divisions are independent. p begins anew with 1 every few rows: it would
-/// run out of range.
+/// Computes the pivots d_i = b_i - a_i c_{i-1}/d_{i-1} as quotients of a continuant, to avoid a chain of
+/// divisions. With rows divided by their diagonals, d_i/b_i = p_i/p_{i-1}, p_i = p_{i-1} - e_i p_{i-2}, e_i =
+/// a_i c_{i-1}/(b_i b_{i-1}): one subtraction per row and independent divisions. p restarts with 1 every few
+/// rows to stay in range.
 [[gnu::target_clones("avx2", "default")]] void find_pivots(const Rows& r) {
   const int m = r.n / 2, last = r.n - 1, above = last - m;  // rows over the middle, m or m - 1 of them
   double *const e = r.low, *const diagonal = r.up, *const inverse = r.inverse;

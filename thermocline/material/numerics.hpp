@@ -13,10 +13,10 @@ constexpr double celsius(double kelvin) { return kelvin - zero_celsius; }
 constexpr double kelvin(double celsius) { return celsius + zero_celsius; }
 
 inline constexpr double seconds_an_hour = 3600, seconds_a_day = 86400;  // [s]
-/// Moments that lie less than this before a full hour count as that hour [h].
+/// Times less than this before a full hour count as that hour [h].
 inline constexpr double clock_rounding = 1e-9;
 
-/// A property as a piecewise linear function of temperature, constant beyond its ends. `x` [K] grows.
+/// Property as a piecewise linear function of temperature, constant beyond its ends. `x` [K] is ascending.
 struct Table {
   std::vector<double> x, y;
 
@@ -42,8 +42,8 @@ struct Table {
   }
 };
 
-/// A table for many temperatures at once: y_0 + sum of bend_s max(0, T - x_s), loops without branches over
-/// the temperatures.
+/// Table for many temperatures at once: y_0 + sum of bend_s max(0, T - x_s), with branch-free loops over
+/// temperatures.
 class Ramps {
  public:
   Ramps() = default;
@@ -58,7 +58,7 @@ class Ramps {
   }
   /// Values at n temperatures.
   void values(const double* t, double* value, std::size_t n) const;
-  /// Means over the way from one temperature to another; the value where they are (nearly) the same.
+  /// Means between two temperatures; the value where they are (nearly) equal.
   void means(const double* from, const double* to, double* value, std::size_t n) const;
 
  private:
@@ -66,10 +66,9 @@ class Ramps {
   std::vector<double> at_, bend_;
 };
 
-/// a_i x_{i-1} + b_i x_i + c_i x_{i+1} = r_i by elimination from both ends at once: the two recurrences are
-/// independent, so a processor works on them side by side, which halves the wait on their chains. Factorised
-/// once for many right-hand sides. Stable without pivoting for the diagonally dominant matrices of
-/// conduction.
+/// Solves a_i x_{i-1} + b_i x_i + c_i x_{i+1} = r_i by elimination from both ends. The two recurrences are
+/// independent, so a processor overlaps them, which halves the latency. Factorized once for many right-hand
+/// sides. Stable without pivoting for the diagonally dominant matrices of conduction.
 class Tridiagonal {
  public:
   void resize(int n) {
@@ -78,19 +77,19 @@ class Tridiagonal {
   }
   /// Spans of n values; a[0] and c[n-1] are not used.
   void factorise(const double* a, const double* b, const double* c);
-  /// In place: right-hand side in, solution out.
+  /// In place: right-hand side on entry, solution on exit.
   void solve(double* x) const;
 
  private:
   int n_ = 0;
-  // Below the middle: low = a_i/d_{i-1}, up = c_i/d_i; above it mirrored.
+  // Below the middle: low = a_i/d_{i-1}, up = c_i/d_i; mirrored above it.
   std::vector<double> low_, up_, inverse_;
 };
 
 inline void Tridiagonal::solve(double* x) const {
   const int m = n_ / 2, last = n_ - 1, above = last - m;  // `above` rows over the middle, m or m - 1 of them
-  // The last values of both chains stay in registers: the compiler cannot know that one's store is not the other's
-  // next load, and would wait for it.
+  // The last values of both chains stay in registers. Otherwise the compiler would wait for a possible
+  // overlap of one chain's store with the other's load.
   double low = x[0], high = x[last];
   for (int j = 1; j < above; ++j) {
     x[j] = low = x[j] - low_[j] * low;
@@ -108,11 +107,11 @@ inline void Tridiagonal::solve(double* x) const {
   for (int j = above + 1; j <= m; ++j) x[m - j] = low = x[m - j] * inverse_[m - j] - up_[m - j] * low;
 }
 
-/// Conduction between n cells in a row as lower and upper rows of a matrix: -1 over the sum of the resistances of the
-/// two half cells at each face. The diagonal is that of what the cells store, less lower and upper.
+/// Rows for conduction between n cells in a row: lower and upper entries are -1 over the sum of the two
+/// half-cell resistances at each face. The diagonal is the storage term minus both.
 void conduction_rows(std::size_t n, const double* half_resistance, double* lower, double* upper);
 
-/// Visits the values of lists whose lengths follow from grid and elements, for checkpoints.
+/// Visits lists whose lengths follow from grid and elements, for checkpoints.
 template <class Numbers, class... Lists>
 void visit_values(Numbers& numbers, Lists&... lists) {
   const auto all = [&](auto& list) {

@@ -19,8 +19,8 @@ Steel steel(std::string name, double density, std::vector<double> range, std::ve
 }
 
 const std::map<std::string, Insulator>& foundations() {
-  // Handbook values (Incropera, tables A.3 and A.1, and makers' sheets); cellular glass grows with
-  // temperature.
+  // Handbook values (Incropera, tables A.3 and A.1, and data sheets); the conductivity of cellular glass
+  // increases with temperature.
   static const std::map<std::string, Insulator> all{
       {"steel-plate", {7850, 480, 50.0}},
       {"dry-sand", {1515, 800, 0.27}},
@@ -37,9 +37,9 @@ const std::map<std::string, Insulator>& foundations() {
 }  // namespace
 
 Fluid solar_salt() {
-  // Table 5.1 prints the conductivity in kW with a slope ten times too low, and -1.24e-4 in the viscosity,
-  // which makes it negative above 407 degC; these are the correlations of Zavoico (SAND2001-2100). Density
-  // and specific heat are those at 340 degC, with which table 5.3 reproduces.
+  // Table 5.1 gives the conductivity in kW with a slope ten times too small, and -1.24e-4 in the viscosity,
+  // which is then negative above 407 degC. These are the correlations of Zavoico (SAND2001-2100). Density and
+  // specific heat are those at 340 degC, which reproduce table 5.3.
   return {"solar salt",
           1873.8,
           1501.5,
@@ -54,7 +54,7 @@ Fluid solar_salt() {
 }
 
 Fluid caloria_ht43() {
-  // Table 5.1 prints the conductivity in kW/(m K); its density is that at 280 degC of the fit given with it.
+  // Table 5.1 gives the conductivity in kW/(m K); its density is that of the fit at 280 degC.
   return {"Caloria HT-43",
           692.4,
           2700,
@@ -169,7 +169,7 @@ namespace {
 
 void nothing(config::Section&) {}
 
-/// Returns why a column beside `temperature` is not valid, or nothing.
+/// Returns why a column next to `temperature` is invalid, or nothing.
 std::string problem_of(const std::vector<double>& temperature, const std::vector<double>& values,
                        bool positive) {
   if (temperature.empty()) return "'temperature' is empty; give the temperatures of the values";
@@ -181,7 +181,7 @@ std::string problem_of(const std::vector<double>& temperature, const std::vector
   return "";
 }
 
-/// Usual magnitudes of the properties that are tables.
+/// Plausible ranges of tabulated properties.
 std::pair<double, double> usual_of(std::string_view unit) {
   if (unit == "W/(m K)") return {1e-3, 1e7};
   if (unit == "J/(kg K)") return {10, 1e5};
@@ -196,7 +196,7 @@ void declare_table(config::Section& s, const char* name, const char* unit, std::
   s.check([&] { return problem_of(temperature, values, true); }, name);
 }
 
-/// A fluid of constants and lists.
+/// Declares a fluid by constants and lists.
 void declare_custom(config::Section& s, FluidParameters& p) {
   as_density(s.value("density", p.density)).positive().required().doc("density, a constant");
   as_specific_heat(s.value("specific-heat", p.specific_heat)).positive().required().doc("a constant");

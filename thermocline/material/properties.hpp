@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-/// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
-/// tank, and materials of the user's own. Temperatures in K, everything in SI.
+/// Materials of thesis table 5.1 (with misprints corrected), insulation and foundation materials, and
+/// user-defined materials. Temperatures in K, all units SI.
 
 #include <functional>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace couplet::thermocline {
 
-// Unit and usual magnitudes of quantities that several elements have.
+// Units and plausible ranges of quantities that several elements use.
 inline config::Key& as_temperature(config::Key&& key) { return key.unit("K").plausible(70, 5000); }
 inline config::Key& as_difference(config::Key&& key) { return key.unit("K difference").plausible(0.1, 500); }
 inline config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3").plausible(0.05, 25000); }
@@ -27,7 +27,7 @@ inline config::Key& as_specific_heat(config::Key&& key) { return key.unit("J/(kg
 inline config::Key& as_conductivity(config::Key&& key) { return key.unit("W/(m K)").plausible(1e-3, 1e7); }
 inline config::Key& as_film(config::Key&& key) { return key.unit("W/(m^2 K)").plausible(1e-3, 1e7); }
 
-/// Declares a section by the `declare` of its parameters; one that may be absent for a std::optional.
+/// Declares a section by `declare` of its parameters; optional for a std::optional.
 template <class T>
 void declare_section(config::Section& s, const char* name, T& value, const char* doc) {
   s.section(
@@ -41,7 +41,7 @@ void declare_section(config::Section& s, const char* name, std::optional<T>& val
 
 inline constexpr double gravity = 9.81;  // [m/s^2]
 
-/// Density as a polynomial of the temperature in degC.
+/// Density as a polynomial of temperature in degC.
 struct DensityLaw {
   double constant = 0, slope = 0, curve = 0;  // [kg/m^3], [kg/(m^3 K)], [kg/(m^3 K^2)]
   double at(double kelvin) const {
@@ -55,25 +55,24 @@ struct DensityLaw {
   }
 };
 
-/// A heat-transfer fluid. Specific heat is a constant, and so is the density unless it is asked to be real
-/// (thesis table 5.1): plant and tank count heat with them; conductivity and viscosity follow the
-/// temperature.
+/// Heat-transfer fluid. The specific heat is constant, and so is the density unless `real_density` is set
+/// (thesis table 5.1); plant and tank use both for heat. Conductivity and viscosity depend on temperature.
 struct Fluid {
   std::string name;
   double density = 0, specific_heat = 0;       // [kg/m^3], [J/(kg K)]
   std::function<double(double)> conductivity;  // [W/(m K)] of [K]
   std::function<double(double)> viscosity;     // [Pa s] of [K]
-  double lowest = 0, highest = 1e4;            // it is a liquid that lasts between these [K]
-  std::optional<DensityLaw> real = {};         // what the density really does, where that is known
-  bool real_density = false;                   // the tank follows it
-  double gas_constant = 0, pressure = 101325;  // of an ideal gas [J/(kg K)], [Pa]; 0: a liquid
-  double known_from = 0, known_to = 1e4;       // range of the tables of one's own [K]
+  double lowest = 0, highest = 1e4;            // range in which the liquid is stable [K]
+  std::optional<DensityLaw> real = {};         // measured density, if known
+  bool real_density = false;                   // the tank uses it
+  double gas_constant = 0, pressure = 101325;  // of an ideal gas [J/(kg K)], [Pa]; 0 for a liquid
+  double known_from = 0, known_to = 1e4;       // range of user-defined tables [K]
   bool is_gas() const { return gas_constant > 0; }
   double volumetric() const { return density * specific_heat; }
   double density_at(double kelvin) const { return real_density ? real->at(kelvin) : density; }
 };
 
-/// Grains: sand and rock.
+/// Grains of sand and rock.
 struct Filler {
   double density = 2643, specific_heat = 1000.5, conductivity = 2.2;  // quartzite, table 5.1
   double friction_angle = 0.5235987755982988;                         // [rad]; 30 degrees
@@ -81,17 +80,17 @@ struct Filler {
   double volumetric() const { return density * specific_heat; }
 };
 
-/// A capsule's content melts within a range of temperatures; the heat of melting is spread over it evenly.
+/// Melting of capsules over a temperature range, with uniformly distributed latent heat.
 struct Melting {
   double temperature = 0;  ///< middle of the range [K]
-  double width = 2;        ///< of the range [K]
+  double width = 2;        ///< width of the range [K]
   double latent_heat = 0;  ///< [J/kg]
 };
 void declare(config::Section& section, Melting& melting);
 
-/// A metal of the shell. `expansion` is the instantaneous coefficient d(strain)/dT, as ASME II-D lists it:
-/// the thermal strain is its integral (the products alpha (T - T0) of a mean coefficient would be a third too
-/// much).
+/// Metal of the shell. `expansion` is the instantaneous coefficient d(strain)/dT, as in ASME II-D, and the
+/// thermal strain its integral. (Products alpha (T - T0) of a mean coefficient would be too large by a
+/// third.)
 struct Steel {
   std::string name;
   double density = 7850, poissons_ratio = 0.3;
@@ -101,7 +100,7 @@ struct Steel {
   double thermal_strain(double temperature) const { return expansion.integral(temperature); }
 };
 
-/// Something that only conducts: insulation, foundation, soil.
+/// Material that only conducts: insulation, foundation, soil.
 struct Insulator {
   double density = 0, specific_heat = 0;
   Table conductivity;
@@ -109,26 +108,27 @@ struct Insulator {
 
 Fluid solar_salt();
 Fluid caloria_ht43();
-/// Dry air as an ideal gas: specific heat a constant, conductivity and viscosity by Sutherland's laws. Its
-/// density at the reference temperature counts for the little heat that the pores hold, that of the moment
-/// for Ergun.
+/// Dry air as an ideal gas: constant specific heat, conductivity and viscosity by Sutherland's laws. The
+/// small heat content of the pores uses the density at the reference temperature, Ergun's equation the
+/// current one.
 Fluid air_at(double pressure, double reference_temperature, double specific_heat = 1075);
 /// Sutherland's laws [W/(m K)], [Pa s].
 double air_conductivity(double temperature);
 double air_viscosity(double temperature);
-/// Heat of a kilogram of dry air between two temperatures [J/kg], by the standard fit of its specific heat:
-/// what a run with a constant is judged by.
+/// Heat of a kilogram of dry air between two temperatures [J/kg], by the standard fit of its specific heat;
+/// reference for runs with a constant one.
 double air_heat_between(double from, double to);
 Steel steel_a537();     // A537 class 2, 477-577 K
 Steel steel_a387();     // A387 grade 91, 563-663 K
 Steel nickel_n06022();  // 563-838 K
 /// Wired mineral-wool mat of 100 kg/m^3.
 Insulator mineral_wool();
-/// Layers of a foundation by name ("dry-sand", "foam-glass", ...); throws std::out_of_range for another.
+/// Foundation layers by name ("dry-sand", "foam-glass", ...). Throws std::out_of_range for an unknown one.
 Insulator foundation_material(const std::string& name);
 std::vector<std::string> foundation_materials();
 
-// -- as they stand in the YAML ------------------------------------------------------------------------------
+// -- as written in the YAML file
+// -----------------------------------------------------------------------------
 struct FluidParameters {
   enum class Type { solar_salt, caloria_ht43, air, custom } type = Type::solar_salt;
   double pressure = 101325, reference_temperature = 600;  ///< of air [Pa], [K]
@@ -153,12 +153,12 @@ Steel make_steel(const SteelParameters& parameters);
 
 struct InsulatorParameters {
   double density = 100, specific_heat = 840;
-  std::vector<double> temperature, conductivity;  // both empty: mineral wool
+  std::vector<double> temperature, conductivity;  // both empty for mineral wool
 };
 void declare(config::Section& section, InsulatorParameters& parameters);
 Insulator make_insulator(const InsulatorParameters& parameters);
 
-/// Heat of a grain's material over temperature, per volume of the material, with a range in which it melts:
+/// Heat content of a grain material per volume as a function of temperature, with a melting range:
 ///   h(T) = rho c T + rho L clamp((T - T_low)/width, 0, 1)
 struct PhaseChange {
   PhaseChange(const Filler& filler, const Melting& melting)
@@ -169,7 +169,7 @@ struct PhaseChange {
 
   double solid, latent, low, high;  // [J/(m^3 K)], [J/m^3], [K]
 
-  /// Counted from T_low, so that no digits are lost [J/m^3].
+  /// Relative to T_low, to avoid loss of digits [J/m^3].
   double heat(double t) const {
     const double sensible = solid * (t - low);
     if (t <= low) return sensible;

@@ -23,7 +23,7 @@ std::string books_of(const char* element, double taken, double passed, double st
       std::abs(stored - taken + passed) / std::max(std::abs(taken) + std::abs(passed), 1e-300));
 }
 
-/// A value of each place, or nothing if nobody has given it yet.
+/// One value per place; nullptr if not given yet.
 const std::vector<double>* find(const coupling::Exchange& in, const char* name) {
   const auto found = in.find(name);
   return found == in.end() ? nullptr : &found->second;
@@ -54,7 +54,7 @@ class GroundModel {
     i.gives = {{"bottom-heat", "W", coupling::Interface::Place::faces, 1}};
     return i;
   }
-  /// Contradiction between the geometry here and that of the tank, as a sentence, or empty.
+  /// Mismatch between the geometry here and that of the tank, as a sentence; empty if there is none.
   std::string contradiction(const coupling::Exchange& in) const {
     return other_length(find(in, "tank-diameter"), "diameter", p_.diameter, 1e-3, " (inside)");
   }
@@ -145,7 +145,7 @@ class BlanketModel {
   double air_ = 0, start_ = 0, taken_ = 0, passed_ = 0;  // [K], [J]
 };
 
-/// Common part of both: a state that only accepted steps change. Rank 0 has the data and computes.
+/// Common part of both: a state that changes only with accepted steps. Rank 0 has the data and computes.
 template <class Model>
 class ElementParticipant final : public coupling::Participant {
  public:

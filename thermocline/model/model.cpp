@@ -12,7 +12,7 @@ std::vector<ColumnLayer> ground_layers(const GroundParameters& p) {
   std::vector<ColumnLayer> layers;
   double depth = 0;
   for (const GroundLayer& l : p.layers) {
-    // Cells grow with the depth: what is deep changes slowly.
+    // Cells grow with depth, where temperatures change slowly.
     const double cell = std::max(p.cell, 0.1 * depth);
     layers.push_back(
         {foundation_material(l.material), l.thickness, std::max(1, int(std::ceil(l.thickness / cell)))});
@@ -88,7 +88,7 @@ double TankModel::energy(double t) const {
   const double reference = ledger_.reference;
   double sum = bed_.energy(reference);
   for (const double owed : owed_) sum -= owed;
-  // A held flux is already in the temperatures of the insulation or the ground until its step ends.
+  // A held flux is already included in insulation or ground until its step ends.
   const auto ahead = [&](const Held& h) { return h.until > t ? (h.in - h.out) * (h.until - t) : 0; };
   if (wall_) sum += wall_->shell.energy(reference);
   if (insulation_) sum += insulation_->energy(reference) - ahead(side_);

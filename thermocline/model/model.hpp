@@ -21,19 +21,19 @@ struct TankSetup {
   BedGrid grid;
   std::optional<Steel> steel;
   std::optional<Rings> rings;
-  InnerPressure pressure;  ///< on the rings, of a fluid of constant density
+  InnerPressure pressure;  ///< on the rings, for a fluid of constant density
 };
 
 /// Foundation and soil as layers of a column.
 std::vector<ColumnLayer> ground_layers(const GroundParameters& parameters);
 
-/// Heat that crossed the tank's borders since the start [J].
+/// Heat that crossed the boundaries of the tank since the start [J].
 struct Ledger {
   double flow = 0, side = 0, roof = 0, ground = 0;  ///< flow: into the bed; the others are losses
-  double bed = 0;                                   ///< all that went into the bed
+  double bed = 0;                                   ///< total into the bed
   double turnover = 0;                              ///< sum of the absolute values
-  double reference = 0;                             ///< temperature from which heat contents count [K]
-  double start = 0, start_of_bed = 0;  ///< heat contents at the start, of the tank and of its bed
+  double reference = 0;                             ///< reference temperature of heat contents [K]
+  double start = 0, start_of_bed = 0;               ///< initial heat contents of the tank and of its bed
   double losses() const { return side + roof + ground; }
   template <class Numbers>
   void visit(Numbers& numbers) {
@@ -41,52 +41,52 @@ struct Ledger {
   }
 };
 
-/// Steps of the bed and extremes of the fluid in a step of the simulation.
+/// Bed steps and extreme fluid temperatures within a simulation step.
 struct TankStep {
   std::vector<BedStep> bed;  ///< steps of the bed
-  /// Coldest and hottest fluid after any exchange of the elements [K] and where [m], and the largest inversion.
+  /// Coldest and hottest fluid after exchanges [K], their positions [m], and the largest inversion.
   double coldest = std::numeric_limits<double>::infinity(), hottest = 0;
   double coldest_z = 0, hottest_z = 0;
   Inversion inversion;
 };
 
-/// The elements of a tank and how they exchange heat. Explicit: over an exchange step each element sees the
-/// temperatures its neighbors had before; the lighter one computes the flux implicitly (insulation beside
-/// the shell, shell beside the bed, gas between surfaces), the heavier one gets just that heat, so nothing is
-/// lost between them. The bed divides the exchange step by its own limit; insulation and ground take longer
-/// steps of their own and hold their fluxes meanwhile. A value: copies are snapshots.
+/// Elements of a tank and their explicit heat exchange. Over an exchange step each element uses the previous
+/// temperatures of its neighbors. The lighter one computes the flux implicitly (insulation next to shell,
+/// shell next to bed, gas between surfaces), and the heavier one receives that heat, so none is lost. The bed
+/// divides the exchange step by its own limit. Insulation and ground take longer steps and hold their fluxes
+/// in between. This is a value type: copies are snapshots.
 class TankModel {
  public:
   TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weather);
 
-  /// From t to t + dt.
+  /// Advances from t to t + dt.
   TankStep advance(double t, double dt, FlowControl& control, const Weather& weather);
 
   const TankSetup& setup() const { return *setup_; }
   const PackedBed& bed() const { return bed_; }
-  /// The wall and what the filler does to it; nullptr if the tank has no such element.
+  /// Wall, and the mechanics of the filler; nullptr if the tank has none.
   const Shell* shell() const { return wall_ ? &wall_->shell : nullptr; }
   const FillerMechanics* mechanics() const { return wall_ && wall_->filler ? &*wall_->filler : nullptr; }
-  /// With an external wall: the filler's pressure at the end of a step from the wall's radial displacement
-  /// [m] at its begin, a value a ring; empty if the wall has not answered yet.
+  /// With an external wall: computes the filler's pressure at the end of a step from the wall's radial
+  /// displacement [m] at its start, one value per ring; empty before the first response.
   void update_contact(std::span<const double> radial);
-  /// With elements elsewhere: the heat that they take from now on [W], of each ring and of the bottom. An
-  /// empty list leaves what was.
+  /// With external elements: sets the heat they take [W], per ring and at the bottom. An empty list leaves
+  /// the value unchanged.
   void hold_side(std::span<const double> from_rings);
   void hold_bottom(double heat) { bottom_.in = bottom_.out = heat; }
-  /// Coefficient between the lowest cell and the plate below it [W/(m^2 K)], and the longest time [s] for which a flux
-  /// made from it may be held.
+  /// Coefficient between the lowest cell and the plate below it [W/(m^2 K)], and the longest time [s] for
+  /// which a flux based on it may be held.
   double plate_coefficient() const;
   double stable_ground() const;
-  const WallStress& stress() const { return wall_->stress; }  ///< of a tank with a shell
+  const WallStress& stress() const { return wall_->stress; }  ///< only with a shell
   const std::optional<Column>& ground() const { return ground_; }
   const Ledger& ledger() const { return ledger_; }
-  /// Heat content of all elements at `t` above the temperature they started from [J].
+  /// Heat content of all elements at `t` relative to their initial temperature [J].
   double energy(double t) const;
-  /// Errors of the energy balance of the tank, and of the bed alone, since the start [J].
+  /// Errors of the energy balances of the tank and of the bed since the start [J].
   double imbalance(double t) const { return energy(t) - ledger_.start - (ledger_.flow - ledger_.losses()); }
   double bed_imbalance() const { return bed_.energy(ledger_.reference) - ledger_.start_of_bed - ledger_.bed; }
-  /// The whole state, for checkpoints.
+  /// Complete state, for checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(bed_, side_, bottom_, ledger_, gas_heat_.from_liquid, gas_heat_.from_wall);
@@ -100,11 +100,11 @@ class TankModel {
     if (ground_) visit_values(numbers, ground_->temperature());
     if (ullage_) numbers(*ullage_);
   }
-  /// Makes everything that follows from a state that was loaded.
+  /// Recomputes all derived data after loading a state.
   void resume();
 
  private:
-  /// A flux held until a time [s]: what it takes from inside and gives outside [W].
+  /// Flux held until a time [s]: heat taken inside and given outside [W].
   struct Held {
     double until = 0, in = 0, out = 0;
     template <class Numbers>
@@ -126,15 +126,15 @@ class TankModel {
   void record_fluid(double t, TankStep& step) const;
   double upper_wall() const;
 
-  /// The shell and the filler against it.
+  /// Shell and adjacent filler.
   struct Wall {
     Shell shell;
     std::optional<FillerMechanics> filler = {};
-    std::optional<InnerPressure> pressure =
-        {};  // that of now, if the fluid's density follows its temperature
+    /// Current one, if the fluid's density depends on temperature.
+    std::optional<InnerPressure> pressure = {};
     WallStress stress = {};
   };
-  /// Vectors that an exchange step overwrites before it reads them.
+  /// Work vectors that an exchange step overwrites before reading.
   struct Work {
     std::vector<double> source, from_wall;  // [W]
     std::vector<double> filler;             // [K]
@@ -149,8 +149,8 @@ class TankModel {
   double deep_temperature_ = 0;  // below the ground [K]
   Held side_, bottom_;
   std::vector<double> into_blanket_;  // heat flow from each ring [W]
-  std::vector<double> owed_;  // heat the shell has taken and the bed has yet to give, a value a cell [J]
-  Ullage::Heat gas_heat_;     // during an exchange step
+  std::vector<double> owed_;          // heat taken by the shell and not yet given by the bed, per cell [J]
+  Ullage::Heat gas_heat_;             // during an exchange step
   Ledger ledger_;
   Work work_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One exchange step of the tank: the elements in turn.
+// One exchange step of the tank, element by element.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace couplet::thermocline {
 
-/// Fluid and filler of a cell of the bed [J/(m^2 K)].
+/// Capacity of fluid and filler in a cell of the bed [J/(m^2 K)].
 double TankModel::cell_capacity(int i) const {
   const BedGrid& grid = bed_.grid();
   const BedLayer& layer = grid.runs[grid.layer[i]].layer;
@@ -18,15 +18,15 @@ double TankModel::cell_capacity(int i) const {
          grid.dz[i];
 }
 
-/// The bed's lowest cell against the flux that the ground computes from it: half its capacity over the
-/// coefficient. A plate under a thin cell holds more heat than that cell.
+/// Stability of the lowest cell with the flux computed by the ground: half its capacity over the coefficient.
+/// A plate below a thin cell stores more heat than that cell.
 double TankModel::stable_ground() const {
   return 0.5 * cell_capacity(0) / std::max(1e-30, plate_coefficient());
 }
 
 double TankModel::stable_exchange() const {
-  // The bed's end cells against the fluxes that ullage and ground compute from them. Elsewhere the flux is
-  // computed by the lighter side.
+  // Stability of the end cells with fluxes computed by ullage and ground. Elsewhere the lighter side computes
+  // them.
   double step = ground_ ? stable_ground() : std::numeric_limits<double>::infinity();
   if (!ullage_) return step;
   const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
@@ -51,8 +51,8 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Weath
     if (bottom_.until > t + tiny) h = std::min(h, bottom_.until - t);
   }
   if (ullage_) step_ullage(h, air);
-  // Heat that the shell took in the step before: the wall sees the bed at the end of each step, so that both have
-  // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
+  // Heat taken by the shell in the previous step. The wall uses the bed's final temperatures, so that both
+  // are at the same time for the contact with the filler; the much heavier bed pays one step later.
   std::vector<double>& source = work_.source;
   for (std::size_t i = 0; i < source.size(); ++i) source[i] = -owed_[i] / h;
   source.back() -= gas_heat_.from_liquid;
@@ -86,8 +86,8 @@ void TankModel::step_insulation(double t, double h, const Ambient& air) {
   for (const double q : into_blanket_) side_.in += q;
 }
 
-/// Bottom cell to the plate below it: the film of a wall, and half the cell in series, which conducts like
-/// the stagnant bed (k_0 = film d/2).
+/// Bottom cell to plate: the film of a wall in series with half the cell, which conducts like the stagnant
+/// bed (k_0 = film d/2).
 double TankModel::plate_coefficient() const {
   const BedGrid& grid = bed_.grid();
   const double d = grid.runs.front().layer.diameter;
@@ -113,8 +113,8 @@ double TankModel::upper_wall() const {
 
 void TankModel::step_ullage(double h, const Ambient& air) {
   const TankParameters& p = setup_->parameters;
-  // The roof's inner cell takes the heat explicitly: steps of half its time constant. Where these would be
-  // many (a blanket of millimetres) the gas sees the roof's implicit answer instead.
+  // The roof's inner cell takes the heat explicitly, in steps of half its time constant. If these would be
+  // many (thin insulation), the gas uses the roof's implicit response instead.
   const double limit = roof_ ? 0.5 * roof_->inner_capacity() / roof_->inner_conductance() : h;
   constexpr double most_parts = 8;
   const bool light = h > most_parts * limit;
@@ -139,7 +139,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     ledger_.roof += lost;
     ledger_.turnover += std::abs(lost);
   }
-  if (!wall_) {  // a wall without a model of its own gives what it gets from the liquid beside it
+  if (!wall_) {  // a wall without a model passes on the heat of the adjacent liquid
     gas_heat_.from_liquid += gas_heat_.from_wall;
     gas_heat_.from_wall = 0;
   }
@@ -148,7 +148,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
 void TankModel::step_shell(double h) {
   const Rings& rings = *setup_->rings;
   work_.from_wall = into_blanket_;
-  // Rings above the bed: the mean flux, and more from those warmer than the mean.
+  // Rings above the bed take the mean flux, and more if warmer than the mean.
   double upper = 0;
   for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
   const double mean = upper_wall();
@@ -162,7 +162,7 @@ void TankModel::step_shell(double h) {
 
 namespace {
 
-/// A flow given in another unit than its own would fill the memory with steps before it has run for a minute.
+/// Rejects a flow in a wrong unit, which would fill the memory with steps within a simulated minute.
 void refuse_hopeless_flow(double mass_flow, double limit, double span) {
   constexpr double most = 1e6;  // a thousand times what a flow through the finest of grids asks for
   if (span <= most * limit) return;
@@ -177,7 +177,7 @@ void refuse_hopeless_flow(double mass_flow, double limit, double span) {
 void TankModel::step_bed(double t, double end, FlowControl& control, const Weather& weather, TankStep& step) {
   const double tiny = 1e-9 * (end - t);
   bool prepared = false;
-  // With a density of temperature the capacities are renewed so often that none changes by a thousandth.
+  // With a temperature-dependent density, capacities are updated before any changes by a thousandth.
   const double renewal = bed_.has_real_density() ? 60 : std::numeric_limits<double>::infinity();
   double block = t + renewal;
   while (end - t > tiny) {
@@ -187,8 +187,8 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
     const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared().mass_flow;
     if (t > block - tiny) prepared = false, block = t + renewal;
     const double until = std::min(block, s.flow.until > t + tiny ? std::min(end, s.flow.until) : end);
-    // New closures when the flow has changed by a tenth, a new step when the old one has become too long or
-    // would pass the time the control gave; a little over the limit is within the scheme's reserve.
+    // Updates the closures if the flow has changed by a tenth, and the step if it is too long or would pass
+    // the time given by the control. Slightly exceeding the limit is within the scheme's margin.
     const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
     const bool too_long = bed_.prepared().dt > 1.05 * limit || t + bed_.prepared().dt > until + tiny;
     if (!prepared || other_flow || too_long) {

@@ -8,7 +8,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Largest equivalent stress of a ring over its yield strength, and the height of that ring [m].
+/// Largest ratio of equivalent stress to yield strength, and the height of its ring [m].
 std::pair<double, double> worst_stress(const TankModel& m) {
   double worst = 0, place = 0;
   if (!m.shell()) return {0, 0};
@@ -19,12 +19,12 @@ std::pair<double, double> worst_stress(const TankModel& m) {
   return {worst, place};
 }
 
-/// Temperature of what flows [degC]: at rest nothing comes in and nothing leaves.
+/// Temperature of the flow [degC]; undefined at rest.
 double flowing(const BedStep& step, double kelvin) {
   return step.flow.mass_flow != 0 ? celsius(kelvin) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The value of a ring beside grains; 0 above them and without filler mechanics.
+/// Value of a ring next to grains; 0 above them and without filler mechanics.
 template <class Values>
 double beside_grains(const TankModel& m, std::size_t ring, Values values) {
   const FillerMechanics* filler = m.mechanics();
@@ -92,7 +92,7 @@ TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::
             {"depth [m]", [](const Place& v) { return v.m.ground()->centre()[v.i]; }},
             {"temperature [degC]", [](const Place& v) { return celsius(v.m.ground()->temperature()[v.i]); }}},
         restart_time);
-  // A continued run writes where the one before it would have.
+  // A continued run writes at the same times as the previous one.
   if (!std::isnan(restart_time)) next_ = after(restart_time);
 }
 

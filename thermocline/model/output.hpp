@@ -8,8 +8,8 @@
 
 namespace couplet::thermocline {
 
-/// tank.csv: a row per monitor interval. bed.csv, wall.csv, ground.csv: profiles, a row per cell, at output
-/// times. Temperatures in degC.
+/// tank.csv: one row per monitor interval. bed.csv, wall.csv, ground.csv: profiles, one row per cell, at
+/// output times. Temperatures in degC.
 class TankOutputFiles {
  public:
   TankOutputFiles(const TankModel& model, const std::filesystem::path& folder, double restart_time);
@@ -30,7 +30,7 @@ class TankOutputFiles {
     std::size_t i;
     std::span<const double> filler;  ///< mean temperature of the grains in the cells of the bed [K]
   };
-  /// Time of the next row after one at this time [s].
+  /// Time of the next row after this time [s].
   double after(double time) const;
   static std::vector<Quantity<Moment>> quantities_of(const TankModel& model);
 

@@ -26,29 +26,28 @@ struct GroundLayer {
   double thickness = 0;  ///< [m]
 };
 struct GroundParameters {
-  std::vector<GroundLayer> layers;         ///< from the tank downwards
-  double cell = 0.05;                      ///< largest height of a cell near the tank [m]
-  double step = 900;                       ///< its own step [s]
-  std::optional<double> deep_temperature;  ///< [K]; else the air's annual mean
+  std::vector<GroundLayer> layers;         ///< from the tank downward
+  double cell = 0.05;                      ///< largest cell height near the tank [m]
+  double step = 900;                       ///< time step of the ground [s]
+  std::optional<double> deep_temperature;  ///< [K]; default: annual mean of the air
 };
 
-/// A section that stands in the YAML, for those that have defaults all through.
+/// Section that is present in the YAML file although all its keys have defaults.
 struct Present {};
 
-/// Elements of this tank that participants of their own compute.
+/// Elements of this tank that separate participants compute.
 struct ElsewhereParameters {
   bool ground = false, insulation = false;
 };
 
 struct TankOutput {
-  double monitor_interval = 0;  ///< [s]; 0: each step
+  double monitor_interval = 0;  ///< [s]; 0 for each step
 };
 
 /// Keys of `participants.<name>`; each optional member is an effect.
 struct TankParameters {
-  double diameter = 0;  ///< inner [m]
-  double exchange_step =
-      0;  ///< longest step between exchanges of the elements [s]; 0: that of the simulation
+  double diameter = 0;       ///< inner [m]
+  double exchange_step = 0;  ///< longest step between exchanges [s]; 0: that of the simulation
   FluidParameters fluid;
   Filler filler;
   BedParameters bed;
@@ -60,7 +59,7 @@ struct TankParameters {
   std::optional<GroundParameters> ground;
   std::optional<ElsewhereParameters> elsewhere;
   std::optional<PumpParameters> pump;
-  std::optional<Present> ambient_given;  ///< else `ambient` holds its defaults
+  std::optional<Present> ambient_given;  ///< otherwise `ambient` contains defaults
   WeatherParameters ambient;
   FlowParameters flow;
   std::optional<ReportParameters> report;

@@ -9,14 +9,14 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Sentence about a number that stands in another unit: "<what> is <value> <unit><why>", and what to write instead.
+/// Sentence about a number in a wrong unit: "<what> is <value> <unit><why>", and how to write it.
 std::string slip(const std::string& what, double value, const std::string& unit, const std::string& why,
                  const char* other) {
   return fmt::format("{} is {:g} {}{}. A number without a unit is in {}; write '{:g} {}' if that is intended",
                      what, value, unit, why, unit == "m" ? "metres" : unit, value, other);
 }
 
-/// `whose`: "any solid's".
+/// `whose`: for example "any solid's".
 std::string slip_in_heat(double specific_heat, const char* whose) {
   constexpr double least = 100;  // [J/(kg K)]
   return specific_heat < least ? slip("specific-heat", specific_heat, "J/(kg K)",
@@ -24,7 +24,7 @@ std::string slip_in_heat(double specific_heat, const char* whose) {
                                : "";
 }
 
-/// Empty if this temperature may be meant.
+/// Empty if this temperature is plausible.
 std::string forgotten_unit(const std::string& what, double kelvin_given, const Fluid& fluid) {
   const double as_celsius = kelvin(kelvin_given);
   if (kelvin_given >= fluid.lowest || as_celsius < fluid.lowest || as_celsius > fluid.highest) return "";
@@ -125,7 +125,7 @@ std::string slip_in_plates(const ShellParameters& shell, double diameter) {
 }
 
 std::string slip_in_insulation(const InsulationParameters& insulation, double diameter) {
-  // A small tank may have a blanket thicker than its radius [m].
+  // A small tank may have insulation thicker than its radius [m].
   const double most = std::max(1.0, diameter / 2);
   if (insulation.thickness <= most) return "";
   return slip("thickness", insulation.thickness, "m",

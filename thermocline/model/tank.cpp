@@ -18,7 +18,7 @@ namespace couplet::thermocline {
 
 namespace {
 
-/// Parts of the tank and its plant that cost something.
+/// Parts of tank and plant with a price.
 Inventory inventory_of(const TankSetup& setup) {
   const TankParameters& p = setup.parameters;
   const double area = 0.25 * std::numbers::pi * p.diameter * p.diameter;
@@ -40,7 +40,7 @@ Inventory inventory_of(const TankSetup& setup) {
   return all;
 }
 
-/// The parameters with the days of the plant's calendar, which are those of the weather.
+/// Parameters with the calendar days of the weather.
 TankParameters dated(TankParameters p, const Weather& weather) {
   p.flow.plant.start.day = weather.first_day();
   p.flow.plant.start.period = int(std::lround(weather.period_length() / seconds_a_day));
@@ -142,7 +142,7 @@ std::vector<Tank::Given> Tank::given() const {
   return all;
 }
 
-/// Every rank computes the tank, so every rank needs what rank 0 got.
+/// Every rank computes the tank, so all ranks need the data received by rank 0.
 std::vector<double> Tank::received(const coupling::Exchange& in, const char* name) const {
   std::vector<double> values;
   if (const auto found = in.find(name); found != in.end()) values = found->second;

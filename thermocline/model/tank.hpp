@@ -15,28 +15,28 @@ class Archive;
 
 namespace couplet::thermocline {
 
-/// Everything that diagnostics may read of a tank, as it is after the last accepted step.
+/// State of a tank run after the last accepted step, as diagnostics see it.
 struct TankView {
   const std::string& name;
   const TankModel& model;
   const TankStep& happened;  ///< in that step
   const coupling::Step& step;
   const Weather& weather;
-  const DayReport* report = nullptr;  ///< nullptr if the case asks for none
+  const DayReport* report = nullptr;  ///< nullptr if the case requests none
 
   const TankParameters& parameters() const { return model.setup().parameters; }
   const Fluid& fluid() const { return model.setup().fluid; }
   double time() const { return step.time + step.dt; }
 };
 
-/// The tank as a participant: runs the elements that the YAML asks for. A tank is small, so every rank
+/// Tank as a participant with the elements requested in the YAML file. A tank is small, so every rank
 /// computes all of it; rank 0 writes.
 class Tank final : public coupling::Participant {
  public:
   Tank(const TankParameters& parameters, const app::ParticipantContext& context);
 
   coupling::Interface initialise() override;
-  /// A flux of the ground elsewhere is held for a step: no longer than the lowest cell allows.
+  /// Limited by the lowest cell, because the flux of an external ground is held for a step.
   double suggest_dt() override;
   void begin_step(const coupling::Step& step) override { step_ = step; }
   coupling::Exchange solve(const coupling::Exchange& in) override;
@@ -50,11 +50,11 @@ class Tank final : public coupling::Participant {
   const TankModel& model() const { return accepted_; }
   /// View for diagnostics. It refers to this tank, which must outlive it.
   TankView view() const { return {name_, accepted_, happened_, step_, *weather_, report_.get()}; }
-  /// The last accepted step, until the next solve().
+  /// Record of the last accepted step, valid until the next solve().
   TankRecord record() const;
 
  private:
-  /// A quantity that other participants take, at the end of the step.
+  /// Quantity taken by other participants, at the end of the step.
   struct Given {
     const char *name, *unit;
     std::vector<double> values;
@@ -66,8 +66,8 @@ class Tank final : public coupling::Participant {
   std::string name_;
   std::unique_ptr<Weather> weather_;
   std::unique_ptr<FlowControl> control_;
-  TankModel accepted_, next_;  // next_: the state before the accepted step, until the next solve()
-  FlowMemory memory_;          // that of accepted_
+  TankModel accepted_, next_;  // next_: state before the accepted step, until the next solve()
+  FlowMemory memory_;          // of accepted_
   MPI_Comm comm_;
   TankStep happened_;  // in the last solve()
   coupling::Step step_;

@@ -82,7 +82,7 @@ constexpr std::array<FlowColumn, 5> known{{{"time", "s", "h", true},
                                            {"stop-above", "K", "degC", false},
                                            {"stop-below", "K", "degC", false}}};
 
-/// The columns of one file and what turns their numbers into SI.
+/// Columns of a file and their conversions to SI.
 class FlowColumns {
  public:
   FlowColumns(const std::vector<std::string>& head, const std::string& place) {
@@ -105,14 +105,14 @@ class FlowColumns {
                     base::join(names));
   }
 
-  /// Value [SI] of a column in a row; nothing where it is empty.
+  /// Value [SI] of a column in a row; empty if missing.
   std::optional<double> value(const csv::CsvReader& row, std::size_t c) const {
     if (!at_[c] || row.cells()[*at_[c]].empty()) return {};
     return row.number(*at_[c], known[c].name) * unit_[c].factor + unit_[c].offset;
   }
 
  private:
-  /// Heads without a unit would leave open whether 290 is in K or degC.
+  /// A heading without a unit would leave it open whether 290 is in K or degC.
   static base::Unit unit_of(const FlowColumn& column, const std::string& text, const std::string& place) {
     if (text.empty())
       throw Error("{}: the unit of the column '{}' is missing; write for example '{} [{}]'.", place,
@@ -242,7 +242,7 @@ Flow PlantControl::decide(double t, double t_top, double t_bottom, const Ambient
   flow.mass_flow = flows.tank_flow;
   flow.inlet_temperature =
       flows.mode == PlantMode::charge ? plant_.parameters().hot : plant_.parameters().cold;
-  // At rest the bed could take long steps over sunrise.
+  // At rest, the bed could otherwise take a long step past sunrise.
   constexpr double longest_without_a_look = 120;  // [s]
   flow.until = std::min(t + longest_without_a_look, plant_.load_until(t));
   return flow;

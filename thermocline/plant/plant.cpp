@@ -65,7 +65,7 @@ std::string problem_of_weekday(const PlantParameters& p) {
              : "";
 }
 
-/// When charging and discharging start and stop.
+/// Declares when charging and discharging start and stop.
 void declare_control(config::Section& s, PlantParameters& p) {
   as_difference(s.value("cut-off", p.cut_off))
       .positive()
@@ -260,7 +260,7 @@ double Plant::load_until(double t) const {
   return (std::floor(t / seconds_an_hour + clock_rounding) + 1) * seconds_an_hour;
 }
 
-/// The store rests: the field feeds the block with what it has, at most what the block asks for.
+/// The store rests: the field supplies the block, up to its demand.
 PlantFlows Plant::idle(double field_heat, double load) const {
   PlantFlows f;
   f.field_heat = field_heat;
@@ -298,7 +298,7 @@ PlantFlows Plant::flows(double field_heat, double top, double bottom, PlantMode 
   const CutOffAt at = p_.cut_off_at;
   if (field_heat > block) {
     const double start = before == PlantMode::charge ? p_.hot : p_.cold + p_.restart;
-    // At the hot temperature no flow could take the heat up.
+    // At the hot temperature no flow can take up the heat.
     if (bottom > start || bottom >= p_.hot) return idle(field_heat, load);
     const PlantFlows f = charge(field_heat, bottom, load);
     return (at == CutOffAt::outlet || at == CutOffAt::block ? bottom : f.field_inlet) < p_.cold + p_.cut_off

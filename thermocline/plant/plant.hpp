@@ -8,38 +8,38 @@
 
 namespace couplet::thermocline {
 
-/// On which days which load and tariff hold: one value, or 24 for the hours.
+/// Load and tariff for certain days: one value, or 24 for the hours.
 struct CalendarRule {
-  std::vector<std::string> days;  ///< monday ... sunday, weekdays, weekend; empty: all of them
-  std::string from, to;           ///< MM-DD, both inclusive; `to` may lie in the next year; empty: all year
+  std::vector<std::string> days;  ///< monday ... sunday, weekdays, weekend; empty: all days
+  std::string from, to;           ///< MM-DD, inclusive; `to` may be in the next year; empty: all year
   std::vector<double> load, tariff;
 };
 void declare(config::Section& section, CalendarRule& rule);
 
 /// First day of the run and period of its weather.
 struct CalendarStart {
-  std::string weekday;  ///< of the first day; needed where a rule names weekdays
+  std::string weekday;  ///< of the first day; required if a rule names weekdays
   int day = 0;          ///< first day of the weather, 0 for 01-01
-  int period = 365;     ///< days after which the weather begins again with that day
+  int period = 365;     ///< days until the weather repeats
 };
 
-/// Empty, or what is wrong with values of a day: neither one nor 24, or (of a load) no share.
+/// Problem of the values of a day (neither one nor 24, or a load outside 0 to 1); empty if nothing is.
 std::string problem_of_day(const std::vector<double>& values, bool share);
-/// The value of the hour in which t lies [s].
+/// Value of the hour that contains t [s].
 double at_hour(const std::vector<double>& values, double t);
 /// Returns true for the name of a weekday.
 bool is_weekday(const std::string& name);
 
-/// The first rule that holds and gives a load (a tariff) counts. Seasons follow the date of the
-/// weather, which may go round; weekdays go on evenly, a year of 365 days after the other.
+/// Selects the first matching rule with a load (a tariff). Seasons follow the date of the weather, which may
+/// repeat; weekdays continue through consecutive years of 365 days.
 class Calendar {
  public:
   Calendar(const std::vector<CalendarRule>& rules, const CalendarStart& start);
 
-  /// Values of the day in which t lies [s]; nullptr where no rule gives any.
+  /// Values of the day that contains t [s]; nullptr if no rule has any.
   const std::vector<double>* load(double t) const;
   const std::vector<double>* tariff(double t) const;
-  /// Rules that give nothing on any day, however long the run. Sentences.
+  /// Rules that never apply, however long the run, as sentences.
   std::vector<std::string> doubts() const;
 
  private:
@@ -56,7 +56,7 @@ class Calendar {
   int weekday_, day_, period_;
 };
 
-/// Solar field, power block and the limits within which the store may work [thesis, section 5.2.1].
+/// Solar field, power block and operating limits of the store [thesis, section 5.2.1].
 struct PlantParameters {
   double electric_power = 0;      ///< W_EG, day and night [W]
   double block_efficiency = 0.4;  ///< eta_PB
@@ -65,15 +65,15 @@ struct PlantParameters {
   double hot = 0, cold = 0;       ///< design temperatures [K]
   double cut_off = 15;            ///< dT_CO [K]
   double restart = 10;            ///< dT_R [K]
-  /// Temperature that the cut-off uses: the mixed temperature at the field's or the block's inlet (what the thesis's
-  /// text says), or what leaves the tank (what its tables follow); or one of them for charging and the other for
+  /// Temperature for the cut-off: the mixed temperature at the inlet of field or block (thesis text), or the
+  /// outlet temperature of the tank (thesis tables). Mixtures use one for charging and the other for
   /// discharging: field: mixed and outlet; block: outlet and mixed.
   enum class CutOffAt { mixed, outlet, field, block } cut_off_at = CutOffAt::mixed;
-  std::vector<double> load{
-      1};  ///< share of the power block's output that is asked for, always or by the hour
-  std::vector<double> tariff = {};  ///< of the electricity, always or by the hour [currency/MWh]; empty: none
-  std::vector<CalendarRule> calendar = {};  ///< days on which others hold
-  CalendarStart start = {};                 ///< its weekday is a key, its days are the weather's
+  /// Requested share of the power block's output, constant or by the hour.
+  std::vector<double> load{1};
+  std::vector<double> tariff = {};  ///< of electricity, constant or hourly [currency/MWh]; may be empty
+  std::vector<CalendarRule> calendar = {};  ///< days with other values
+  CalendarStart start = {};                 ///< its weekday is a key, its days follow the weather
 };
 void declare(config::Section& section, PlantParameters& parameters);
 
@@ -82,8 +82,8 @@ enum class PlantMode { standby, charge, discharge };
 /// Flows in the plant during one step.
 struct PlantFlows {
   PlantMode mode = PlantMode::standby;
-  double field_heat = 0;   ///< Q_SF: what the sun offers, mean over the step [W]
-  double block_heat = 0;   ///< Q_PB: what the power block asks for [W]
+  double field_heat = 0;   ///< Q_SF: available from the sun, mean over the step [W]
+  double block_heat = 0;   ///< Q_PB: requested by the power block [W]
   double field_flow = 0;   ///< m_SF [kg/s]
   double block_flow = 0;   ///< m_PB [kg/s]
   double field_inlet = 0;  ///< T_SF^in, mixed [K]
@@ -91,24 +91,23 @@ struct PlantFlows {
   double tank_flow = 0;    ///< upward: > 0 discharge, < 0 charge [kg/s]
 };
 
-/// Plant management, equations 5.1 to 5.6. The fluid's specific heat is constant, so the mixing rules 5.5
-/// and 5.6 and the balances 5.3 and 5.4, each implicit in flow and temperature, have the closed solution
+/// Plant management, equations 5.1 to 5.6. The specific heat is constant, so the mixing rules 5.5 and 5.6 and
+/// the balances 5.3 and 5.4, each implicit in flow and temperature, have the closed solution
 ///   m_C = (Q_SF - Q_PB) / (c (T_hot - T_C)),   m_D = (Q_PB - Q_SF) / (c (T_D - T_cold)).
 class Plant {
  public:
-  /// `specific_heat` of the fluid [J/(kg K)].
+  /// `specific_heat`: of the fluid [J/(kg K)].
   Plant(const PlantParameters& parameters, double specific_heat);
 
-  /// Flows of a step that starts with the outlet temperatures `top` and `bottom` of the tank [K]. `before`
-  /// is the mode of the step before: a process that runs goes on until the mixed temperature reaches its
-  /// cut-off, one that does not run starts only within the restart tolerance.
-  /// `load`: share of the design load that is asked for.
+  /// Flows of a step with initial outlet temperatures `top` and `bottom` [K]. `before`: mode of the previous
+  /// step. A running process continues until the mixed temperature reaches its cut-off; otherwise it starts
+  /// only within the restart tolerance. `load`: requested share of the design load.
   PlantFlows flows(double field_heat, double top, double bottom, PlantMode before, double load = 1) const;
 
   double field_heat(double irradiance) const;  ///< equation 5.2 [W]
   double block_heat() const;                   ///< equation 5.1, at the design load [W]
-  /// At a time [s] from 00:00 of the first day: share of the design load, price [currency/MWh], and the end
-  /// of the hour if either follows clock or calendar (else infinity).
+  /// At a time [s] from 00:00 of the first day: share of the design load, price [currency/MWh], and end of
+  /// the hour if either depends on time (else infinity).
   double load(double t) const;
   double tariff(double t) const;
   double load_until(double t) const;

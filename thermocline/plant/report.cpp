@@ -14,8 +14,8 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Lowest height at which the profile, a broken line through the cell centers, reaches a temperature that
-/// lies between those of the lowest and the highest cell.
+/// Lowest height at which the profile, piecewise linear through the cell centers, reaches a temperature
+/// between those of the lowest and highest cells.
 double height_of(std::span<const double> z, std::span<const double> temperature, double wanted) {
   std::size_t i = 1;
   while (i + 1 < z.size() && temperature[i] < wanted) ++i;
@@ -129,7 +129,7 @@ void ReportSums::add(const ReportSums& other) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other.sum[i];
 }
 
-/// Books one step of the bed; gives the heat that the flow brought into it [J].
+/// Records a step of the bed. Returns the heat that the flow brought into it [J].
 double DayReport::add_step(const BedStep& step) {
   const PlantParameters& plant = plant_.parameters();
   const double dt = step.dt, c = plant_.specific_heat();
@@ -201,7 +201,7 @@ void DayReport::record(const TankRecord& record) {
     charged += heat;
     charging_time += step.dt;
   }
-  // The heat that the flow brought and the bed did not gain went through the walls, evenly over the step (5.25-5.27).
+  // Heat brought by the flow and not stored was lost through walls, uniformly over the step (5.25-5.27).
   day_[Sums::stored] += charged - (brought - record.stored) * charging_time / record.dt;
   day_[Sums::losses] += record.losses;
   add_thickness(record);
@@ -214,7 +214,7 @@ void DayReport::record(const TankRecord& record) {
                   last_thickness_});
   if (profiles_) write_profiles(record);
   last_time_ = record.time;
-  // A hair's breadth before midnight is midnight.
+  // Times just before midnight count as midnight.
   if (record.time >= (days_seen_ + 1) * seconds_a_day - 1e-3) end_day(record.time);
 }
 

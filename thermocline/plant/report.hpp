@@ -18,14 +18,14 @@
 
 namespace couplet::thermocline {
 
-/// A column of an output file: its heading with the unit, and its value in the view of a row.
+/// Column of an output file: its heading with the unit, and its value for a row's view.
 template <class View>
 struct Quantity {
   const char* heading;
   double (*value)(const View&);
 };
 
-/// A CSV file with a quantity per column. On restart it goes on from `restart_time`.
+/// CSV file with one quantity per column. A restarted run continues it from `restart_time`.
 template <class View>
 class QuantityFile {
  public:
@@ -49,17 +49,17 @@ class QuantityFile {
   std::vector<double> row_;
 };
 
-/// One accepted step of the simulation: the steps of the bed in it, and where things stand at its end.
-/// Profiles are views into the tank, bottom to top, valid during the call; what was not asked for is empty.
+/// One accepted simulation step: the bed steps in it and the state at its end. Profiles are views into the
+/// tank, bottom to top, valid during the call; those not requested are empty.
 struct TankRecord {
   double time = 0;  ///< end of the step [s]
   double dt = 0;    ///< [s]
   std::span<const BedStep> steps;
-  // The bed, one value a cell.
+  // The bed, one value per cell.
   std::span<const double> z, dz;              ///< centers and heights [m]
   std::span<const double> fluid_temperature;  ///< [K]
   std::vector<double> filler_temperature;     ///< mean of the particles [K]
-  // The shell, one value a ring (more than cells of the bed if the wall goes on around the ullage).
+  // The shell, one value per ring (more than bed cells if the wall continues around the ullage).
   std::span<const double> wall_z;             ///< centers [m]
   std::span<const double> wall_temperature;   ///< [K]
   std::span<const double> equivalent_stress;  ///< von Mises [Pa]
@@ -71,19 +71,19 @@ struct TankRecord {
   double heat_capacity = 0;
 };
 
-/// Which share of its yield strength each ring of the wall carried: daily extremes, their sums, the largest
-/// of all. As many numbers as rings, however long the run.
+/// Stress of each ring relative to its yield strength: daily extreme values, their sums, and the largest of
+/// all. Memory is independent of the length of the run.
 ///
-/// The factors of safety compare stress and strength at the same moment, because the strength falls with
-/// temperature: with s = sigma_eq / sigma_y(T), FoS_static = 1 / max s (5.21) and, with the means of the
-/// daily extremes, FoS_dynamic = (1 - s_min) / (s_max - s_min) (5.22 divided by the strength).
+/// The factors of safety compare stress and strength at the same time, because the strength decreases with
+/// temperature. With s = sigma_eq/sigma_y(T), FoS_static = 1/max s (5.21). With the means of the daily
+/// extremes, FoS_dynamic = (1 - s_min)/(s_max - s_min) (5.22 divided by the strength).
 class StressHistory {
  public:
   struct Ring {
     double z = 0;                                   ///< center [m]
     double day_lowest = 0, day_highest = 0;         ///< of the day so far
-    double sum_lowest = 0, sum_highest = 0;         ///< of the days that count
-    double highest = 0;                             ///< of all days that count
+    double sum_lowest = 0, sum_highest = 0;         ///< of the counted days
+    double highest = 0;                             ///< of all counted days
     double day_highest_time = 0, highest_time = 0;  ///< [s]
     template <class Numbers>
     void visit(Numbers& numbers) {
@@ -92,7 +92,7 @@ class StressHistory {
   };
   void see(double time, std::span<const double> z, std::span<const double> equivalent,
            std::span<const double> yield);
-  /// `counts`: the day belongs to the results; otherwise it is looked at but not kept.
+  /// `counts`: the day is included in the results.
   void end_day(bool counts);
 
   struct Factor {
@@ -103,7 +103,7 @@ class StressHistory {
   bool empty() const { return days_ == 0 || rings_.empty(); }
   Factor static_factor() const;
   Factor dynamic_factor() const;
-  int days() const { return days_; }  ///< that count
+  int days() const { return days_; }  ///< number of counted days
   const std::vector<Ring>& rings() const { return rings_; }
   template <class Numbers>
   void visit(Numbers& numbers) {
@@ -116,56 +116,56 @@ class StressHistory {
   int days_ = 0;
 };
 
-/// Prices, in a currency of one's own.
+/// Prices in any currency.
 struct EconomicsParameters {
-  double field = 0;                         ///< of a square metre of solar field [1/m^2]
-  double block = 0;                         ///< of a kilowatt of the power block's electric output [1/kW]
-  double fixed = 0;                         ///< whatever does not grow with the plant
+  double field = 0;                         ///< per square meter of solar field [1/m^2]
+  double block = 0;                         ///< per kilowatt of the power block's electric output [1/kW]
+  double fixed = 0;                         ///< independent of the size of the plant
   double steel = 0, filler = 0, fluid = 0;  ///< [1/kg]
-  std::optional<double> capsules;           ///< of the layers that melt; absent: as filler [1/kg]
-  double pump = 0;                          ///< of a kilowatt of the pump's or fan's largest power [1/kW]
-  double insulation = 0, foundation = 0;    ///< of a square metre of wall and roof, of ground [1/m^2]
-  double operation = 0.02;                  ///< a year, share of the capital
-  double interest = 0.07;                   ///< a year
+  std::optional<double> capsules;           ///< of melting layers; absent: as filler [1/kg]
+  double pump = 0;                          ///< per kilowatt of the pump's or fan's largest power [1/kW]
+  double insulation = 0, foundation = 0;    ///< per square meter of wall and roof, of ground [1/m^2]
+  double operation = 0.02;                  ///< per year, share of the capital
+  double interest = 0.07;                   ///< per year
   double lifetime = 25;                     ///< [years]
 };
 void declare(config::Section& section, EconomicsParameters& parameters);
 
-/// Parts of tank and plant that cost something.
+/// Parts of tank and plant with a price.
 struct Inventory {
   double field_area = 0, block_power = 0;   ///< [m^2], electric [W]
   double steel = 0, filler = 0, fluid = 0;  ///< [kg]
   double insulated = 0, foundation = 0;     ///< [m^2]
-  double capsules = 0;                      ///< not in filler [kg]
+  double capsules = 0;                      ///< not included in filler [kg]
   double pump_power = 0;                    ///< largest of the run [W]
 };
 
 struct LevelisedCost {
-  double capital = 0, storage = 0;  ///< all, and the tank with its contents and its pump
-  double annuity = 0;               ///< share of the capital to pay back each year
+  double capital = 0, storage = 0;  ///< total; tank with its contents and its pump
+  double annuity = 0;               ///< share of the capital to repay each year
   double per_year = 0;              ///< annuity and operation
   double per_energy = 0;            ///< [1/MWh]; infinite without electricity
 };
 
-/// (a + o) C / E with the annuity a = i (1 + i)^n/((1 + i)^n - 1), 1/n without interest; C the capital, o the
-/// operation, E the electricity of a year [MWh].
+/// (a + o) C/E with the annuity a = i (1 + i)^n/((1 + i)^n - 1), or 1/n without interest. C is the capital, o
+/// the operation, E the annual electricity [MWh].
 LevelisedCost levelised_cost(const EconomicsParameters& prices, const Inventory& inventory,
                              double electricity);
 
 inline constexpr double megawatt_hour = 3.6e9;  // [J]
 
 struct ReportParameters {
-  double run_in = 0;  ///< days before the first that counts
+  double run_in = 0;  ///< days before the first counted day
   /// Margins of the critical temperatures of the thermocline's thickness (5.30) [K].
   double thickness_margin = 15;
-  double outlet_margin = 5;           ///< "near the design temperature" of the outlets [K]
-  std::optional<double> profile_day;  ///< days from the start; its profiles are written every hour
+  double outlet_margin = 5;           ///< tolerance of outlets "near the design temperature" [K]
+  std::optional<double> profile_day;  ///< days from the start; its profiles are written hourly
   double dead_state = 318.15;         ///< T_ref of the exergy (5.29) [K]
   std::optional<EconomicsParameters> economics;
 };
 void declare(config::Section& section, ReportParameters& parameters);
 
-/// Sums of a day or of many: energies [J], times [s].
+/// Sums over one or more days: energies [J], times [s].
 struct ReportSums {
   enum Item : std::size_t {
     field,
@@ -181,12 +181,12 @@ struct ReportSums {
     discharged_rest,
     cold_outlet,
     hot_outlet,
-    thickness,  ///< integral of h_th over the time for which it is defined [m s]
+    thickness,  ///< integral of h_th over the time in which it is defined [m s]
     thickness_time,
     duration,
-    asked,        ///< heat that the power block asked for
-    taken,        ///< and got
-    electricity,  ///< net: of the heat it got, less what pump or fan took
+    asked,        ///< heat requested by the power block
+    taken,        ///< heat received by the power block
+    electricity,  ///< net: from the received heat, less pump or fan work
     revenue,      ///< of the net electricity [currency]
     pumping,      ///< work of pump or fan
     n_items
@@ -197,21 +197,21 @@ struct ReportSums {
   void add(const ReportSums& other);
 };
 
-/// One line of tables 5.5 and 5.6 of [thesis].
+/// Row of tables 5.5 and 5.6 of [thesis].
 struct ReportLine {
   std::string quantity, unit;
   double value;
 };
 
-/// Keeps the books of tank and plant day by day, and writes
-///  - days.csv: one line a day, all rows of tables 5.5 and 5.6 for that day alone;
-///  - summary.csv: their means over the days after the run-in, both factors of safety with place and time;
-///  - plant.csv: a time series, one line a step of the simulation;
-///  - profiles.csv: temperatures and stress over height, every hour of the profile day, if there is one;
-///  - stress.csv: ring by ring, means of the daily extremes and the largest share of the yield strength.
+/// Daily accounting of tank and plant. Writes
+///   - days.csv: one line per day, all rows of tables 5.5 and 5.6 for that day;
+///   - summary.csv: means over the days after the run-in, both factors of safety with place and time;
+///   - plant.csv: a time series, one line per simulation step;
+///   - profiles.csv: temperatures and stress over height, hourly on the profile day, if there is one;
+///   - stress.csv: per ring, means of the daily extremes and the largest share of the yield strength.
 class DayReport final {
  public:
-  /// `folder`: empty for none of the files. On restart the files go on from `restart_time`.
+  /// `folder`: empty to write no files. A restarted run continues the files from `restart_time`.
   DayReport(const ReportParameters& parameters, const Plant& plant, const Weather& weather,
             const std::filesystem::path& folder,
             double restart_time = std::numeric_limits<double>::quiet_NaN());
@@ -220,9 +220,9 @@ class DayReport final {
   void record(const TankRecord& record);
   /// Writes the summary at the end of the run.
   void finish();
-  /// After finish(): why what it wrote may not be what was meant. Sentences.
+  /// Reasons to doubt the results written by finish(), as sentences.
   std::vector<std::string> doubts() const;
-  /// For checkpoints. Throws Error if the run to be continued counted other days.
+  /// Data for checkpoints. Throws Error if the continued run counted other days.
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(days_seen_, days_counted_, storable_, bed_height_, last_thickness_, last_time_, largest_pump_,
@@ -230,7 +230,7 @@ class DayReport final {
     if (numbers.reads()) refuse_other_run_in();
   }
 
-  /// Sets the parts of tank and plant, for their costs.
+  /// Sets the parts of tank and plant with a price.
   void take_stock(const Inventory& inventory) { inventory_ = inventory; }
 
   const ReportSums& results() const { return results_; }
@@ -245,14 +245,14 @@ class DayReport final {
   void end_day(double time);
   /// Returns true if this day, from 0, is after the run-in.
   bool counts(int day) const;
-  /// A step as plant.csv shows it: means over it and states at its end.
+  /// Step in plant.csv: means over it and states at its end.
   struct StepRow {
     const TankRecord& record;
     Ambient air;
-    double dni, moved, field, asked, taken;  ///< [W/m^2]; of the flow [kg], heat of the step [J]
+    double dni, moved, field, asked, taken;  ///< [W/m^2]; flow [kg] and heat [J] of the step
     double thickness;                        ///< of the thermocline [m]
   };
-  /// A cell of the bed and the ring beside it, at the end of a step.
+  /// Cell of the bed and its ring at the end of a step.
   struct Place {
     const TankRecord& record;
     std::size_t i;
@@ -280,10 +280,9 @@ class DayReport final {
 };
 
 /// Thickness of the thermocline [m], equation 5.30 of [thesis]: the height between the critical temperatures
-/// `cold` and `hot`; where one of them has left the bed, extrapolated with the mean gradient of the part that
-/// is still there (both: with that of the whole bed). `z` centers of the cells, upward, `height` of the bed
-/// [m], `temperature` a value a cell, `bottom` and `top` the temperatures there, all in the same unit.
-/// Nothing if the bed is hot or cold all through.
+/// `cold` and `hot`. If one has left the bed, it is extrapolated with the mean gradient of the remaining part
+/// (if both have, of the whole bed). `z`: cell centers, upward. `height`: of the bed [m]. `temperature`: per
+/// cell, all temperatures in the same unit. Empty if the whole bed is hot or cold.
 std::optional<double> thermocline_thickness(std::span<const double> z, double height,
                                             std::span<const double> temperature, double cold, double hot);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of the day report, costs, and how far the days of the run stand for a year.
+// Files of the day report, costs, and how well the days of the run represent a year.
 #include "thermocline/plant/report.hpp"
 
 #include <fmt/format.h>
@@ -143,14 +143,14 @@ LevelisedCost levelised_cost(const EconomicsParameters& p, const Inventory& i, d
   return cost;
 }
 
-/// The days that count are one year or several of a weather that itself holds a year; a fiftieth may be missing.
+/// True if the counted days are whole years of weather that covers a year, to within 2 %.
 bool DayReport::whole_years() const {
   const double years = results_[Sums::duration] / (year * seconds_a_day);
   return weather_.period_length() > 0.98 * year * seconds_a_day && std::round(years) >= 1 &&
          std::abs(years - std::round(years)) <= 0.02;
 }
 
-/// Electricity and what it earns and costs, a year of days as those that count. Net: pump and fan take their share.
+/// Adds the electricity with its revenue and cost, scaled to a year, net of pump and fan.
 void DayReport::add_money(std::vector<ReportLine>& all) const {
   if (largest_pump_ > 0) all.push_back({"largest power of pump or fan", "kW", largest_pump_ / 1000});
   if (!p_.economics && plant_.parameters().tariff.empty()) return;

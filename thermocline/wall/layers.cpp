@@ -52,7 +52,7 @@ Column::Heat Column::step(double dt, double inner_power, const Film& outer) {
   return advance(dt, 0, 0, inner_power / area_, outer);
 }
 
-/// Rows of the implicit step without what enters at the inner side.
+/// Rows of the implicit step without the inflow at the inner side.
 void Column::fill(double dt, const Film& outer) {
   const int n = int(x_.size()), last = n - 1;
   for (int i = 0; i < n; ++i) k_[i] = conductivity_[layer_[i]](temperature_[i]);
@@ -93,7 +93,7 @@ Column::Heat Column::advance(double dt, double inner, double inner_reference, do
 }
 
 void Column::set_steady(double inner, double outer) {
-  // Equal flux through resistances in series; a few sweeps for conductivities that depend on temperature.
+  // Equal flux through resistances in series; a few sweeps for temperature-dependent conductivities.
   const int n = int(x_.size());
   for (int i = 0; i < n; ++i) temperature_[i] = inner + (outer - inner) * (i + 0.5) / n;
   for (int sweep = 0; sweep < 20; ++sweep) {
@@ -137,8 +137,8 @@ double Insulation::step(double dt, std::span<const double> inside, const Film& o
   const std::size_t n = rings_;
   const int last = cells_ - 1;
   ramps_.values(temperature_.data(), k_.data(), n * cells_);
-  // Node j: (C/dt) (T - T^n) = g_{j-1} (T_{j-1} - T) + g_j (T_{j+1} - T), per height; from the inside out.
-  // up_ holds g_j over the diagonal that is left when the nodes further in are eliminated.
+  // Node j: (C/dt)(T - T^n) = g_{j-1} (T_{j-1} - T) + g_j (T_{j+1} - T), per height, from the inside out. up_
+  // contains g_j over the diagonal after eliminating the inner nodes.
   double* in = in_.data();  // conductance inwards; outwards it is that of the next node inwards
   for (std::size_t i = 0; i < n; ++i) in[i] = inner_[i] = shape_[0] * k_[i];
   for (int j = 0; j < cells_; ++j) {

@@ -16,26 +16,26 @@ struct ColumnLayer {
   int cells = 1;
 };
 
-/// Plane conduction through layers, from the inside (next to the tank) to the outside: roof, cover,
-/// foundation and soil. Implicit; conductivity at the temperature before the step.
+/// Plane conduction through layers, from the inside (the tank) to the outside: roof, cover, foundation and
+/// soil. Implicit, with conductivities at the old temperature.
 class Column {
  public:
   Column(const std::vector<ColumnLayer>& layers, double area);
 
-  /// Through a film on each side; a coefficient of infinity is a given surface temperature, 0 an insulated
-  /// one.
+  /// Performs a step with a film on each side. An infinite coefficient prescribes the surface temperature; 0
+  /// is an insulated side.
   struct Heat {
-    double inner = 0, outer = 0;  ///< entered through the inner side, left through the outer side [J]
+    double inner = 0, outer = 0;  ///< into the inner side, out of the outer side [J]
   };
   Heat step(double dt, const Film& inner, const Film& outer);
-  /// Steps with a given heat flow into the inner side [W].
+  /// Performs a step with a given heat flow into the inner side [W].
   Heat step(double dt, double inner_power, const Film& outer);
 
-  /// Response to a heat flow into the inner surface over a step of dt: it enters as coefficient (T_surface
-  /// - reference) [W/m^2] of the surface's temperature at the end of the step. Changes nothing.
+  /// Response to a heat flow into the inner surface over a step of dt, as coefficient (T_surface - reference)
+  /// [W/m^2] with the final surface temperature. Does not change the state.
   Film inner_response(double dt, const Film& outer);
 
-  /// Steady profile between two surface temperatures.
+  /// Sets the steady profile between two surface temperatures.
   void set_steady(double inner, double outer);
   double energy(double reference) const;  ///< [J]
   /// Conductance of the inner and the outer half cell [W/(m^2 K)].
@@ -43,7 +43,7 @@ class Column {
   double outer_conductance() const;
   double inner_capacity() const { return capacity_.front(); }  ///< of the inner cell [J/(m^2 K)]
   double inner_temperature() const { return temperature_.front(); }
-  /// Temperature of the outer surface against the film that the last step used [K].
+  /// Temperature of the outer surface for the film of the last step [K].
   double outer_surface(const Film& outer) const;
   double area() const { return area_; }
 
@@ -57,7 +57,7 @@ class Column {
                const Film& outer);
 
   double area_;
-  std::vector<Table> conductivity_;  // of each layer
+  std::vector<Table> conductivity_;  // per layer
   std::vector<int> layer_;
   std::vector<double> x_, dx_, capacity_, temperature_;
   std::vector<double> k_, resistance_, a_, b_, c_, r_;
@@ -66,46 +66,46 @@ class Column {
 
 struct InsulationParameters {
   InsulatorParameters material;
-  double thickness = 0.4;  ///< [m], the same on side and roof
+  double thickness = 0.4;  ///< [m], equal on side and roof
   int cells = 8;
-  double step = 300;  ///< its own step [s]
+  double step = 300;  ///< time step of the insulation [s]
   OutsideParameters outside;
 };
 
-/// Radial conduction through the blanket around the tank, one column of `cells` nodes a ring of the wall;
-/// implicit, all rings at once node by node.
+/// Radial conduction through the insulation around the tank, with a column of `cells` nodes per ring of the
+/// wall. Implicit, all rings together node by node.
 class Insulation {
  public:
-  /// `dz`: heights of the rings [m]; `radius`: where the blanket begins.
+  /// `dz`: heights of the rings [m]. `radius`: inner radius of the insulation.
   Insulation(const InsulationParameters& parameters, std::span<const double> dz, double radius);
 
-  /// Over dt with the temperatures of what is inside, held. Fills the heat that each ring gives [W]; returns
+  /// Performs a step of dt at constant inside temperatures. Sets the heat flow from each ring [W] and returns
   /// the heat lost outside [J].
   double step(double dt, std::span<const double> inside, const Film& outside,
               std::vector<double>& from_rings);
   void set_steady(std::span<const double> inside, double outside);
   double energy(double reference) const;  ///< [J]
-  /// Mean of the outer surface [K].
+  /// Mean temperature of the outer surface [K].
   double outer_surface(const Film& outside) const;
   std::vector<double>& temperature() { return temperature_; }
   const std::vector<double>& temperature() const { return temperature_; }
 
  private:
   Table conductivity_;
-  Ramps ramps_;  // the same
+  Ramps ramps_;  // of conductivity_
   int cells_;
   std::size_t rings_;
   std::vector<double> dz_;
   std::vector<double> shape_;     // 2 pi/ln(r_out/r_in) of the half cells, 2 per node [1]
-  std::vector<double> capacity_;  // per height of each node [J/(m K)]
+  std::vector<double> capacity_;  // per height, for each node [J/(m K)]
   double outer_circumference_;
-  std::vector<double> temperature_;  // node by node, the innermost first; rings within [K]
+  std::vector<double> temperature_;  // by node from the innermost, then by ring [K]
   std::vector<double> k_, up_, inner_, in_, nothing_;
 };
 
 void declare(config::Section& section, InsulationParameters& parameters);
 
-// Films on the surfaces of these layers. A film belongs to the surface temperature; one correction is enough for so weak a
+// Films on the surfaces of these layers at the surface temperature. One correction suffices for so weak a
 // dependence.
 Film side_film_on(const Insulation& blanket, const OutsideParameters& p, double diameter, double height,
                   const Ambient& air);

@@ -10,7 +10,7 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Symmetric, positive definite, two diagonals on each side: L D L^T without pivots.
+/// Symmetric positive definite matrix with two off-diagonals per side: L D L^T without pivoting.
 struct Pentadiagonal {
   std::vector<double> diagonal, next, second;  // a_ii, a_i,i+1, a_i,i+2
   explicit Pentadiagonal(std::size_t n) : diagonal(n, 0.0), next(n, 0.0), second(n, 0.0) {}
@@ -108,7 +108,7 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
         radial.empty() ? (fluid_[i] + lateral_[i]) / per_strain + free
                        : std::log1p(radial[i] / radius) + free - steel_->thermal_strain(given_wall_[i]);
     if (!begun_) strain_[i] = of_wall;
-    // (5.18) as D exp(alpha dT): printed as D (1 + alpha dT), which a cycle would leave smaller.
+    // (5.18) as D exp(alpha dT); the printed D (1 + alpha dT) would decrease in a cycle.
     strain_[i] += expansion_ * (grains[i] - grains_[i]);
     grains_[i] = grains[i];
     const double wanted = lateral_[i] + per_strain * (strain_[i] - of_wall);
@@ -116,8 +116,8 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
     contact_[i] = wanted <= active_[i]    ? Contact::active
                   : wanted >= passive_[i] ? Contact::passive
                                           : Contact::rigid;
-    // Where the bound cuts the pressure, the filler ends where the wall will be under the bound: the grains slump after
-    // it, or it pushes them in.
+    // If the bound limits the pressure, the filler follows the wall under that bound: the grains slump, or
+    // the wall pushes them.
     strain_[i] -= (wanted - lateral_[i]) / per_strain;
     slip_[i] += std::max(0.0, wanted - passive_[i]) / per_strain;
   }
@@ -165,7 +165,7 @@ WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const
     matrix.diagonal[i] = support[i];
     w[i] = support[i] * a * (hoop[i] / modulus[i] + free[i]);
   }
-  // The least of 1/2 sum D (w'')^2 dz + 1/2 sum E e/a^2 (w - w_m)^2 dz; w'' at inner rings by three values.
+  // Minimizes 1/2 sum D (w'')^2 dz + 1/2 sum E e/a^2 (w - w_m)^2 dz, w'' at inner rings from three values.
   struct Curvature {
     double before, here, after;
   };
@@ -188,7 +188,7 @@ WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const
     if (i == 0 || i + 1 == n) continue;
     const Curvature& c = curvature[i];
     const double bent = c.before * w[i - 1] + c.here * w[i] + c.after * w[i + 1];
-    // Outwards curved (w'' > 0) the outer face is pressed.
+    // With outward curvature (w'' > 0) the outer face is in compression.
     result.axial[i] = -6 * stiffness[i] * bent / (rings.thickness[i] * rings.thickness[i]);
   }
   return result;

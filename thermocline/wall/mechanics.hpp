@@ -8,44 +8,45 @@
 
 namespace couplet::thermocline {
 
-/// Pressures on the wall from inside, at each ring [Pa].
+/// Inner pressures on the wall at each ring [Pa].
 struct InnerPressure {
-  std::vector<double> fluid;     ///< p_f = p_ullage + rho_f g depth (5.13); the ullage's above the bed
+  std::vector<double> fluid;     ///< p_f = p_ullage + rho_f g depth (5.13); that of the ullage above the bed
   std::vector<double> vertical;  ///< p_v of the buoyant grains (5.14-5.16)
 };
-/// `temperature`: of the fluid in each cell of the bed, for a fluid whose density follows it; else empty.
+/// `temperature`: of the fluid per bed cell, if its density depends on it; else empty.
 InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid& fluid, const Filler& filler,
                              double ullage_gauge, std::span<const double> temperature = {});
 
-/// Stress in the wall of rings (thesis 5.4): sigma_rr = -p_f, sigma_zz = -(weight above)/(pi D e), sigma_tt =
-/// p D/(2 e) (5.23). Tension is positive.
+/// Stress in a wall of rings (thesis 5.4): sigma_rr = -p_f, sigma_zz = -(weight above)/(pi D e), sigma_tt = p
+/// D/(2 e) (5.23). Tension is positive.
 struct WallStress {
   std::vector<double> hoop, axial, radial, equivalent, yield;  ///< [Pa]
 };
 
 enum class Contact { active, rigid, passive };
 
-/// The filler as a rigid, perfectly plastic, cohesionless bulk against the wall (thesis figure 5.4). At each height:
-///   active   the wall has moved away and the grains have slumped after it: p_s = K_a p_v (5.17)
-///   rigid    the wall cannot shrink below the grains' diameter, which follows their own expansion (5.18)
+/// Filler as a rigid, perfectly plastic, cohesionless bulk against the wall (thesis figure 5.4). At each
+/// height it is
+///   active   the wall has moved away and the grains have followed: p_s = K_a p_v (5.17)
+///   rigid    the wall cannot shrink below the grains' diameter, which expands thermally (5.18)
 ///   passive  the grains yield: p_s = p_v/K_a (5.19, 5.20), and their diameter follows the wall
-/// Strains are logarithms of diameters, from the initial state. With the strain e_w that the wall would have at the end
-/// of a step under the filler's pressure before it, and the stiffness of the ring, E e/R (pressure per strain),
+/// Strains are logarithms of diameters relative to the initial state. Let e_w be the wall strain at the end
+/// of a step under the old filler pressure, and E e/R the stiffness of the ring (pressure per strain). Then
 ///   p_s := clamp(p_s + E e/R (e_s - e_w), K_a p_v, p_v/K_a)
-/// and the filler's strain e_s follows the wall outside the rigid range. A wall of rings is a membrane, e_w = (p_f +
-/// p_s)/(E e/R) + integral of alpha dT, for which this is exact. Of a wall that another program computes the strain is
-/// that of the begin of the step and the change of the integral of alpha dT in it; what bending spreads along z is
-/// corrected in the next step. The membrane is the stiffest answer a wall can give, so the iteration contracts for any
-/// shape of the load.
+/// and outside the rigid range the filler's strain e_s follows the wall. A wall of rings is a membrane, e_w =
+/// (p_f + p_s)/(E e/R) + integral of alpha dT, for which this is exact. For an external wall the strain is
+/// that at the start of the step plus the change of the integral of alpha dT. Axial coupling by bending is
+/// corrected in the next step. The membrane is the stiffest possible wall, so the iteration converges for any
+/// load shape.
 class FillerMechanics {
  public:
-  /// The wall starts at these temperatures with the active load. `is_external`: another program computes it.
+  /// Starts at these temperatures with the active load. `is_external`: another program computes the wall.
   FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler, const InnerPressure& pressure,
                   std::span<const double> wall, std::span<const double> grains, bool is_external = false);
-  /// Sets another weight of fluid and grains, which holds from the next update on.
+  /// Sets another weight of fluid and grains, used from the next update on.
   void load(const InnerPressure& pressure);
-  /// `wall`, `grains`: temperatures at the end of the step. `radial`: the displacement of an external wall [m] at each ring
-  /// under what was given last; empty: a membrane's.
+  /// `wall`, `grains`: temperatures at the end of the step. `radial`: displacement of an external wall [m] at
+  /// each ring under the last given load; empty for a membrane.
   void update(std::span<const double> wall, std::span<const double> grains,
               std::span<const double> radial = {});
 
@@ -53,8 +54,7 @@ class FillerMechanics {
   std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
   std::span<const double> pressure() const { return total_; }   ///< p_f + p_s [Pa]
   const std::vector<Contact>& contact() const { return contact_; }
-  /// Reduction of the filler's diameter by passive yielding so far, relative [1]; 0 where it never
-  /// yielded.
+  /// Relative reduction of the filler's diameter by passive yielding so far [1]; 0 if it never yielded.
   std::span<const double> slip() const { return slip_; }
 
   template <class Numbers>
@@ -62,7 +62,7 @@ class FillerMechanics {
     numbers(begun_);
     visit_values(numbers, strain_, slip_, grains_, lateral_, given_wall_, contact_);
   }
-  /// Computes the pressure and the stress that follow from the state.
+  /// Computes pressure and stress from the state.
   void finish();
 
  private:
@@ -71,37 +71,36 @@ class FillerMechanics {
   const Rings* rings_;
   const Steel* steel_;
   double expansion_, active_ratio_;
-  bool begun_;                                    // strains are the filler's own: the wall has answered once
+  bool begun_;                                    // strains refer to the filler: the wall has responded once
   std::vector<double> fluid_, active_, passive_;  // p_f, K_a p_v, p_v/K_a [Pa]
-  std::vector<double> strain_, slip_, grains_;    // of the filler [1], its temperature [K]
-  std::vector<double> given_wall_;                // temperatures under which the wall was last computed [K]
+  std::vector<double> strain_, slip_, grains_;    // strain of the filler [1], its temperature [K]
+  std::vector<double> given_wall_;                // temperatures at which the wall was last computed [K]
   std::vector<double> hoop_, lateral_, total_;
   std::vector<Contact> contact_;
 };
 
-/// Without filler mechanics the hoop stress is that of the fluid and the active load.
+/// Hoop stress without filler mechanics, from the fluid and the active load.
 std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const InnerPressure& pressure);
 double rankine_active(const Filler& filler);
 
-/// All stresses from the hoop stress and the temperature of the rings.
+/// Computes all stresses from the hoop stress and temperature of the rings.
 void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure, double roof_pressure,
                  std::span<const double> hoop, std::span<const double> temperature, WallStress& out);
 
-/// Stresses of the rings with bending: the wall as a thin axisymmetric shell [timoshenko1959, chapter
-/// 15]
+/// Stresses of the rings with bending. The wall is a thin axisymmetric shell [timoshenko1959, chapter 15]
 ///   d2/dz2 (D d2w/dz2) + E e/a^2 (w - w_m) = 0,   D = E e^3/(12 (1 - nu^2)),
-/// w_m the radial displacement that each ring has by itself (its stress and its thermal expansion), ends
-/// free. The displacement is rounded off over 1/beta, beta^4 = 3 (1 - nu^2)/(a^2 e^2), and bends the wall: a
-/// step of dT in temperature makes an axial stress of 0.293 E alpha dT at both faces (nu = 0.3).
+/// with free ends; w_m is the radial displacement of each ring alone (by stress and thermal expansion). The
+/// displacement is smoothed over 1/beta, beta^4 = 3 (1 - nu^2)/(a^2 e^2), which bends the wall. A temperature
+/// step dT gives an axial stress of 0.293 E alpha dT at both faces (nu = 0.3).
 struct WallBending {
   std::vector<double> hoop;   ///< E (w/a - thermal strain), mean over the thickness [Pa]
-  std::vector<double> axial;  ///< at the outer face, 6 M/e^2; opposite at the inner [Pa]
+  std::vector<double> axial;  ///< at the outer face, 6 M/e^2; opposite sign at the inner face [Pa]
 };
 WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const double> hoop,
                          std::span<const double> temperature);
 
-/// Largest share of its yield strength that the equivalent stress of a ring has: without bending, and at the worse of both
-/// faces with it, where bending adds -+6 M/e^2 along z and nu times that along the circumference [1].
+/// Largest ratio of equivalent stress to yield strength [1]: of the rings without bending, and of the shell
+/// at the worse face, where bending adds -+6 M/e^2 axially and nu times that circumferentially.
 struct YieldShares {
   double rings = 0, shell = 0;
 };

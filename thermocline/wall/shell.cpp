@@ -62,7 +62,7 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
   for (int i = 0; i < n; ++i) resistance_[i] = bare_[i] / resistance_[i];
   conduction_rows(n, resistance_.data(), a_.data(), c_.data());
   for (int i = 0; i < rings.in_bed; ++i) coupling_[i] = film[i] * around * rings.dz[i];
-  // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
+  // Two passes, so that the specific heat is its mean over the step and the stored heat equals the inflow.
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < n; ++i) {
       const double capacity = mass_[i] * specific_heat_[i] / dt;
@@ -127,7 +127,7 @@ std::vector<double> WallInterface::to_sections(std::span<const double> rings) co
   std::vector<double> values(sections_);
   const double dz = height_ / sections_, from = ring_z_.front();
   for (int k = 0; k < sections_; ++k) {
-    // The table is constant below its first ring; its integral counts from there.
+    // The table is constant below its first ring, where its integral starts.
     const double low = k * dz, high = low + dz;
     values[k] = high <= from ? profile(low) : (profile.integral(high) - profile.integral(low)) / dz;
   }

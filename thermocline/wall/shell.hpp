@@ -17,39 +17,38 @@ struct Plate {
 
 struct ShellParameters {
   SteelParameters material;
-  std::vector<Plate> plates;  ///< from the bottom up; the last one goes on to the top
+  std::vector<Plate> plates;  ///< from the bottom up; the last one continues to the top
   double roof_pressure = 0;   ///< weight of the roof per area of the roof [Pa]
 };
 
-/// Geometry of the wall: one ring for each cell of the bed, and further ones around the ullage.
+/// Geometry of the wall: one ring per cell of the bed, and further ones around the ullage.
 struct Rings {
   Rings(const ShellParameters& parameters, const BedGrid& bed, double diameter, double height_above_bed);
 
   double diameter;
-  int in_bed;                            ///< rings beside the bed
+  int in_bed;                            ///< number of rings next to the bed
   std::vector<double> z, dz, thickness;  ///< [m]
   int size() const { return int(z.size()); }
   /// Inner surface of a ring [m^2].
   double surface(int i) const;
 };
 
-/// Temperature of the wall: a metal ring thin enough to have one temperature at each height, conduction along
-/// z.
+/// Temperature of the wall as thin metal rings with conduction along z. Implicit, with properties at the old
+/// temperature:
 ///   rho c e dT/dt = h_w (T_f - T) + d/dz(k e dT/dz) - q
-/// Implicit; the metal's properties at the temperature before the step.
 class Shell {
  public:
   Shell(const Rings& rings, const Steel& steel);
 
-  /// Over dt, beside fluid of temperature `fluid` (a value a ring in the bed, held) through the coefficients
-  /// `film` [W/(m^2 K)]; `lost` leaves each ring [W] (insulation, ullage). Fills what the bed's cells give
-  /// [W].
+  /// Performs a step of dt next to fluid at `fluid` (per ring in the bed, constant) with coefficients `film`
+  /// [W/(m^2 K)]. `lost`: heat flow out of each ring [W] (insulation, ullage). Returns the heat flow from the
+  /// bed's cells [W].
   void step(double dt, std::span<const double> fluid, std::span<const double> film,
             std::span<const double> lost, std::vector<double>& from_bed);
   std::vector<double>& temperature() { return temperature_; }
   const std::vector<double>& temperature() const { return temperature_; }
   void set_temperature(std::span<const double> temperature);
-  /// Heat content above a temperature [J]: the heat that came in less what went out, exact over steps.
+  /// Heat content relative to a temperature [J]: exactly the heat received less the heat given.
   double energy(double reference) const;
 
  private:
@@ -63,17 +62,17 @@ class Shell {
 
 void declare(config::Section& section, ShellParameters& parameters);
 
-/// The wall as another program (a solid of its own) instead of the rings' membrane.
+/// The wall as a separate solid program instead of the rings' membrane.
 struct ExternalWallParameters {
   int sections = 400;   ///< along the height of the wall
-  double angle = 0.01;  ///< of the wedge of the wall that the other program computes [rad]
+  double angle = 0.01;  ///< of the wall's wedge in that program [rad]
 };
 void declare(config::Section& section, ExternalWallParameters& parameters);
 
-/// The inner side of the wall as the coupler sees it: a strip of the cylinder, a face a section, symmetric
-/// about the plane y = 0; z from the tank's bottom. Gives at the faces
+/// Inner side of the wall for the coupler: a strip of the cylinder with one face per section, symmetric about
+/// the plane y = 0, with z from the tank's bottom. Gives at the faces
 ///   temperature  K   of the ring (t^{n+1})
-///   pressure     Pa  fluid and filler, pushes outwards
+///   pressure     Pa  of fluid and filler, pushes outward
 /// and takes `displacement` at the vertices, relative to the unloaded wall at the solid's reference
 /// temperature.
 class WallInterface {
@@ -86,7 +85,7 @@ class WallInterface {
   std::vector<double> to_sections(std::span<const double> rings) const;
   /// Radial displacement [m] of each ring from the displacement of the vertices (3 components each).
   std::vector<double> radial(std::span<const double> displacement) const;
-  /// Amounts of the sections, shared out to the rings by height.
+  /// Distributes amounts of the sections to the rings by height.
   std::vector<double> to_rings(std::span<const double> amounts) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 Film combine(double convection, double emissivity, double surface, double surroundings4, double gain,
              const Ambient& air) {
-  // eps sigma (T^4 - T_env^4) linear about the surface temperature.
+  // eps sigma (T^4 - T_env^4), linearized about the surface temperature.
   const double radiation = 4 * emissivity * stefan_boltzmann * std::pow(surface, 3);
   const double offset = emissivity * stefan_boltzmann * (3 * std::pow(surface, 4) + surroundings4);
   Film film;
@@ -64,7 +64,7 @@ Film side_film(const OutsideParameters& p, double surface, double diameter, doub
       film.conductivity / height;
   const double around =
       0.5 * std::pow(sky_temperature(air.temperature), 4) + 0.5 * std::pow(air.temperature, 4);
-  // The sun meets the projection D H of the side's area pi D H.
+  // The sun sees the projected area D H of the side's area pi D H.
   const double across = std::sqrt(std::max(0.0, 1 - air.sun_height * air.sun_height));
   const double gain = air.sun_height > 0 ? p.solar_absorptance * air.dni * across / std::numbers::pi : 0;
   return combine(cubes(forced, still), p.emissivity, surface, around, gain, air);
@@ -122,15 +122,15 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
   const auto fourth = [](double t) { return stefan_boltzmann * t * t * t * t; };
   double disc = 0, side = 0;  // film times area, surface to gas [W/K]
   for (int iteration = 0; iteration < 30; ++iteration) {
-    // Liquid below a cooler roof: Globe and Dropkin 1959, Nu = 0.069 Ra^(1/3) Pr^0.074 across the height; at
-    // rest otherwise. Two films in series make that coefficient, so each is twice as large.
+    // Liquid below a cooler roof: Globe and Dropkin 1959, Nu = 0.069 Ra^(1/3) Pr^0.074 over the height;
+    // otherwise at rest. Two films in series give this coefficient, so each is twice as large.
     const Air air(0.5 * (liquid + roof_), pressure), near_wall(0.5 * (wall + gas_), pressure);
     const double ra = liquid > roof_ ? air.rayleigh(liquid - roof_, height_) : 0;
     const double nu = std::max(1.0, 0.069 * std::cbrt(ra) * std::pow(air.prandtl, 0.074));
     disc = 2 * area_ * nu * air.conductivity / height_;
     side = side_ * vertical_plate_nusselt(near_wall.rayleigh(wall - gas_, height_), near_wall.prandtl) *
            near_wall.conductivity / height_;
-    // Newton for the gas and the roof's surface with these films.
+    // Newton's method for the gas and the roof's surface with these films.
     const double gas_balance =
         store * (gas_ - before) + disc * (2 * gas_ - liquid - roof_) + side * (gas_ - wall);
     const double roof_balance = disc * (roof_ - gas_) + roof_conductance * (roof_ - roof_cell) +
@@ -150,7 +150,7 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
   heat.into_roof = roof_conductance * (roof_ - roof_cell);
   heat.from_wall =
       side * (wall - gas_) + x[2][0] * fourth(liquid) + x[2][1] * fourth(roof_) + x[2][2] * fourth(wall);
-  // The heat of the liquid closes the balance. It equals that of its own films and radiation to the solver's tolerance.
+  // The heat of the liquid closes the balance; it equals that of films and radiation to the tolerance.
   heat.from_liquid = heat.into_roof + store * (gas_ - before) - heat.from_wall;
   return heat;
 }

@@ -11,12 +11,12 @@ namespace couplet::thermocline {
 
 inline constexpr double stefan_boltzmann = 5.670374e-8;  // [W/(m^2 K^4)]
 
-/// Dry air (or nitrogen, which differs by a few per cent) at one temperature and pressure.
+/// Dry air (or nitrogen, which differs by a few percent) at one temperature and pressure.
 struct Air {
   Air(double temperature, double pressure);
   double density, conductivity, viscosity, prandtl, expansion;  // SI
   double specific_heat = 1006;                                  // [J/(kg K)]
-  /// Rayleigh number on a length at a temperature difference.
+  /// Rayleigh number for a length and a temperature difference.
   double rayleigh(double difference, double length) const;
 };
 
@@ -29,22 +29,22 @@ double hot_plate_up_nusselt(double rayleigh);
 /// Swinbank 1963: 0.0552 T^1.5 [K].
 double sky_temperature(double air);
 
-/// Heat loss of a surface: q = coefficient (T - reference) [W/m^2], convection and radiation together, linear
-/// about the surface temperature it was made for.
+/// Heat loss of a surface by convection and radiation, q = coefficient (T - reference) [W/m^2], linearized
+/// about a surface temperature.
 struct Film {
   double coefficient = 0, reference = 0;
 };
 
 struct OutsideParameters {
   double emissivity = 0.2;       ///< of the cover
-  double solar_absorptance = 0;  ///< of the cover; 0: the sun is left out
+  double solar_absorptance = 0;  ///< of the cover; 0 to neglect the sun
 };
 
-/// Side of a tank of height H, diameter D: natural and forced convection combined by their cubes, half of the
-/// view the sky's and half the ground's (at air temperature).
+/// Side of a tank of height H and diameter D: cubic combination of natural and forced convection; half the
+/// view is sky and half is ground (at air temperature).
 Film side_film(const OutsideParameters& p, double surface, double diameter, double height,
                const Ambient& air);
-/// Roof: turbulent plate of length D in the wind, hot plate facing up, the whole view the sky's.
+/// Roof: turbulent plate of length D in the wind, hot plate facing up; the whole view is sky.
 Film roof_film(const OutsideParameters& p, double surface, double diameter, const Ambient& air);
 
 struct UllageParameters {
@@ -52,9 +52,9 @@ struct UllageParameters {
   double emissivity_liquid = 0.95, emissivity_roof = 0.8, emissivity_wall = 0.8;
 };
 
-/// Radiation between liquid, roof and side wall of the ullage, grey and diffuse; coaxial equal discs: F = X -
-/// sqrt(X^2 - 1), X = 1 + (H/R)^2/2. Net heat that leaves surface i: Q_i = sum_j exchange(i, j) sigma T_j^4;
-/// the rows sum to zero (no exchange at equal temperatures), and the columns (what one loses others gain).
+/// Gray diffuse radiation between liquid, roof and side wall of the ullage. Coaxial equal discs: F = X -
+/// sqrt(X^2 - 1), X = 1 + (H/R)^2/2. Net heat from surface i: Q_i = sum_j exchange(i, j) sigma T_j^4. Rows
+/// sum to zero (no exchange at equal temperatures), and so do columns (conservation).
 struct Enclosure {
   enum Surface { liquid, roof, wall };
   Enclosure(const UllageParameters& parameters, double radius, double height);
@@ -62,8 +62,8 @@ struct Enclosure {
   double disc_to_disc = 0;                          // view factor
 };
 
-/// Gas and radiation between the liquid, the roof and the wall above the liquid. The gas has one temperature;
-/// the roof's inner surface has no mass and follows from its balance against the roof's first cell.
+/// Gas and radiation between liquid, roof and wall above the liquid. The gas has one temperature. The roof's
+/// inner surface has no mass; its temperature follows from the balance with the roof's first cell.
 class Ullage {
  public:
   Ullage(const UllageParameters& parameters, double diameter, double height);
@@ -73,8 +73,8 @@ class Ullage {
     double roof_surface = 0;                               // [K]
     double wall_coefficient = 0;  // d(from_wall)/d(wall temperature) per area of the wall [W/(m^2 K)]
   };
-  /// Over dt between surfaces of given temperature [K]. `roof_conductance`: roof surface to the roof's first
-  /// cell [W/K], 0 without an insulated roof. Changes the gas.
+  /// Performs a step of dt at given surface temperatures [K] and updates the gas. `roof_conductance`: from
+  /// the roof surface to its first cell [W/K], 0 without an insulated roof.
   Heat step(double dt, double liquid, double wall, double roof_cell, double roof_conductance,
             double air_pressure);
   double gas_temperature() const { return gas_; }
@@ -91,7 +91,7 @@ class Ullage {
   Enclosure enclosure_;
   double area_, side_, height_;
   double gas_ = 293.15, roof_ = 293.15;
-  double capacity_;  // of the gas at 500 K and the air's normal pressure, a constant [J/K]
+  double capacity_;  // of the gas at 500 K and normal air pressure, constant [J/K]
 };
 
 void declare(config::Section& section, UllageParameters& parameters);

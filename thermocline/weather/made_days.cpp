@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 constexpr double degree = pi / 180;
 
-/// Declination of the sun [rad] [duffie2013, equation 1.6.1a], where the first of January is day 1.
+/// Declination of the sun [rad] [duffie2013, equation 1.6.1a], with January 1 as day 1.
 double declination(int day) { return 23.45 * degree * std::sin(2 * pi * (285 + day) / 365.); }
 
 struct Correction {
@@ -35,8 +35,8 @@ double of_month(const std::vector<double>& values, std::size_t month) {
   return values.size() == 1 ? values.front() : values[month];
 }
 
-/// Means over the 24 hours of (1 - |2 t/T|^n)^p. Midpoints in parts of an hour: the ends of the day, where
-/// the slope may be infinite, fall into a part of 30 s.
+/// Hourly means of (1 - |2 t/T|^n)^p. Midpoint rule within parts of an hour: the ends of the day, where the
+/// slope may be infinite, are in parts of 30 s.
 std::vector<double> form(double length, double n, double p) {
   constexpr int parts = 120;
   std::vector<double> mean(hours_a_day, 0.0);

@@ -13,7 +13,7 @@ namespace couplet::thermocline {
 
 namespace {
 
-/// Monotonised central difference: zero at an extremum, never beyond twice a one-sided difference.
+/// Monotonized central difference: zero at an extremum, at most twice a one-sided difference.
 double limited_slope(double before, double here, double after) {
   const double left = here - before, right = after - here;
   if (left * right <= 0) return 0;
@@ -28,7 +28,7 @@ double sun_over(const WeatherHours::Site& site, int first_day, double clock) {
                             (solar - whole_days * seconds_a_day) / seconds_an_hour);
 }
 
-/// Which hour of the record each hour of the period is. A shift moves the record's hours to a later clock.
+/// Hour of the record for each hour of the period. A shift moves the record to a later clock time.
 std::vector<std::size_t> chosen_hours(const WeatherHours& record, const WeatherPeriod& period, int shift) {
   const int first = record.first_day, days = record.days();
   const bool whole_year = days == days_a_year;
@@ -154,7 +154,7 @@ double Weather::sun_height(double t) const {
   return std::max(0., sun_over(*hours_.site, first_day_, t - shift_hours_ * seconds_an_hour));
 }
 
-/// Within the first period: integral of the line mean + slope (x - 1/2), x the share of the hour gone.
+/// Within the first period: integral of the line mean + slope (x - 1/2), x the elapsed share of the hour.
 double Weather::irradiation_since_start(double t) const {
   const double position = t / seconds_an_hour;
   const auto h = std::min(static_cast<std::size_t>(position), hours_.dni.size() - 1);

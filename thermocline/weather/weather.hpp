@@ -12,48 +12,47 @@
 
 namespace couplet::thermocline {
 
-/// The weather at one instant.
+/// Weather at one time.
 struct Ambient {
   double dni = 0;               ///< direct normal irradiance [W/m^2]
   double temperature = 293.15;  ///< of the air [K]
   double wind = 0;              ///< [m/s]
   double humidity = 0.5;        ///< relative [1]
   double pressure = 101325;     ///< of the air [Pa]
-  double sun_height = 0;        ///< sine of the sun's height above the horizon [1]; 0 where it is not known
+  double sun_height = 0;        ///< sine of the sun's height above the horizon [1]; 0 if unknown
 };
 
-/// Which days of the weather are lived through: from the day `from`, where t = 0 at 00:00, to the end of the
-/// day `to`, then `from` again. Days of the year, 0 for 01-01; `from` may lie after `to` (a winter). Without
-/// `to`: the whole file.
+/// Period of the weather in use: from the day `from` (t = 0 at 00:00) to the end of the day `to`, then
+/// repeated. Days of the year, 0 for 01-01; `from` may be after `to` (a winter). Without `to`, the whole
+/// file.
 struct WeatherPeriod {
   int from = 0;
   std::optional<int> to;
 };
 
-/// Hourly weather as functions of time. States are straight lines between the hourly moments, also where the
-/// period begins again. The irradiance is a straight line within each hour, of the hour's mean and a slope
-/// limited so that no value leaves the range of the neighboring hours (monotonized central differences
-/// [vanleer1977]): the energy of every hour is that of the file.
+/// Hourly weather as functions of time. States are linear between hourly values, also where the period
+/// repeats. The irradiance is linear within each hour, with the hour's mean and a slope limited to the range
+/// of the adjacent hours (monotonized central differences [vanleer1977]), so the energy of every hour is
+/// exact.
 class Weather {
  public:
-  /// The simulation's clock is `shift_hours` ahead of the file's. Throws Error if a day of the period is not
-  /// in the record.
+  /// The clock of the simulation is `shift_hours` ahead of the file's. Throws Error if a day of the period is
+  /// missing.
   Weather(const WeatherHours& record, const WeatherPeriod& period, int shift_hours = 0);
 
   Ambient at(double t) const;
-  double mean_temperature() const {
-    return mean_temperature_;
-  }  ///< air of the whole record, which deep soil has [K]
+  /// Mean air temperature of the whole record, also that of deep soil [K].
+  double mean_temperature() const { return mean_temperature_; }
   /// Direct normal irradiation between two times [J/m^2].
   double irradiation(double from, double to) const;
-  /// It is known where the sun stands.
+  /// True if the position of the sun is known.
   bool has_site() const { return hours_.site.has_value(); }
   const std::string& source() const { return hours_.source; }
-  /// Gaps that were filled in the record, with file:line.
+  /// Gaps filled in the record, with file:line.
   const std::vector<std::string>& warnings() const { return hours_.warnings; }
-  /// Why it may not be what was meant.
+  /// Reasons to doubt the data.
   const std::vector<std::string>& doubts() const { return hours_.doubts; }
-  /// Date of the day in which t lies, as MM-DD.
+  /// Date of the day that contains t, as MM-DD.
   std::string date(double t) const;
 
   int first_day() const { return first_day_; }                                ///< of the year, 0 for 01-01
@@ -74,10 +73,10 @@ class Weather {
 
 enum class WeatherKind { constant, file, clear_sky, smooth_days };
 
-/// Where on earth a weather file belongs, for files that do not say it.
+/// Geographic position of a weather file that does not state it.
 struct SiteParameters {
   double latitude = 0, longitude = 0;  ///< [deg], north and east positive
-  double time_zone = 0;                ///< hours that the file's clock is ahead of Greenwich
+  double time_zone = 0;                ///< hours by which the file's clock is ahead of Greenwich
 };
 void declare(config::Section& section, SiteParameters& site);
 
@@ -88,23 +87,23 @@ struct WeatherParameters {
   std::optional<SiteParameters> site;
   ClearSky sky;
   SmoothDays smooth;
-  double shift_hours = 0;  ///< by which the clock of the simulation is ahead of that of the file
+  double shift_hours = 0;  ///< hours by which the clock of the simulation is ahead of the file's
   bool mean_days = false;
-  std::string from = "01-01", to;  ///< dates MM-DD; empty: the whole year
+  std::string from = "01-01", to;  ///< dates MM-DD; empty for the whole year
   Ambient constant;
 };
 void declare(config::Section& section, WeatherParameters& parameters);
 
-/// Reads or makes it. Throws Error.
+/// Reads or generates the weather. Throws Error.
 std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
                                       const std::filesystem::path& case_folder);
 
-/// Returns the record with each hour's irradiance replaced by the mean over that hour of all days of its month
-/// (of the record), as tables of average days give it. The energy of every month stays.
+/// Returns the record with each hour's irradiance replaced by its mean over all days of the month, as in
+/// tables of average days. Keeps the energy of every month.
 WeatherHours with_mean_days(WeatherHours record);
 
-/// Reasons to doubt the sun of a record with a site: irradiance while the sun is below the horizon, a clock far
-/// from that of the longitude. Sentences.
+/// Reasons to doubt the sun of a record with a site, as sentences: irradiance with the sun below the horizon,
+/// or a clock far from that of the longitude.
 std::vector<std::string> doubts_about_sun(const WeatherHours& record);
 
 }  // namespace couplet::thermocline

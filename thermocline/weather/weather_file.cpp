@@ -43,7 +43,7 @@ const std::array<Quantity, n_quantities> quantities{{
 constexpr int longest_gap = 6;  // [h]
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// The number in a cell; NaN for a gap.
+/// Number in a cell; NaN for a gap.
 double number_in(std::string_view cell, std::string_view name, const std::string& place) {
   const std::string_view text = base::trim(cell);
   if (text.empty() || text == "nan" || text == "NaN" || text == "NA") return missing;
@@ -51,14 +51,14 @@ double number_in(std::string_view cell, std::string_view name, const std::string
   throw Error("{}: {}; expected {} here.", place, csv::why_no_number(text), name);
 }
 
-/// Collects the records hour by hour, checks their order and range, and closes gaps.
+/// Collects records by hour, checks their order and range, and fills gaps.
 class HourCollector {
  public:
   explicit HourCollector(std::string file) : file_(std::move(file)) {}
 
   /// Hour of the year from 0 and the values in the order of `quantities`, NaN for missing ones.
   void add(int hour, std::span<const double> values, int line);
-  /// Checks that the days are whole and closes the gaps.
+  /// Checks for whole days and fills the gaps.
   WeatherHours finish();
   std::string place(int line) const { return fmt::format("{}:{}", file_, line); }
 
@@ -76,7 +76,7 @@ void HourCollector::add(int hour, std::span<const double> values, int line) {
   if (first_hour_ < 0) first_hour_ = hour;
   const int expected = first_hour_ + static_cast<int>(lines_.size());
   constexpr int year = hours_a_day * days_a_year;
-  // A year that begins in July goes on in January.
+  // A year that starts in July continues in January.
   if (hour < expected && expected >= year && hour + year - expected <= longest_gap && hour + year >= expected)
     hour += year;
   if (hour < expected)
@@ -112,7 +112,7 @@ void HourCollector::close_gaps(std::size_t quantity, std::vector<std::string>& w
     if (end - begin > longest_gap)
       throw Error("{}: the {} is missing for {} hours from here. Gaps of more than {} hours are not filled.",
                   place(lines_[begin]), what, end - begin, longest_gap);
-    // At the start or the end of the file there is only one neighbor.
+    // At the start or end of the file there is only one neighbor.
     const double before = begin > 0 ? v[begin - 1] : v[end];
     const double after = end < n ? v[end] : before;
     for (std::size_t i = begin; i < end; ++i)
@@ -124,7 +124,7 @@ void HourCollector::close_gaps(std::size_t quantity, std::vector<std::string>& w
   }
 }
 
-/// Throws Error for a column whose values are all so small that they have another unit.
+/// Throws Error for a column whose values are so small that they must be in another unit.
 void HourCollector::refuse_other_unit(std::size_t quantity) const {
   const auto target = weather_quantities[quantity];
   const double highest = *std::max_element(columns_[quantity].begin(), columns_[quantity].end());
@@ -168,10 +168,10 @@ WeatherHours HourCollector::finish() {
   return result;
 }
 
-/// Numbers of the lines '# name: number' above the head, where the states hold and where the site is.
+/// Values of the lines '# name: number' above the header: time of the states, and site.
 class Preamble {
  public:
-  /// Takes a comment; those that are no such line are ignored.
+  /// Reads a comment; other comments are ignored.
   void read(std::string_view comment, const std::string& place) {
     const std::size_t colon = comment.find(':');
     if (colon == std::string_view::npos) return;
@@ -204,7 +204,7 @@ class Preamble {
   std::map<std::string, double> values_;
 };
 
-/// Names the command that makes a CSV of a file in another format.
+/// Throws Error with the command that converts a file of another format to CSV.
 [[noreturn]] void refuse_format(const std::filesystem::path& file) {
   std::string name = file.filename().string();
   for (const char* end : {".gz", ".csv", ".CSV", ".epw", ".EPW"})
@@ -216,7 +216,7 @@ class Preamble {
       file.string(), (file.parent_path() / (name + "_weather.csv")).string());
 }
 
-/// Index in `quantities` of each column of the file; that of the hour is n_quantities.
+/// Index in `quantities` of each column of the file; n_quantities for the hour.
 std::vector<std::size_t> read_head(const std::string& head, const std::filesystem::path& file,
                                    const std::string& place) {
   for (const char other : {';', '\t'})
