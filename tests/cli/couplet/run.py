@@ -60,6 +60,12 @@ def by_hand(folder):
     same = call(bin_, "compare", folder / "by-couplet", folder / "a/out")
     count = re.match(r"(\d+) columns and fields: equal bit for bit", same.stdout)
     check("both leave the same, bit for bit", same.returncode == 0 and count and int(count[1]) > 50, same.stdout)
+    for run, rounded in (("by-couplet", "1e-12"), ("a/out", "-2e-12")):
+        (folder / run / "solid/round-off.csv").write_text(f"time [s],x [N],y [N]\n1,1000,{rounded}\n")
+    same = call(bin_, "compare", folder / "by-couplet", folder / "a/out", "--tolerance", "1e-9")
+    check("a column of round-off is compared with the others of its table", same.returncode == 0, same.stdout)
+    for run in ("by-couplet", "a/out"):
+        (folder / run / "solid/round-off.csv").unlink()
     longer = call(bin_, "run", case, "--set", "participants.solid.material.youngs-modulus=3.9e6", "--set", f"simulation.output.folder={folder / 'other'}", "-q")
     other = call(bin_, "compare", folder / "a/out", folder / "other")
     check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "solid/probes.csv: tip" in other.stdout, other.stdout[-300:])

@@ -25,8 +25,8 @@ def flat(node, name=""):
         yield name, node
 
 
-def apart(a, b):
-    """(largest difference, relative to the largest value), or None if the shapes differ."""
+def apart(a, b, largest=0.0):
+    """(largest difference, relative to `largest` or the largest value here), or None if the shapes differ."""
     import numpy as np
     if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
         return None
@@ -39,7 +39,7 @@ def apart(a, b):
         return 0.0, 0.0
     gap = np.abs(np.where(same, 0, a.astype(float) - b))
     gap = float("inf") if np.isnan(gap).any() else float(gap.max())
-    return gap, gap / (float(np.nanmax(np.abs([a.astype(float), b]))) or 1.0)
+    return gap, gap / (max(largest, float(np.nanmax(np.abs([a.astype(float), b])))) or 1.0)
 
 
 def arrays(folder):
@@ -87,14 +87,31 @@ def of_mappings(first, second):
     return [f"{key}: {first.get(key, 'absent')} | {second.get(key, 'absent')}" for key in sorted({*first, *second}) if first.get(key, 'absent') != second.get(key, 'absent')]
 
 
+def scales(*runs):
+    """{(table, unit): largest value}: a column that is zero up to round-off is compared with the others of its table and unit."""
+    import numpy as np
+    found = {}
+    for name, values in (item for run in runs for item in run.items()):
+        if group := group_of(name):
+            finite = np.abs(values[np.isfinite(values)]) if values.dtype.kind == "f" else []
+            found[group] = max(found.get(group, 0.0), float(max(finite, default=0.0)))
+    return found
+
+
+def group_of(name):
+    unit = re.fullmatch(r"(.*\.csv): .*(\[.*\])", name)
+    return unit.groups() if unit else None
+
+
 def differences(first, second, tolerance):
     """[(name, text, True if beyond the tolerance)] of all arrays."""
     a, b = arrays(first), arrays(second)
+    largest = scales(a, b)
     for name in [*a, *(n for n in b if n not in a)]:
         if name not in a or name not in b:
             yield name, f"only in {first if name in a else second}", True
             continue
-        gap = apart(a[name], b[name])
+        gap = apart(a[name], b[name], largest.get(group_of(name), 0.0))
         if gap is None:
             yield name, f"shape {a[name].shape} | {b[name].shape}", True
         elif gap[0]:
