@@ -256,9 +256,10 @@ void Document::set(const std::string& assignment) {
     const bool last = i + 1 == parts.size();
     if (last && node.IsMap()) {
       // operator[] does not find a key that YAML reads as a number or boolean.
-      if (const Entry entry = find(node, parts[i]); entry.found && value.IsNull()) {
+      if (value.IsNull()) {
+        step_into(node, walked, parts[i], option);  // throws Error if there is nothing to remove
         node.remove(parts[i]);
-      } else if (entry.found) {
+      } else if (const Entry entry = find(node, parts[i]); entry.found) {
         YAML::Node target = entry.node;
         target = value;
       } else {

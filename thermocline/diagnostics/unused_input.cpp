@@ -44,6 +44,9 @@ class UnusedInput final : public TankDiagnostic {
       tell(report, "flow-schedule", "first",
            fmt::format("no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
                        first - rows.begin(), first->at));
+    else if (const auto later = std::ranges::find_if_not(rows, began); later != rows.end())
+      report.sentences.push_back(fmt::format("flow.rows[{}] starts at {:g} s, after the end of the run",
+                                             later - rows.begin(), later->at));
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const ScheduleRow& row = rows[i];
       if (row.mass_flow == 0 || !began(row) || flowed_[i] != 0) continue;

@@ -35,6 +35,7 @@ TEST(Override, without_a_value_removes_the_key) {
   EXPECT_FALSE(read_with({"damping={mass: 3}", "damping=~"}).damping.has_value());
   EXPECT_DOUBLE_EQ(read_with({"material.poisson-ratio=0.1", "material.poisson-ratio="}).poisson_ratio, 0.3);
   EXPECT_THROW(read_with({"mesh="}), Error) << "it is required";
+  EXPECT_THROW(read_with({"damping=null"}), Error) << "there is none, and an empty section would enable it";
 }
 
 TEST(Override, leaves_everything_else_as_it_was) {
