@@ -26,6 +26,9 @@ struct PointBox {
   bool empty = true;
   PointBox() = default;
   explicit PointBox(const std::vector<Vec3>& points);
+  /// Around the points of all ranks. Collective.
+  PointBox(MPI_Comm comm, const std::vector<Vec3>& points);
+  double extent() const { return (high - low).norm(); }
   /// Distance [m] of a point of the box to `p`, at least and at most.
   double nearest(const Vec3& p) const { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); }
   double furthest(const Vec3& p) const { return (p - low).cwiseAbs().cwiseMax((p - high).cwiseAbs()).norm(); }
@@ -55,10 +58,6 @@ struct Neighbour {
   double size;  ///< of the neighbour, if its set has sizes
   Vec3 point;
 };
-
-/// For each point of `points` on this rank the nearest of `among` on any rank; of equals the one of the
-/// smallest id. No rank sees more of `among` than its own part. Collective.
-std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
 
 /// How many of `found` on all ranks have the same neighbour, at most. `starts`: of the list that was searched. Collective.
 int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts);

@@ -9,18 +9,16 @@
 
 namespace couplet::coupler {
 
-/// Points of a list that is cut over the ranks, those alone that a rank asked for, by position.
-struct Nearby {
-  std::vector<Vec3> points;
-  std::vector<GlobalIndex> positions;  ///< ascending, each once
-};
-
 /// The points of `among` (any rank's) that are one of the `k` nearest of a centre on this rank, those that are
 /// equally far (to rounding) as its k-th, and with `reach` [m] all that are nearer than the k-th and twice this
 /// centre's reach: then the k nearest of every place within the reach are there. Each centre asks the ranks whose
-/// boxes are nearest for a bound, then those ranks whose boxes lie within it. Collective.
-Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
-              std::size_t k, const PointSet& among);
+/// boxes are nearest for a bound, then those ranks whose boxes lie within it. By position, each once. Collective.
+PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
+                std::size_t k, const PointSet& among);
+
+/// For each point of `points` on this rank the nearest of `among` on any rank; of equals the one of the
+/// smallest id. Collective.
+std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
 
 /// Some faces of a surface and the vertices that these need, with their positions in the whole lists; corners
 /// count vertices within the part.
