@@ -62,6 +62,7 @@ void Coupler::initialise() {
   known_.emplace(comm_, *this);
   pass_.exchange_initial_values();
   std::vector<coupling::Exchange> given = pass_.given();
+  known_->unknown.scale(given);
   if (known_->unknown.complete(given) || known_->unknown.start_at_rest(given))
     history_.now = known_->unknown.gather(given);
   pass_.set_given(std::move(given));

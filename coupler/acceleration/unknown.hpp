@@ -13,16 +13,21 @@
 
 namespace couplet::coupler {
 
+/// Residual of one datum. Those of several data have units of their own: only `relative` ones compare.
 struct Residual {
   double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
   double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
+  double size = 0;      ///< the same of H(x)
+  /// Scale of the datum, for later residuals: its size, or, while it has none, its first residual.
+  double scale() const { return size > 0 ? size : absolute; }
 };
 
 /// What a group iterates on: the data that somebody takes before its giver has given it in the same pass (its own
 /// data always). In
 /// the order of the list (Gauss-Seidel) these are the data given to earlier members, side by side (Jacobi)
 /// all of the group's. A velocity that goes with a displacement of the same giver is no unknown of its own:
-/// it rides on the displacement's combinations. Several data are scaled to like size, once. Of data whose values
+/// it rides on the displacement's combinations. Several data are scaled to like size, each by its first values that are
+/// not zero. Of data whose values
 /// within the step somebody asks for (WithinStep) these are unknowns, too, at the times that the first pass of a step
 /// shows; they stand behind all others.
 class Unknown {
@@ -34,10 +39,11 @@ class Unknown {
     std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `rider`
     bool rides = false;
     std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
-    double weight = 1;
-    bool asked_within = false;            ///< somebody takes its values within the step
-    std::optional<std::size_t> within{};  ///< of a value within the step: the part of its end
-    double share = 1;                     ///< of the step
+    double weight = 1;                      ///< of a rider always 1
+    bool scaled = false;                    ///< its weight is known
+    bool asked_within = false;              ///< somebody takes its values within the step
+    std::optional<std::size_t> within{};    ///< of a value within the step: the part of its end
+    double share = 1;                       ///< of the step
   };
   /// `group`: indices into `sides`.
   Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
@@ -68,9 +74,9 @@ class Unknown {
   /// Zero displacements and their velocities; nothing of other data, which have no natural start. Whether
   /// that is all of the unknown.
   bool start_at_rest(std::vector<coupling::Exchange>& given) const;
-  /// The scales from the first values that all have given; collective.
+  /// The scales of data that have none yet and whose values are not all zero: what was gathered of them before
+  /// was zero on any scale. Collective.
   void scale(const std::vector<coupling::Exchange>& given);
-  bool scaled() const { return scaled_; }
   /// The scales, and the times within the step.
   std::vector<double> weights() const;
   void restore_weights(const std::vector<double>& weights);
@@ -91,7 +97,6 @@ class Unknown {
   const std::vector<Side>* sides_;
   std::vector<Part> parts_;
   std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // of ends
-  bool scaled_ = false;
   Iterate start_;  // ends at the start of the step; empty where nobody asks for values within it
 };
 

@@ -12,9 +12,11 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Participants solve to about 1e-8 of their values: less than that would be a ratio of their noise.
-double ratio(const Residual& first, const Residual& second) {
-  if (!(first.relative > 1e-6) || !std::isfinite(second.absolute)) return unknown;
-  return second.absolute / first.absolute;
+double ratio(const std::vector<Residual>& first, const std::vector<Residual>& second) {
+  std::vector<double> scales;
+  for (const Residual& r : first) scales.push_back(r.scale());
+  const double ratio = largest(second, scales) / largest(first, scales);
+  return worst(first).relative > 1e-6 && std::isfinite(ratio) ? ratio : unknown;
 }
 
 /// The explicit scheme leaves the answer of the load out. Two further passes in a few steps tell how much of a change of
@@ -29,8 +31,7 @@ class AddedMass final : public CouplingDiagnostic {
   explicit AddedMass(const CouplingView& view)
       : view_(view), limit_(predictor_order_of(view.parameters) >= 2 ? 1. / 3 : 1) {}
   void returned(GlobalIndex step, const Iterate& x, const Iterate& image, const Iterate& again) override {
-    const double r =
-        ratio(worst(view_.unknown.measure(x, image)), worst(view_.unknown.measure(image, again)));
+    const double r = ratio(view_.unknown.measure(x, image), view_.unknown.measure(image, again));
     // At a start the ratio is that of an impulse: it may explain a failure, but is no evidence about the run.
     double& seen = step == 1 ? at_start_ : returned_;
     seen = std::fmax(seen, r);

@@ -37,7 +37,7 @@ class CouplingDiagnostic : public diagnostics::Diagnostic {
   virtual void answered(std::size_t /*side*/, const coupling::Exchange& /*taken*/,
                         const coupling::Exchange& /*given*/) {}
   /// A pass of an iteration is over; `omega` led to its x. Throws SolveFailure where the iteration runs away.
-  virtual void passed(const Residual& /*residual*/, double /*omega*/) {}
+  virtual void passed(const std::vector<Residual>& /*residuals*/, double /*omega*/) {}
   /// Passes of explicit coupling, in a few steps: the pass from x gave `image`, another one from there `again`.
   virtual void returned(GlobalIndex /*step*/, const Iterate& /*x*/, const Iterate& /*image*/,
                         const Iterate& /*again*/) {}
