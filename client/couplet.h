@@ -59,8 +59,10 @@ void couplet_surfaces(couplet_client* c, const int* surface_of_vertex);
 void couplet_faces(couplet_client* c, int n, const double* centres, const double* areas, const int64_t* first,
                    const int64_t* vertices);
 /* `components`: values a place; 0: one a dimension (a vector). */
-void couplet_takes(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
-void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
+void couplet_takes(couplet_client* c, const char* datum, const char* unit, enum couplet_place place,
+                   int components);
+void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum couplet_place place,
+                   int components);
 
 /* What the program was configured by, for the coupler to compare (docs/protocol.md, initialise); before the first couplet_next. */
 void couplet_introduce(couplet_client* c, const char* text);
@@ -70,10 +72,11 @@ enum couplet_event couplet_next(couplet_client* c);
 
 double couplet_time(const couplet_client* c); /* BEGIN, SOLVE: t^n; ACCEPT, OUTPUT: the accepted time [s] */
 double couplet_dt(const couplet_client* c);
-int couplet_output(const couplet_client* c);            /* ACCEPT, OUTPUT: number of the output that is due, or -1 */
-const char* couplet_checkpoint(const couplet_client* c); /* SAVE, LOAD: folder of the checkpoint + /<participant> */
+int couplet_output(const couplet_client* c); /* ACCEPT, OUTPUT: number of the output that is due, or -1 */
+const char* couplet_checkpoint(
+    const couplet_client* c); /* SAVE, LOAD: folder of the checkpoint + /<participant> */
 /* SOLVE: values of a datum that is taken, place by place, this process's; NULL if nobody has given it yet or this
- * process owns no such place. Valid until the next couplet_next. */
+ * process owns no such place. Valid until the next couplet_next. END: as the others gave it last. */
 const double* couplet_read(const couplet_client* c, const char* datum);
 /* SOLVE: values of a datum that is given. Before the first couplet_next: its value before the first step; all data or
  * none, by all processes. */

@@ -158,7 +158,10 @@ void Coupler::finalise(const std::string& problem) {
   if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
     log::info("{}", waiting);
   for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);
-  std::vector<diagnostics::NamedErrors> parts = finalise_all(pass_.everyone(), problem);
+  std::vector<coupling::Exchange> last;
+  for (std::size_t i = 0; i < pass_.partners().size(); ++i)
+    last.push_back(pass_.links().input(i, pass_.given()));
+  std::vector<diagnostics::NamedErrors> parts = finalise_all(pass_.everyone(), problem, std::move(last));
   if (simulation_.error_estimate && problem.empty()) {
     if (const diagnostics::ErrorParts& mine = diagnostics_.errors(); mine.known() || !mine.omittable.empty())
       parts.push_back({"coupling", mine});

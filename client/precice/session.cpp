@@ -231,13 +231,12 @@ void Session::take(bool new_window) {
     if (wire.given) continue;
     Sample& s = samples_[w];
     if (new_window) s.start = s.end;
-    const double* values = couplet_read(job, wire.name.c_str());
-    if (values == nullptr)
-      std::fill(s.end.begin(), s.end.end(), 0.);
-    else
+    if (const double* values = couplet_read(job, wire.name.c_str()))
       std::copy_n(values, s.end.size(), s.end.begin());
+    else if (ongoing)
+      std::fill(s.end.begin(), s.end.end(), 0.);
     // What is iterated on is guessed, in the first pass, by its value at the start of the window.
-    const bool constant = wire.held || (wire.iterated && new_window);
+    const bool constant = ongoing && (wire.held || (wire.iterated && new_window));
     if (constant) s.start = s.end;
     if (wire.within) take_within(wire, s, constant);
   }
@@ -276,18 +275,15 @@ void Session::go_on(double dt) {
   for (auto& values : written) std::fill(values.begin(), values.end(), 0.);
   bool accepted = false;
   ongoing = wait_for_window(accepted);
-  if (!ongoing) {
-    window_complete = true;
-    return;
-  }
-  if (!accepted && !configuration.implicit)
+  if (ongoing && !accepted && !configuration.implicit)
     end_the_job("The coupler asks the participant \"" + configuration.participant +
                 "\" to repeat a step of explicit coupling, which it cannot do: give it `sub-steps: {" +
                 configuration.participant + ": 1}` under `coupling`.");
-  take(accepted);
-  window_complete = accepted;
-  writing_due = accepted && configuration.implicit;
-  reading_due = !accepted;
+  // The end of the run is an exchange like the start of a window.
+  take(accepted || !ongoing);
+  window_complete = accepted || !ongoing;
+  writing_due = ongoing && accepted && configuration.implicit;
+  reading_due = ongoing && !accepted;
 }
 
 }  // namespace couplet::dropin

@@ -40,9 +40,10 @@ void ask_all(const std::vector<Partner*>& partners, const coupling::Command& com
 /// The interface of each, in their order; their initial values go to the partners.
 std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners);
 /// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
-/// end; empty: it did not.
+/// end; empty: it did not. `last`: for each what the others gave last, which no further step would bring.
 std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
-                                                   const std::string& problem);
+                                                   const std::string& problem,
+                                                   std::vector<coupling::Exchange> last);
 /// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
 
