@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 
 #include "couplet_precice.h"
 
@@ -21,11 +20,14 @@ void end_the_job(const std::string& text) {
 }
 
 couplet_client* joined(const std::string& participant, const MPI_Comm* processes) {
-  static std::map<std::string, couplet_client*> clients;
-  const auto found = clients.find(participant);
-  if (found != clients.end()) return found->second;
-  return clients[participant] = couplet_join_with(participant.c_str(), "precice",
-                                                  processes == nullptr ? MPI_COMM_WORLD : *processes);
+  static std::pair<std::string, couplet_client*> one;
+  if (one.second == nullptr)
+    one = {participant, couplet_join_with(participant.c_str(), "precice",
+                                          processes == nullptr ? MPI_COMM_WORLD : *processes)};
+  if (one.first != participant)
+    end_the_job("This process is \"" + one.first + "\" and cannot be \"" + participant +
+                "\" too: start a process for each participant.");
+  return one.second;
 }
 
 }  // namespace couplet::dropin
@@ -37,6 +39,12 @@ extern "C" MPI_Comm couplet_precice_comm(const char* participant) {
 namespace couplet::dropin {
 
 Session::Session(Configuration c, int rank, int size, void* communicator) : configuration(std::move(c)) {
+  static std::string before;  // the participant of this process
+  if (!before.empty())
+    throw ::precice::Error("The participant \"" + configuration.participant +
+                           "\" cannot be constructed: this process has been \"" + before +
+                           "\", and a process takes part once. Start a process for each participant.");
+  before = configuration.participant;
   job = joined(configuration.participant, static_cast<const MPI_Comm*>(communicator));
   int its_rank = 0, its_size = 0;
   MPI_Comm_rank(couplet_comm(job), &its_rank);

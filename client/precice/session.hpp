@@ -16,7 +16,7 @@ namespace couplet::dropin {
 
 /// Ends the whole job with a sentence.
 [[noreturn]] void end_the_job(const std::string& text);
-/// The client of this participant, which takes part in the start of the job on the first call.
+/// The client of this participant, which takes part in the start of the job on the first call. A process has one.
 couplet_client* joined(const std::string& participant, const MPI_Comm* processes);
 
 /// What comes over one wire, at the start of the time window, at its end, and in between where the giver takes sub-steps;
