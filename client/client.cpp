@@ -134,7 +134,7 @@ void receive_command(couplet_client& c) {
   c.iterations = 0;
   c.error = c.energy = NAN;
   c.checkpoint = c.command.folder + "/" + c.participant;
-  if (c.command.op == solve || c.command.op == start) receive_input(c);
+  if (c.command.op == solve || !c.command.data.empty()) receive_input(c);
   c.pending = true;
 }
 

@@ -58,9 +58,11 @@ void couplet_surfaces(couplet_client* c, const int* surface_of_vertex);
  * `vertices` may be NULL; the coupler then computes no work balance. */
 void couplet_faces(couplet_client* c, int n, const double* centres, const double* areas, const int64_t* first,
                    const int64_t* vertices);
-/* Declare a datum. `components` is the number of values per location; 0 means one per dimension (a vector). */
-void couplet_takes(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
-void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
+/* `components`: values a place; 0: one a dimension (a vector). */
+void couplet_takes(couplet_client* c, const char* datum, const char* unit, enum couplet_place place,
+                   int components);
+void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum couplet_place place,
+                   int components);
 
 /* Sends the program's configuration to the coupler for comparison (docs/protocol.md, initialise), before couplet_next. */
 void couplet_introduce(couplet_client* c, const char* text);
@@ -70,10 +72,11 @@ enum couplet_event couplet_next(couplet_client* c);
 
 double couplet_time(const couplet_client* c); /* BEGIN, SOLVE: t^n; ACCEPT, OUTPUT: the accepted time [s] */
 double couplet_dt(const couplet_client* c);
-int couplet_output(const couplet_client* c);            /* ACCEPT, OUTPUT: number of the output that is due, or -1 */
-const char* couplet_checkpoint(const couplet_client* c); /* SAVE, LOAD: folder of the checkpoint + /<participant> */
-/* SOLVE: this process's values of a received datum, location by location. NULL if no participant has given it yet or this
- * process owns no such location. Valid until the next couplet_next. */
+int couplet_output(const couplet_client* c); /* ACCEPT, OUTPUT: number of the output that is due, or -1 */
+const char* couplet_checkpoint(
+    const couplet_client* c); /* SAVE, LOAD: folder of the checkpoint + /<participant> */
+/* SOLVE: values of a datum that is taken, place by place, this process's; NULL if nobody has given it yet or this
+ * process owns no such place. Valid until the next couplet_next. END: as the others gave it last. */
 const double* couplet_read(const couplet_client* c, const char* datum);
 /* SOLVE: sets the values of a datum to send. Before the first couplet_next: its initial values. All processes must then
  * write all data or none. */

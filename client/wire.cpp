@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wire.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -47,9 +49,11 @@ class Reader {
 std::string introduction(const std::string& participant, const std::string& program, int application,
                          int rank) {
   std::string text;
+  char machine[256] = "";
+  ::gethostname(machine, sizeof machine - 1);
   for (const std::string& field :
        {program, participant, std::string("(guest)"), std::string("0"), std::string(), std::string("1"),
-        std::to_string(application), std::to_string(rank)})
+        std::to_string(application), std::to_string(rank), std::to_string(::getpid()) + "@" + machine})
     text += field + '\x1f';
   return text + '\x1e';
 }

@@ -20,11 +20,11 @@
 
 namespace couplet::wire {
 
-constexpr std::int64_t version = 5, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
+constexpr std::int64_t version = 6, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
                        hello_mark = 0x434f55504c4554;
 constexpr int join_tag = 100, command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104,
               output_tag = 105;
-enum Operation : std::int64_t { initialise = 1, begin = 2, solve = 3, accept = 4, finalise = 8, start = 9 };
+enum Operation : std::int64_t { initialise = 1, begin = 2, solve = 3, accept = 4, finalise = 8 };
 
 struct Datum {
   std::string name, unit;

@@ -62,6 +62,7 @@ void Coupler::initialise() {
   known_.emplace(comm_, *this);
   pass_.exchange_initial_values();
   std::vector<coupling::Exchange> given = pass_.given();
+  known_->unknown.scale(given);
   if (known_->unknown.complete(given) || known_->unknown.start_at_rest(given))
     history_.now = known_->unknown.gather(given);
   pass_.set_given(std::move(given));
@@ -157,7 +158,10 @@ void Coupler::finalise(const std::string& problem) {
   if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
     log::info("{}", waiting);
   for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);
-  std::vector<diagnostics::NamedErrors> parts = finalise_all(pass_.everyone(), problem);
+  std::vector<coupling::Exchange> last;
+  for (std::size_t i = 0; i < pass_.partners().size(); ++i)
+    last.push_back(pass_.links().input(i, pass_.given()));
+  std::vector<diagnostics::NamedErrors> parts = finalise_all(pass_.everyone(), problem, std::move(last));
   if (simulation_.error_estimate && problem.empty()) {
     if (const diagnostics::ErrorParts& mine = diagnostics_.errors(); mine.known() || !mine.omittable.empty())
       parts.push_back({"coupling", mine});

@@ -35,6 +35,7 @@ void Coupler::solve(const coupling::Step& step) {
     const bool shows_times = first && pass_.schedule().iterates && unknown.asked_within();
     outputs = pass_(std::move(known), std::exchange(first, false), scheme_.now());
     ++iterations_;
+    unknown.scale(outputs);
     if (shows_times && unknown.adopt_times(outputs)) start_acceleration();
   };
   const FixedPointMap map = [&](const Iterate& x) {
@@ -53,7 +54,6 @@ void Coupler::solve(const coupling::Step& step) {
   if (begins || !iterates_on_data) {
     // Data that have not been given yet are missing from the first pass.
     pass_from(std::vector<coupling::Exchange>(pass_.partners().size()));
-    if (!unknown.scaled()) unknown.scale(outputs);
     last_ = {unknown.gather(outputs), unknown.gather(outputs), {}, 1};
   }
   if (!begins) last_.x = unknown.begin_step(predict(unknown, history_, step.dt, pass_.schedule().predictor));
@@ -71,9 +71,9 @@ void Coupler::solve(const coupling::Step& step) {
 FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, const FixedPointMap& map) {
   Unknown& unknown = known_->unknown;
   for (const auto& d : known_->diagnostics) d->begin_step();
-  const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
-    known_->record.monitor().iteration(step, k, residual, omega);
-    for (const auto& d : known_->diagnostics) d->passed(residual, omega);
+  const IterationObserver observer = [&](int k, const std::vector<Residual>& residuals, double omega) {
+    known_->record.monitor().iteration(step, k, worst(residuals), omega);
+    for (const auto& d : known_->diagnostics) d->passed(residuals, omega);
   };
   const ResidualMeasure measure = [&](const Iterate& x, const Iterate& image) {
     return unknown.measure(x, image);
@@ -119,13 +119,6 @@ void Coupler::accept(double time, int output) {
   enter_(app::Phase::accept, {});
   pass_.ask_all({coupling::Op::accept_step, {}, {}, time, output, ""});
   enter_(app::Phase::accept, time);
-  // Scales are determined after the first step and then kept.
-  if (!unknown.scaled() && unknown.complete(pass_.given())) {
-    unknown.scale(pass_.given());
-    last_.image = unknown.gather(pass_.given());
-    history_ = {};
-    start_acceleration();
-  }
   if (unknown.has_within()) last_.image = unknown.ends(std::move(last_.image));
   known_->record.balance();
   diagnostics_.accepted(time);

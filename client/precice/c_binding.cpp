@@ -21,7 +21,6 @@ bool keeps = false;
 
 void create_only_participant(::precice::string_view name, ::precice::string_view file, int rank, int size,
                              void* communicator) {
-  if (participant) throw ::precice::Error("The participant has already been created: a process has one.");
   participant = std::make_unique<::precice::Participant>(name, file, rank, size, communicator);
 }
 
@@ -54,6 +53,17 @@ extern "C" {
 
 void couplet_precice_keep_errors(int keep) { keeps = keep != 0; }
 const char* couplet_precice_error() { return kept.c_str(); }
+/* What of a configuration is not supported for a participant, for couplet import; empty: nothing. */
+const char* couplet_precice_problem(const char* file, const char* name) {
+  static std::string problem;
+  try {
+    problem.clear();
+    read_configuration(file, name);
+  } catch (const precice::Error& error) {
+    problem = error.what();
+  }
+  return problem.c_str();
+}
 
 void precicec_createParticipant(const char* name, const char* file, int rank, int size) {
   precicec_createParticipant_withCommunicator(name, file, rank, size, nullptr);

@@ -196,7 +196,12 @@ class Reader {
                         datum = e->attribute("data");
       const auto starts = ends(participant(giver), datum, e->attribute("mesh"), true);
       const auto stops = ends(participant(taker), datum, e->attribute("mesh"), false);
-      if ((starts.empty() && giver == c_.participant) || (stops.empty() && taker == c_.participant))
+      // What its taker does not read is for the measures of convergence alone, which the coupler has.
+      const auto reads = participant(taker).all("read-data");
+      const bool unread = std::none_of(reads.begin(), reads.end(),
+                                       [&](const Element* d) { return d->attribute("name") == datum; });
+      if ((starts.empty() && giver == c_.participant) ||
+          (stops.empty() && !unread && taker == c_.participant))
         refuse(c_.file, *e,
                "no mapping of \"" + c_.participant + "\" leads \"" + datum + "\" on mesh \"" +
                    e->attribute("mesh") + "\" to where it is read or written.");

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 
 #include "couplet_precice.h"
 
@@ -21,11 +20,14 @@ void end_the_job(const std::string& text) {
 }
 
 couplet_client* joined(const std::string& participant, const MPI_Comm* processes) {
-  static std::map<std::string, couplet_client*> clients;
-  const auto found = clients.find(participant);
-  if (found != clients.end()) return found->second;
-  return clients[participant] = couplet_join_with(participant.c_str(), "precice",
-                                                  processes == nullptr ? MPI_COMM_WORLD : *processes);
+  static std::pair<std::string, couplet_client*> one;
+  if (one.second == nullptr)
+    one = {participant, couplet_join_with(participant.c_str(), "precice",
+                                          processes == nullptr ? MPI_COMM_WORLD : *processes)};
+  if (one.first != participant)
+    end_the_job("This process is \"" + one.first + "\" and cannot be \"" + participant +
+                "\" too: start a process for each participant.");
+  return one.second;
 }
 
 }  // namespace couplet::dropin
@@ -37,6 +39,12 @@ extern "C" MPI_Comm couplet_precice_comm(const char* participant) {
 namespace couplet::dropin {
 
 Session::Session(Configuration c, int rank, int size, void* communicator) : configuration(std::move(c)) {
+  static std::string before;  // the participant of this process
+  if (!before.empty())
+    throw ::precice::Error("The participant \"" + configuration.participant +
+                           "\" cannot be constructed: this process has been \"" + before +
+                           "\", and a process takes part once. Start a process for each participant.");
+  before = configuration.participant;
   job = joined(configuration.participant, static_cast<const MPI_Comm*>(communicator));
   int its_rank = 0, its_size = 0;
   MPI_Comm_rank(couplet_comm(job), &its_rank);
@@ -231,13 +239,12 @@ void Session::take(bool new_window) {
     if (wire.given) continue;
     Sample& s = samples_[w];
     if (new_window) s.start = s.end;
-    const double* values = couplet_read(job, wire.name.c_str());
-    if (values == nullptr)
-      std::fill(s.end.begin(), s.end.end(), 0.);
-    else
+    if (const double* values = couplet_read(job, wire.name.c_str()))
       std::copy_n(values, s.end.size(), s.end.begin());
-    // In the first pass, iterated data are extrapolated as constant from the start of the window.
-    const bool constant = wire.held || (wire.iterated && new_window);
+    else if (ongoing)
+      std::fill(s.end.begin(), s.end.end(), 0.);
+    // What is iterated on is guessed, in the first pass, by its value at the start of the window.
+    const bool constant = ongoing && (wire.held || (wire.iterated && new_window));
     if (constant) s.start = s.end;
     if (wire.within) take_within(wire, s, constant);
   }
@@ -276,18 +283,15 @@ void Session::go_on(double dt) {
   for (auto& values : written) std::fill(values.begin(), values.end(), 0.);
   bool accepted = false;
   ongoing = wait_for_window(accepted);
-  if (!ongoing) {
-    window_complete = true;
-    return;
-  }
-  if (!accepted && !configuration.implicit)
+  if (ongoing && !accepted && !configuration.implicit)
     end_the_job("The coupler asks the participant \"" + configuration.participant +
                 "\" to repeat a step of explicit coupling, which it cannot do: give it `sub-steps: {" +
                 configuration.participant + ": 1}` under `coupling`.");
-  take(accepted);
-  window_complete = accepted;
-  writing_due = accepted && configuration.implicit;
-  reading_due = !accepted;
+  // The end of the run is an exchange like the start of a window.
+  take(accepted || !ongoing);
+  window_complete = accepted || !ongoing;
+  writing_due = ongoing && accepted && configuration.implicit;
+  reading_due = ongoing && !accepted;
 }
 
 }  // namespace couplet::dropin

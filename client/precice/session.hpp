@@ -16,7 +16,7 @@ namespace couplet::dropin {
 
 /// Ends the whole job with a message.
 [[noreturn]] void end_the_job(const std::string& text);
-/// Client of this participant. The first call takes part in the start of the job.
+/// The client of this participant, which takes part in the start of the job on the first call. A process has one.
 couplet_client* joined(const std::string& participant, const MPI_Comm* processes);
 
 /// Values of one wire over the whole surface, at the start and end of the time window and at the giver's

@@ -223,6 +223,8 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
     MPI_Comm_split(MPI_COMM_WORLD, color, world_rank, &job.comm);
     job.rank = parallel::comm_rank(job.comm);
     watch.set_rank(job.rank);
+    for (const Attendant& a : attendants)
+      if (!a.process.empty()) watch.add_guest(a.participant, a.process);
     job.name = file.participant;
     job.alone = verdict.alone;
     job.document = &*file.document;

@@ -34,7 +34,7 @@ void MpiChannel::send(const Command& command) {
   const std::string what = fmt::format("'{}' to take {}", name_, couplet::coupling::name(pending_));
   const int rank = parallel::comm_rank(comm_);
   if (rank == 0) send_bytes(peers_, 0, command_tag, pack(command), what);
-  if ((command.op != Op::solve && command.op != Op::start) || command.data.empty()) return;
+  if (command.data.empty()) return;
   const auto data = present(command.data, takes_, name_);
   SendAll sending(peers_);
   for (const auto& [other, slice] : exchanged(mine_, rank, theirs_))

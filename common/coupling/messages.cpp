@@ -2,6 +2,7 @@
 #include "common/coupling/messages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "common/base/error.hpp"
@@ -59,27 +60,10 @@ class Packer {
 }  // namespace
 
 const char* name(Op op) {
-  switch (op) {
-    case Op::initialise:
-      return "initialise";
-    case Op::begin_step:
-      return "begin_step";
-    case Op::solve:
-      return "solve";
-    case Op::accept_step:
-      return "accept_step";
-    case Op::write_output:
-      return "write_output";
-    case Op::save:
-      return "save";
-    case Op::load:
-      return "load";
-    case Op::finalise:
-      return "finalise";
-    case Op::start:
-      return "start";
-  }
-  return "unknown command";
+  constexpr std::array names{"initialise", "begin_step", "solve",    "accept_step", "write_output",
+                             "save",       "load",       "finalise", "start"};
+  static_assert(names.size() == std::size_t(Op::start));
+  return names[std::size_t(op) - 1];
 }
 
 std::vector<char> pack(const Command& c) {

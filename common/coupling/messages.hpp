@@ -72,7 +72,7 @@ const char* name(Op op);
 struct Command {
   Op op = Op::initialise;
   Step step;           ///< begin_step
-  Exchange data;       ///< solve, start: the input, this rank's entries
+  Exchange data;       ///< solve, start, finalise: the input, this rank's entries
   double time = 0;     ///< accept_step, write_output: the accepted time t^{n+1} [s]
   int output = -1;     ///< accept_step, write_output: number of the output that is due, or -1
   std::string folder;  ///< save, load: of the checkpoint, with <name>.h5; finalise: why the run failed
@@ -140,7 +140,7 @@ std::vector<Interface::Datum> present(const Exchange& data, const std::vector<In
 std::vector<char> cut_out(const Interface& interface, const Slice& slice);
 void put_back(std::span<const char> bytes, Interface& interface, std::vector<int>& surface_of_vertex);
 
-inline constexpr std::int64_t protocol_version = 5;
+inline constexpr std::int64_t protocol_version = 6;
 inline constexpr int command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104, output_tag = 105;
 
 inline constexpr std::int64_t largest_integer = std::numeric_limits<std::int64_t>::max();

@@ -184,7 +184,7 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
     broadcast_bytes(comm, head, "");
     Command command = unpack_command(head);
     if (command.op == Op::initialise) stepping.set(command.step.sub_steps);
-    if (command.op == Op::solve) ranks.receive(command.data);
+    ranks.receive(command.data);
     observer.received(command);
     Reply reply = carry_out(command, stepping, name, comm);
     if (command.op == Op::finalise) reply.text = observer.last_word();

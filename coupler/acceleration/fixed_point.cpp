@@ -23,12 +23,16 @@ std::string absolute_too(const Residual& residual, const ConvergenceParameters& 
 
 Residual worst(const std::vector<Residual>& residuals) {
   Residual all;
-  for (const Residual& r : residuals) {
-    // Keeps NaN.
-    if (!(r.relative <= all.relative)) all.relative = r.relative;
-    if (!(r.absolute <= all.absolute)) all.absolute = r.absolute;
-  }
+  for (const Residual& r : residuals)  // not a number stays not a number
+    if (!(r.relative <= all.relative) && !std::isnan(all.relative)) all = r;
   return all;
+}
+
+double largest(const std::vector<Residual>& residuals, const std::vector<double>& scales) {
+  double most = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i)
+    if (scales[i] > 0) most = std::max(most, residuals[i].absolute / scales[i]);
+  return most;
 }
 
 FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const ResidualMeasure& measure,
@@ -41,8 +45,8 @@ FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const Re
     const std::vector<Residual> residuals = measure(x, image);
     result.residual = worst(residuals);
     result.iterations = k;
-    observer(k, result.residual, accelerator.relaxation());
-    if (!std::isfinite(result.residual.absolute))
+    observer(k, residuals, accelerator.relaxation());
+    if (!std::ranges::all_of(residuals, [](const Residual& r) { return std::isfinite(r.absolute); }))
       throw SolveFailure("the interface values are not finite after {} coupling iterations.", k);
     result.converged =
         std::ranges::all_of(residuals, [&](const Residual& r) { return converged(r, parameters); });

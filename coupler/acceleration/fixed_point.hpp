@@ -14,15 +14,17 @@ namespace couplet::coupler {
 bool converged(const Residual& residual, const ConvergenceParameters& parameters);
 /// Suffix for a sentence with the relative residual; empty if only that one decides.
 std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters);
-/// Largest residual of each kind.
+/// That of the datum with the largest relative one.
 Residual worst(const std::vector<Residual>& residuals);
+/// The largest absolute one over the `scale` of its datum; data without a scale yet (0) are left out.
+double largest(const std::vector<Residual>& residuals, const std::vector<double>& scales);
 
 /// One pass through all participants, from x to H(x). Throws SolveFailure if one of them fails.
 using FixedPointMap = std::function<Iterate(const Iterate&)>;
 /// Residuals of H(x) - x, one for each unknown.
 using ResidualMeasure = std::function<std::vector<Residual>(const Iterate& x, const Iterate& image)>;
-/// Called after each pass: number from 1, residual, and share of the previous residual in its x.
-using IterationObserver = std::function<void(int, const Residual&, double)>;
+/// After each pass: its number from 1, its residuals, and the share of the residual before that led to its x.
+using IterationObserver = std::function<void(int, const std::vector<Residual>&, double)>;
 
 struct FixedPointResult {
   Iterate x, image;  ///< x and H(x) of the last pass

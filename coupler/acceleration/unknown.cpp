@@ -51,10 +51,13 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
   for (Part& d : parts_)
     for (const Part& p : parts_)
       if (p.rides && p.giver == d.giver && d.datum.name == "displacement") d.velocity = p.first;
-  // A single type of data needs no scale.
+  // Data of one unit need no scale, but data without a unit may be of any.
   const auto lead = std::ranges::find(parts_, false, &Part::rides);
-  scaled_ =
-      std::ranges::all_of(parts_, [&](const Part& p) { return p.rides || p.datum.unit == lead->datum.unit; });
+  const bool alike = std::ranges::count(parts_, false, &Part::rides) < 2 ||
+                     (lead->datum.unit != "1" && std::ranges::all_of(parts_, [&](const Part& p) {
+                        return p.rides || p.datum.unit == lead->datum.unit;
+                      }));
+  for (Part& p : parts_) p.scaled = alike || p.rides;
 }
 
 bool Unknown::complete(const std::vector<coupling::Exchange>& given) const {
@@ -106,23 +109,28 @@ bool Unknown::start_at_rest(std::vector<coupling::Exchange>& given) const {
 }
 
 void Unknown::scale(const std::vector<coupling::Exchange>& given) {
-  scaled_ = true;
-  for (Part& p : parts_) {
-    if (p.rides || p.within) continue;
-    const std::vector<double>& values = given[p.giver].at(p.datum.name);
-    const double square = parallel::sum(comm_, dot(values, values));
-    if (square > 0) p.weight = 1 / std::sqrt(square);
+  for (std::size_t i = 0; i < n_parts_; ++i) {
+    Part& p = parts_[i];
+    if (p.scaled) continue;
+    double square = 0;
+    const auto add = [&](const std::string& name) {
+      const std::vector<double>& values = values_of(given[p.giver], name);
+      square += dot(values, values);
+    };
+    add(p.datum.name);
+    coupling::for_within(given[p.giver], p.datum.name,
+                         [&](double, const std::string& name, const auto&) { add(name); });
+    square = parallel::sum(comm_, square);
+    if (!(square > 0)) continue;
+    p.scaled = true;
+    for (Part& same : parts_)
+      if (&same == &p || same.within == i) same.weight = 1 / std::sqrt(square);
   }
-  for (Part& p : parts_)  // the velocity goes with its displacement
-    for (const Part& d : parts_)
-      if (p.rides && d.giver == p.giver && d.datum.name == "displacement") p.weight = d.weight;
-  for (Part& p : parts_)
-    if (p.within) p.weight = parts_[*p.within].weight;
 }
 
 std::vector<double> Unknown::weights() const {
-  std::vector<double> w{double(scaled_)};
-  for (const Part& p : parts()) w.push_back(p.weight);
+  std::vector<double> w{1};
+  for (const Part& p : parts()) w.push_back(p.scaled ? p.weight : 0);
   for (std::size_t i = n_parts_; i < parts_.size(); ++i)
     w.insert(w.end(), {double(*parts_[i].within), parts_[i].share});
   return w;
@@ -136,8 +144,10 @@ void Unknown::restore_weights(const std::vector<double>& w) {
     sound = w[i] >= 0 && times.back().first < n_parts_;
   }
   if (!sound) throw Error("The checkpoint is from a coupling with other data.");
-  scaled_ = w[0] != 0;
-  for (std::size_t i = 0; i < n_parts_; ++i) parts_[i].weight = w[i + 1];
+  for (std::size_t i = 0; i < n_parts_; ++i) {
+    parts_[i].scaled = w[i + 1] > 0;
+    parts_[i].weight = parts_[i].scaled ? w[i + 1] : 1;
+  }
   set_times(times);
 }
 
@@ -184,7 +194,8 @@ std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) c
     k += 3;
     // Converged if nothing moves, but not if a nonzero residual meets zero.
     const double relative = h > 0 ? std::sqrt(r / h) : (r > 0 ? std::numeric_limits<double>::infinity() : r);
-    list.push_back({relative, places > 0 ? std::sqrt(r / places) / p.weight : 0});
+    const auto mean = [&](double square) { return places > 0 ? std::sqrt(square / places) / p.weight : 0; };
+    list.push_back({relative, mean(r), mean(h)});
   }
   return list;
 }
@@ -237,7 +248,7 @@ Iterate predict(const Unknown& unknown, const History& history, double dt, int o
       }
       const std::size_t k = *p.velocity + (i - p.first);
       const double change = two_levels ? v_now[k] - history.old.rider[k] : 0;
-      guess.unknown[i] += dt * (v_now[k] + r / 2 * change);
+      guess.unknown[i] += p.weight * dt * (v_now[k] + r / 2 * change);
       guess.rider[k] += r * change;
     }
   }

@@ -13,17 +13,23 @@
 
 namespace couplet::coupler {
 
+/// Residual of one datum. Those of several data have units of their own: only `relative` ones compare.
 struct Residual {
   double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
-  double absolute = 0;  ///< root mean square of r over the places [unit of the datum]
+  double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
+  double size = 0;      ///< the same of H(x)
+  /// Scale of the datum, for later residuals: its size, or, while it has none, its first residual.
+  double scale() const { return size > 0 ? size : absolute; }
 };
 
-/// Unknown of a group's iteration: data taken before their giver computes them in the same pass, including
-/// data taken from oneself. In sequence (Gauss-Seidel) these are data given to earlier members, in parallel
-/// (Jacobi) all data of the group. A velocity with a displacement of the same giver is a rider: it undergoes
-/// the same combinations. Several data are scaled once to similar size. If values within the step are
-/// requested (WithinStep), these are unknowns too, at the times found in the first pass of a step. They
-/// follow all others.
+/// What a group iterates on: the data that somebody takes before its giver has given it in the same pass (its own
+/// data always). In
+/// the order of the list (Gauss-Seidel) these are the data given to earlier members, side by side (Jacobi)
+/// all of the group's. A velocity that goes with a displacement of the same giver is no unknown of its own:
+/// it rides on the displacement's combinations. Several data are scaled to like size, each by its first values that are
+/// not zero. Of data whose values
+/// within the step somebody asks for (WithinStep) these are unknowns, too, at the times that the first pass of a step
+/// shows; they stand behind all others.
 class Unknown {
  public:
   struct Part {
@@ -33,10 +39,11 @@ class Unknown {
     std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `rider`
     bool rides = false;
     std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
-    double weight = 1;
-    bool asked_within = false;            ///< its values within the step are taken
-    std::optional<std::size_t> within{};  ///< of a value within the step: its part at the end
-    double share = 1;                     ///< fraction of the step
+    double weight = 1;                      ///< of a rider always 1
+    bool scaled = false;                    ///< its weight is known
+    bool asked_within = false;              ///< somebody takes its values within the step
+    std::optional<std::size_t> within{};    ///< of a value within the step: the part of its end
+    double share = 1;                       ///< of the step
   };
   /// `group`: indices into `sides`.
   Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
@@ -67,10 +74,10 @@ class Unknown {
   /// Sets displacements and their velocities to zero; other data have no natural start. Returns true if that
   /// is the whole unknown.
   bool start_at_rest(std::vector<coupling::Exchange>& given) const;
-  /// Determines the scales from the first values given. Collective.
+  /// The scales of data that have none yet and whose values are not all zero: what was gathered of them before
+  /// was zero on any scale. Collective.
   void scale(const std::vector<coupling::Exchange>& given);
-  bool scaled() const { return scaled_; }
-  /// Scales and times within the step.
+  /// The scales, and the times within the step.
   std::vector<double> weights() const;
   void restore_weights(const std::vector<double>& weights);
 
@@ -90,9 +97,8 @@ class Unknown {
   MPI_Comm comm_;
   const std::vector<Side>* sides_;
   std::vector<Part> parts_;
-  std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // at the end of the step
-  bool scaled_ = false;
-  Iterate start_;  // values at the start; empty if none within the step are requested
+  std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // of ends
+  Iterate start_;  // ends at the start of the step; empty where nobody asks for values within it
 };
 
 /// Accepted steps kept for the predictor.

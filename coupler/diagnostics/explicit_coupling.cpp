@@ -11,10 +11,12 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Participants solve to about 1e-8 of their values; smaller changes are noise.
-double ratio(const Residual& first, const Residual& second) {
-  if (!(first.relative > 1e-6) || !std::isfinite(second.absolute)) return unknown;
-  return second.absolute / first.absolute;
+// Participants solve to about 1e-8 of their values: less than that would be a ratio of their noise.
+double ratio(const std::vector<Residual>& first, const std::vector<Residual>& second) {
+  std::vector<double> scales;
+  for (const Residual& r : first) scales.push_back(r.scale());
+  const double ratio = largest(second, scales) / largest(first, scales);
+  return worst(first).relative > 1e-6 && std::isfinite(ratio) ? ratio : unknown;
 }
 
 /// Explicit coupling neglects the response of the load. Two additional passes in some steps measure which
@@ -29,9 +31,8 @@ class AddedMass final : public CouplingDiagnostic {
   explicit AddedMass(const CouplingView& view)
       : view_(view), limit_(predictor_order_of(view.parameters) >= 2 ? 1. / 3 : 1) {}
   void returned(GlobalIndex step, const Iterate& x, const Iterate& image, const Iterate& again) override {
-    const double r =
-        ratio(worst(view_.unknown.measure(x, image)), worst(view_.unknown.measure(image, again)));
-    // At the start the ratio is that of an impulse: it may explain a failure but does not describe the run.
+    const double r = ratio(view_.unknown.measure(x, image), view_.unknown.measure(image, again));
+    // At a start the ratio is that of an impulse: it may explain a failure, but is no evidence about the run.
     double& seen = step == 1 ? at_start_ : returned_;
     seen = std::fmax(seen, r);
   }

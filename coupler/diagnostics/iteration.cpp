@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
@@ -13,10 +15,14 @@ namespace {
 class IterationGrowth final : public CouplingDiagnostic {
  public:
   explicit IterationGrowth(const CouplingView& view) : view_(view) {}
-  void begin_step() override { guard_.start_step(); }
-  void passed(const Residual& residual, double omega) override {
-    if (!converged(residual, view_.parameters.convergence))
-      guard_.pass(residual.absolute, omega, is_constant());
+  void begin_step() override { guard_.start_step(), scales_.clear(); }
+  void passed(const std::vector<Residual>& residuals, double omega) override {
+    scales_.resize(residuals.size(), 0);
+    for (std::size_t i = 0; i < scales_.size(); ++i)
+      if (scales_[i] == 0 && residuals[i].scale() > 0) scales_[i] = residuals[i].scale(), guard_.start_step();
+    if (!std::ranges::all_of(residuals,
+                             [&](const Residual& r) { return converged(r, view_.parameters.convergence); }))
+      guard_.pass(largest(residuals, scales_), omega, is_constant());
   }
   std::optional<app::StepFailure> suspects() const override {
     const double omega = view_.parameters.acceleration.initial_relaxation;
@@ -32,6 +38,7 @@ class IterationGrowth final : public CouplingDiagnostic {
 
   const CouplingView& view_;
   IterationGuard guard_;
+  std::vector<double> scales_;  // of the data, as they first were in the step
 };
 
 }  // namespace
@@ -83,34 +90,42 @@ constexpr double slowest = 0.99;
 // Contraction assumed if one pass was enough.
 constexpr double unseen = 0.5;
 
-/// Error of the iteration between participants below its tolerance. If the last pass reduced the residual by
-/// a factor c,
-/// |x - x*| <= c/(1 - c) |H(x) - x|; for all steps see StepErrors. Residuals are relative to the unknown.
+/// What the iteration between participants leaves in the unknown below its tolerance: of a step whose residual fell
+/// by the factor c in its last pass, |x - x*| <= c / (1 - c) |H(x) - x|; over all steps see StepErrors. Each datum is
+/// judged by itself, and the largest share counts.
 class CouplingError final : public CouplingDiagnostic {
  public:
   explicit CouplingError(const CouplingView& view) : view_(view) {}
-  void begin_step() override { residual_ = before_ = 0; }
-  void passed(const Residual& residual, double) override {
-    before_ = residual_;
-    residual_ = residual.absolute;
+  void begin_step() override { residuals_.clear(), before_.clear(); }
+  void passed(const std::vector<Residual>& residuals, double) override {
+    before_ = std::exchange(residuals_, residuals);
   }
   void observe(diagnostics::Report&) override {
     const Iterate &before = view_.history.now, &now = view_.last.image;
-    const Residual& last = view_.last.residual;
-    if (before.unknown.size() != now.unknown.size() || !(last.relative > 0)) return;
-    const double c = before_ > 0 ? std::min(residual_ / before_, slowest) : unseen;
-    errors_.add({.error = c / (1 - c) * last.absolute,
-                 .rate = worst(view_.unknown.measure(before, now)).absolute / view_.dt,
-                 .size = last.absolute / last.relative,
-                 .dt = view_.dt});
+    if (before.unknown.size() != now.unknown.size()) return;
+    const std::vector<Residual> change = view_.unknown.measure(before, now);
+    errors_.resize(change.size());
+    for (std::size_t i = 0; i < std::min(errors_.size(), residuals_.size()); ++i) {
+      const Residual& last = residuals_[i];
+      if (!(last.absolute > 0)) continue;
+      const bool seen = !before_.empty() && before_[i].absolute > 0;
+      const double c = seen ? std::min(last.absolute / before_[i].absolute, slowest) : unseen;
+      errors_[i].add({.error = c / (1 - c) * last.absolute,
+                      .rate = change[i].absolute / view_.dt,
+                      .size = last.size,
+                      .dt = view_.dt});
+    }
   }
-  void conclude(diagnostics::Report& report) override { report.errors.coupling = errors_.over_size(); }
+  void conclude(diagnostics::Report& report) override {
+    for (const time::StepErrors& errors : errors_)
+      report.errors.coupling = std::fmax(report.errors.coupling, errors.over_size());
+  }
   void visit(io::Archive& archive) override { archive.common("steps", errors_); }
 
  private:
   const CouplingView& view_;
-  double residual_ = 0, before_ = 0;  // of the last two passes of this step; 0 if none
-  time::StepErrors errors_;
+  std::vector<Residual> residuals_, before_;  // of the last two passes of the step under way
+  std::vector<time::StepErrors> errors_;      // of each datum
 };
 
 }  // namespace

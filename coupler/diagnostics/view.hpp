@@ -36,9 +36,9 @@ class CouplingDiagnostic : public diagnostics::Diagnostic {
   /// Participant `side` has answered in a pass.
   virtual void answered(std::size_t /*side*/, const coupling::Exchange& /*taken*/,
                         const coupling::Exchange& /*given*/) {}
-  /// A pass of an iteration has ended; `omega` led to its x. Throws SolveFailure if the iteration diverges.
-  virtual void passed(const Residual& /*residual*/, double /*omega*/) {}
-  /// Passes of explicit coupling, in a few steps: x to `image`, and from there to `again`.
+  /// A pass of an iteration is over; `omega` led to its x. Throws SolveFailure where the iteration runs away.
+  virtual void passed(const std::vector<Residual>& /*residuals*/, double /*omega*/) {}
+  /// Passes of explicit coupling, in a few steps: the pass from x gave `image`, another one from there `again`.
   virtual void returned(GlobalIndex /*step*/, const Iterate& /*x*/, const Iterate& /*image*/,
                         const Iterate& /*again*/) {}
   /// Cause of a failed step, if this diagnostic knows it.

@@ -54,10 +54,12 @@ std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& par
 }
 
 std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
-                                                   const std::string& problem) {
+                                                   const std::string& problem,
+                                                   std::vector<coupling::Exchange> last) {
   std::vector<diagnostics::NamedErrors> errors;
-  for (Partner* p : partners) {
-    p->send({coupling::Op::finalise, {}, {}, 0, -1, problem});
+  for (std::size_t i = 0; i < partners.size(); ++i) {
+    Partner* p = partners[i];
+    p->send({coupling::Op::finalise, {}, std::move(last[i]), 0, -1, problem});
     const std::string text = p->receive().text;
     try {
       errors.push_back({p->name(), diagnostics::ErrorParts::of(text)});

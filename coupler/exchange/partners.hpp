@@ -38,11 +38,12 @@ struct Partner {
 void ask_all(const std::vector<Partner*>& partners, const coupling::Command& command);
 /// Returns the interface of each, in order; stores initial values in the partners.
 std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners);
-/// Finalizes the partners one after the other, so that their output does not mix. Returns their error
-/// estimates. `problem`: why the run stopped early; else empty.
+/// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
+/// end; empty: it did not. `last`: for each what the others gave last, which no further step would bring.
 std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
-                                                   const std::string& problem);
-/// Smallest advised step [s].
+                                                   const std::string& problem,
+                                                   std::vector<coupling::Exchange> last);
+/// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
 
 }  // namespace couplet::coupler

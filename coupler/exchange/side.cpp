@@ -2,42 +2,10 @@
 #include "coupler/exchange/side.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::coupler {
-
-namespace {
-
-const Neighbour none{std::numeric_limits<double>::infinity(), -1, std::numeric_limits<GlobalIndex>::max(), 0,
-                     Vec3::Zero()};
-
-/// Compares by distance; ties (to rounding) by the smaller id.
-bool better(const Neighbour& a, const Neighbour& b) {
-  const double equal = 1e-9 * std::max(a.distance, b.distance);
-  if (std::isfinite(equal) && std::abs(a.distance - b.distance) <= equal) return a.id < b.id;
-  return a.distance < b.distance;
-}
-
-std::vector<Neighbour> nearest_here(const std::vector<Vec3>& points, const PointSet& among) {
-  std::vector<Neighbour> found(points.size(), none);
-  if (among.points.empty()) return found;
-  const base::PointTree tree(among.points);
-  constexpr std::size_t candidates = 4;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (const Index candidate : tree.nearest(points[i], candidates)) {
-      const auto j = std::size_t(candidate);
-      const Neighbour here{(points[i] - among.points[j]).norm(), among.positions[j], among.ids[j],
-                           among.sizes.empty() ? 1 : among.sizes[j], among.points[j]};
-      if (better(here, found[i])) found[i] = here;
-    }
-  return found;
-}
-
-}  // namespace
 
 const coupling::Interface::Datum* find_datum(const std::vector<coupling::Interface::Datum>& list,
                                              const std::string& name) {
@@ -56,39 +24,19 @@ PointBox::PointBox(const std::vector<Vec3>& points) : empty(points.empty()) {
   for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
 }
 
+PointBox::PointBox(MPI_Comm comm, const std::vector<Vec3>& points) {
+  std::vector<Vec3> corners;
+  for (const PointBox& box : parallel::all_gather(comm, std::vector<PointBox>{PointBox(points)}))
+    if (!box.empty) corners.insert(corners.end(), {box.low, box.high});
+  *this = PointBox(corners);
+}
+
 PointSet whole_set(PointSet set) {
   if (!set.starts.empty()) return set;
   for (std::size_t i = 0; i < set.points.size(); ++i) set.positions.push_back(GlobalIndex(i));
   set.ids = set.positions;
   set.starts = {0, GlobalIndex(set.points.size())};
   return set;
-}
-
-std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among) {
-  if (parallel::comm_size(comm) == 1) return nearest_here(points, among);
-  // Asks for a point in boxes nearer than the farthest corner of every box.
-  const std::vector<PointBox> all = parallel::all_gather(comm, std::vector<PointBox>{PointBox(among.points)});
-  std::vector<std::vector<Vec3>> ask(all.size());
-  std::vector<std::vector<std::size_t>> asked(all.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    double bound = std::numeric_limits<double>::infinity();
-    for (const PointBox& box : all)
-      if (!box.empty) bound = std::min(bound, box.furthest(points[i]));
-    for (std::size_t r = 0; r < all.size(); ++r)
-      if (!all[r].empty && all[r].nearest(points[i]) <= bound * (1 + 1e-9)) {
-        ask[r].push_back(points[i]);
-        asked[r].push_back(i);
-      }
-  }
-  std::vector<std::vector<Neighbour>> answers;
-  for (const auto& questions : parallel::all_to_all(comm, ask))
-    answers.push_back(nearest_here(questions, among));
-  const auto replies = parallel::all_to_all(comm, answers);
-  std::vector<Neighbour> found(points.size(), none);
-  for (std::size_t r = 0; r < replies.size(); ++r)
-    for (std::size_t k = 0; k < replies[r].size(); ++k)
-      if (better(replies[r][k], found[asked[r][k]])) found[asked[r][k]] = replies[r][k];
-  return found;
 }
 
 int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts) {

@@ -26,7 +26,10 @@ struct PointBox {
   bool empty = true;
   PointBox() = default;
   explicit PointBox(const std::vector<Vec3>& points);
-  /// Bounds of the distance [m] between points of the box and `p`.
+  /// Around the points of all ranks. Collective.
+  PointBox(MPI_Comm comm, const std::vector<Vec3>& points);
+  double extent() const { return (high - low).norm(); }
+  /// Distance [m] of a point of the box to `p`, at least and at most.
   double nearest(const Vec3& p) const { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); }
   double furthest(const Vec3& p) const { return (p - low).cwiseAbs().cwiseMax((p - high).cwiseAbs()).norm(); }
 };
@@ -56,11 +59,7 @@ struct Neighbour {
   Vec3 point;
 };
 
-/// For each point of `points` on this rank, the nearest of `among` on any rank; ties go to the smallest id.
-/// Each rank stores only its part of `among`. Collective.
-std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
-
-/// Largest number of `found` on all ranks with the same neighbor. `starts`: of the list searched. Collective.
+/// How many of `found` on all ranks have the same neighbour, at most. `starts`: of the list that was searched. Collective.
 int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts);
 
 /// Sends each item to the rank owner(item). Items are ordered by source rank and then as they were. Nothing

@@ -19,14 +19,9 @@ namespace {
 
 /// Map for a side without listed corners: local interpolants through the structure's face centers.
 std::vector<Transfer::Entry> without_corners(MPI_Comm comm, const Surroundings& structure,
-                                             const Surroundings& surface, int dim) {
-  const std::size_t k = dim == 2 ? 5 : 10;
-  const PointSet vertices = surface.vertices();
-  const Nearby near = nearby(comm, vertices.points, {}, k, structure.faces());
+                                             const PointSet& vertices, int dim) {
   std::vector<Transfer::Entry> entries;
-  if (!vertices.points.empty())
-    add_entries(local_interpolation(near.points, vertices.points, k), vertices.positions, near.positions,
-                entries);
+  add_interpolation(comm, structure.faces(), vertices.points, vertices.positions, dim == 2 ? 5 : 10, entries);
   return entries;
 }
 
@@ -41,7 +36,7 @@ ConjugateMap::ConjugateMap(MPI_Comm comm, const Side& structure, const Side& sur
   to_faces_ = vertices_to_faces(comm, structure.interface);
   to_surface_faces_ = vertices_to_faces(comm, surface.interface);
   across_ = corners ? faces_to_vertices(comm, structure.interface, surface.interface, type)
-                    : without_corners(comm, theirs, ours, structure.interface.dim);
+                    : without_corners(comm, theirs, ours.vertices(), structure.interface.dim);
 }
 
 ConjugateMap::Entries ConjugateMap::between(Place structure, Place surface) const {

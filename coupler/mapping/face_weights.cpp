@@ -194,11 +194,7 @@ std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const coupling::In
   const PointSet faces = all.faces();
   std::vector<Transfer::Entry> entries;
   if (!all.has_corners()) {
-    const std::size_t k = part.dim == 2 ? 2 : 4;
-    const Nearby near = nearby(comm, faces.points, {}, k, all.vertices());
-    if (!faces.points.empty())
-      add_entries(local_interpolation(near.points, faces.points, k), faces.positions, near.positions,
-                  entries);
+    add_interpolation(comm, all.vertices(), faces.points, faces.positions, part.dim == 2 ? 2 : 4, entries);
     return entries;
   }
   const SurfacePart mine = all.with(faces.positions);

@@ -12,6 +12,7 @@
 #include "common/parallel/collective.hpp"
 #include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/sparse_map.hpp"
+#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -150,14 +151,16 @@ class WallMaps {
     const std::size_t structure = load ? taker : giver, surface = load ? giver : taker;
     const coupling::Interface& body = sides_[structure].interface;
     if (type_ == MappingParameters::Type::matched || type_ == MappingParameters::Type::nearest ||
-        giver == taker || !(load || motion) || given.size(body.dim) != body.dim || !is_structure(body) ||
-        sides_[structure].faces.back() == 0 || sides_[surface].faces.back() == 0)
+        giver == taker || from.own_surface || to.own_surface || !(load || motion) ||
+        given.size(body.dim) != body.dim || !is_structure(body) || sides_[structure].faces.back() == 0 ||
+        sides_[surface].faces.back() == 0)
       return nullptr;
     const ConjugateMap& map =
         maps_.try_emplace({structure, surface}, comm_, sides_[structure], sides_[surface], type_)
             .first->second;
     return std::make_shared<const Mapping>(
-        comm_, from, to, load ? map.load(from.place, to.place) : map.motion(from.place, to.place));
+        comm_, from, to, load ? Mapping::Kind::conservative : Mapping::Kind::consistent,
+        load ? map.load(from.place, to.place) : map.motion(from.place, to.place));
   }
 
  private:

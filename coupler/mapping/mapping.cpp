@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -15,16 +14,7 @@
 namespace couplet::coupler {
 namespace {
 
-double extent(MPI_Comm comm, const std::vector<Vec3>& points) {
-  double square = 0;
-  for (int c = 0; c < 3; ++c) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vec3& p : points) low = std::min(low, p[c]), high = std::max(high, p[c]);
-    low = parallel::min(comm, low), high = parallel::max(comm, high);
-    if (high > low) square += (high - low) * (high - low);
-  }
-  return std::sqrt(square);
-}
+using Place = coupling::Interface::Place;
 
 GlobalIndex count(MPI_Comm comm, const PointSet& set) {
   return parallel::sum(comm, GlobalIndex(set.points.size()));
@@ -60,7 +50,7 @@ std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<N
 void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
                    const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back,
                    const MappingParameters& parameters) {
-  const double widest = std::max(extent(comm, from.points), extent(comm, to.points));
+  const double widest = std::max(PointBox(comm, from.points).extent(), PointBox(comm, to.points).extent());
   const double tolerance = parameters.tolerance.value_or(1e-6 * widest);
   const std::string advice =
       "\nGive both meshes the same points on the interface, or set `coupling.mapping.type: projection`.";
@@ -103,57 +93,80 @@ std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, cons
   const Surroundings source(comm, *from.surface);
   require_corners(source.has_corners());
   if (parallel::comm_size(comm) == 1) {
-    add_entries(nearest_projection(*from.surface, to.points), to.positions, source.vertices().positions,
-                entries);
+    add_projection(*from.surface, source.vertices().positions, to.points, to.positions, entries);
     return entries;
   }
   std::vector<GlobalIndex> faces =
       source.faces_around(nearby(comm, to.points, {}, projection_vertices, source.vertices()).positions);
-  const Nearby near = nearby(comm, to.points, {}, projection_faces, source.faces());
+  const PointSet near = nearby(comm, to.points, {}, projection_faces, source.faces());
   faces.insert(faces.end(), near.positions.begin(), near.positions.end());
   std::ranges::sort(faces);
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   const SurfacePart part = source.with(faces);
-  if (!to.points.empty())
-    add_entries(nearest_projection(part.surface, to.points), to.positions, part.vertices, entries);
+  if (!to.points.empty()) add_projection(part.surface, part.vertices, to.points, to.positions, entries);
   return entries;
 }
 
-/// Projection and radial functions. Each rank stores only the part of the other surface near its own.
+/// Projection and radial functions, chosen by where the values lie; amounts go by the transpose of the map of a field the other way.
+/// No rank sees more of the other surface than what lies about its own part.
 std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
                                           const PointSet& to, MappingParameters::Type type) {
-  const bool projection = type == MappingParameters::Type::projection;
+  const bool projection = type == MappingParameters::Type::projection,
+             amount = kind == Mapping::Kind::conservative;
   const int dim = from.surface != nullptr ? from.surface->dim : 3;
   const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
-  const bool consistent = kind == Mapping::Kind::consistent;
-  const bool by_faces = !from.own_surface && !to.own_surface;
-  if (!consistent && by_faces && from.surface && to.surface &&
-      Surroundings(comm, *from.surface).has_corners() && Surroundings(comm, *to.surface).has_corners())
-    return transposed(faces_to_faces(comm, *to.surface, *from.surface, type));
-  if (consistent && projection && by_faces && from.surface &&
-      from.place == coupling::Interface::Place::vertices)
-    return projected(comm, from, to);
-  const PointSet &ask = consistent ? to : from, &among = consistent ? from : to;
-  const Nearby near = nearby(comm, ask.points, {}, k, among);
+  const PointSet &ask = amount ? from : to, &among = amount ? to : from;
+  const bool by_faces = !from.own_surface && !to.own_surface && among.surface,
+             corners = by_faces && Surroundings(comm, *among.surface).has_corners();
   std::vector<Transfer::Entry> entries;
-  if (ask.points.empty()) return entries;
-  add_entries(local_interpolation(near.points, ask.points, k), ask.positions, near.positions, entries);
-  if (!consistent)
-    for (auto& e : entries) std::swap(e.target, e.source);
-  return entries;
+  if (amount && corners && ask.place == Place::faces && ask.surface &&
+      Surroundings(comm, *ask.surface).has_corners()) {
+    entries = faces_to_faces(comm, *among.surface, *ask.surface, type);
+    if (among.place == Place::vertices)
+      entries = product(comm, Surroundings(comm, *among.surface).faces().starts, entries,
+                        vertices_to_faces(comm, *among.surface));
+  } else if (projection && by_faces && among.place == Place::vertices && (corners || !amount)) {
+    entries = projected(comm, among, ask);
+  } else {
+    add_interpolation(comm, among, ask.points, ask.positions, k, entries);
+  }
+  return amount ? transposed(std::move(entries)) : entries;
 }
 
-/// Removes rows and columns of places that are not in the sets.
-std::vector<Transfer::Entry> between(MPI_Comm comm, const PointSet& from, const PointSet& to,
-                                     std::vector<Transfer::Entry> entries) {
+/// Without the columns of places that are not in the set, and, but for amounts, without such rows.
+std::vector<Transfer::Entry> between(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
+                                     const PointSet& to, std::vector<Transfer::Entry> entries) {
   const auto kept = [](const PointSet& set) {
     std::vector<Transfer::Entry> same;
     for (const GlobalIndex p : set.positions) same.push_back({p, p, 1});
     return same;
   };
-  if (count(comm, to) < to.starts.back()) entries = product(comm, to.starts, kept(to), entries);
+  if (kind == Mapping::Kind::consistent && count(comm, to) < to.starts.back())
+    entries = product(comm, to.starts, kept(to), entries);
   if (count(comm, from) < from.starts.back()) entries = product(comm, from.starts, entries, kept(from));
   return entries;
+}
+
+/// Compares what each place gives with what is taken of it. The map is linear, so this holds for all values.
+void require_sums(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                  const std::vector<Transfer::Entry>& entries) {
+  const auto rank = std::size_t(parallel::comm_rank(comm));
+  const GlobalIndex first = from.starts[rank];
+  std::vector<double> taken(std::size_t(from.starts[rank + 1] - first), 0.), size = taken;
+  for (const auto& e : by_owner(comm, from.starts, transposed(entries)))
+    taken[std::size_t(e.target - first)] += e.weight,
+        size[std::size_t(e.target - first)] += std::abs(e.weight);
+  double worst = 0;
+  for (const GlobalIndex p : from.positions) {
+    const auto i = std::size_t(p - first);
+    worst = std::max(worst, std::abs(taken[i] - 1) / std::max(1., size[i]));
+  }
+  worst = parallel::max(comm, worst);
+  if (!(worst < 1e-12))
+    throw Error(
+        "An amount that one of the {} gives would differ by {:.2g} of itself from what the {} take. Use "
+        "`coupling.mapping.type: nearest`.",
+        from.what, worst, to.what);
 }
 
 void require_places(const PointSet& from, const PointSet& to, GlobalIndex n_from, GlobalIndex n_to) {
@@ -177,23 +190,23 @@ Mapping::Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet&
   if (matched) require_twins(comm, from, to, forth, back, parameters);
   std::vector<Transfer::Entry> entries;
   if (!by_nearest)
-    entries = between(comm, from, to, second_order(comm, kind, from, to, parameters.type));
+    entries = second_order(comm, kind, from, to, parameters.type);
   else if (kind == Kind::conservative)
     entries = shares(comm, from, to, forth, back);
   else
     for (std::size_t i = 0; i < to.points.size(); ++i)
       entries.push_back({to.positions[i], forth[i].position, 1});
-  set(comm, from, to, std::move(entries), forth,
+  set(comm, kind, from, to, std::move(entries), forth,
       kind == Kind::conservative ? back : std::vector<Neighbour>{});
 }
 
-Mapping::Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to,
+Mapping::Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to, Kind kind,
                  std::vector<Transfer::Entry> entries) {
   require_places(from, to, count(comm, from), count(comm, to));
-  set(comm, from, to, between(comm, from, to, std::move(entries)), nearest(comm, to.points, from), {});
+  set(comm, kind, from, to, std::move(entries), nearest(comm, to.points, from), {});
 }
 
-void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
+void Mapping::set(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
                   std::vector<Transfer::Entry> entries, const std::vector<Neighbour>& forth,
                   const std::vector<Neighbour>& back) {
   n_from_ = std::size_t(count(comm, from)), n_to_ = std::size_t(count(comm, to));
@@ -203,6 +216,8 @@ void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
     for (const Neighbour& n : back) max_distance_ = std::max(max_distance_, n.distance);
   max_distance_ = parallel::max(comm, max_distance_);
   mean_distance_ = parallel::sum(comm, total) / double(n_to_);
+  entries = between(comm, kind, from, to, std::move(entries));
+  if (kind == Kind::conservative) require_sums(comm, from, to, entries);
   transfer_ = Transfer(comm, to.starts, from.starts, std::move(entries));
   summary_ = fmt::format("{} {} to {} {}: max distance {:.3g} m, mean {:.3g} m", n_from_, from.what, n_to_,
                          to.what, max_distance_, mean_distance_);

@@ -14,12 +14,13 @@ namespace couplet::coupler {
 /// reference configuration. Types of `coupling.mapping`:
 ///   matched     matching vertices and faces, weight 1
 ///   nearest     as below
-///   projection  at vertices the value at the nearest point of the other surface; at faces local
-///               interpolants through few neighbors
-///   rbf         local interpolants by compact radial functions through more neighbors
-/// projection and rbf are exact for linear fields. Amounts use the transpose of the map of means from the
-/// targets' faces to the sources', so they keep sum and moment. Motion and load of one wall use ConjugateMap.
-/// All calls are collective.
+///   projection  at vertices: the value at the nearest point of the other surface; at faces: local
+///               interpolants through few neighbours
+///   rbf         local interpolants by compact radial functions through more neighbours
+/// Both of the latter carry linear fields exactly. Amounts go by the transpose of such a map the other way, so that
+/// their sum and their moment are kept: those at faces by that of means over faces, those at vertices by that of
+/// points. Motion and load of one wall go by ConjugateMap. A map of amounts is refused unless all that a place gives
+/// is taken. All calls are collective.
 class Mapping {
  public:
   enum class Kind {
@@ -31,8 +32,9 @@ class Mapping {
   Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
           const MappingParameters& parameters);
 
-  /// Uses given entries; those between other places are omitted.
-  Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to, std::vector<Transfer::Entry> entries);
+  /// By entries made elsewhere, of which those between other places are left out.
+  Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to, Kind kind,
+          std::vector<Transfer::Entry> entries);
 
   /// Mapping on one rank.
   Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters)
@@ -50,8 +52,9 @@ class Mapping {
   std::string summary() const { return summary_; }
 
  private:
-  void set(MPI_Comm comm, const PointSet& from, const PointSet& to, std::vector<Transfer::Entry> entries,
-           const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back);
+  void set(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
+           std::vector<Transfer::Entry> entries, const std::vector<Neighbour>& forth,
+           const std::vector<Neighbour>& back);
 
   std::size_t n_from_ = 0, n_to_ = 0;
   Transfer transfer_;

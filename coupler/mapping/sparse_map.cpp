@@ -4,51 +4,15 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "common/base/error.hpp"
 #include "common/base/point_tree.hpp"
 #include "coupler/mapping/face_weights.hpp"
+#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
-
-void SparseMap::push_row(std::span<const Index> sources, std::span<const double> weights) {
-  assert(sources.size() == weights.size());
-  source.insert(source.end(), sources.begin(), sources.end());
-  weight.insert(weight.end(), weights.begin(), weights.end());
-  offset.push_back(source.size());
-}
-
-std::vector<double> SparseMap::apply(std::span<const double> values, int components) const {
-  assert(values.size() == n_from * std::size_t(components));
-  const auto n = std::size_t(components);
-  std::vector<double> result(n_to() * n, 0.);
-  for (std::size_t i = 0; i < n_to(); ++i)
-    for (std::size_t k = offset[i]; k < offset[i + 1]; ++k)
-      for (std::size_t c = 0; c < n; ++c)
-        result[i * n + c] += weight[k] * values[std::size_t(source[k]) * n + c];
-  return result;
-}
-
-SparseMap SparseMap::transposed() const {
-  SparseMap t;
-  t.n_from = n_to();
-  t.offset.assign(n_from + 1, 0);
-  for (const Index s : source) ++t.offset[std::size_t(s) + 1];
-  for (std::size_t i = 0; i < n_from; ++i) t.offset[i + 1] += t.offset[i];
-  t.source.resize(source.size());
-  t.weight.resize(source.size());
-  std::vector<std::size_t> next(t.offset.begin(), t.offset.end() - 1);
-  for (std::size_t i = 0; i < n_to(); ++i)
-    for (std::size_t k = offset[i]; k < offset[i + 1]; ++k) {
-      const std::size_t place = next[source[k]]++;
-      t.source[place] = Index(i);
-      t.weight[place] = weight[k];
-    }
-  return t;
-}
 
 namespace {
 
@@ -168,49 +132,44 @@ void require_corners(bool known) {
         "use `coupling.mapping.type: rbf`.");
 }
 
-SparseMap nearest_projection(const coupling::Interface& surface, const std::vector<Vec3>& targets) {
-  require_corners(surface.face_offset.size() == surface.face_centres.size() + 1);
+void add_projection(const coupling::Interface& surface, const std::vector<GlobalIndex>& vertices,
+                    const std::vector<Vec3>& targets, const std::vector<GlobalIndex>& rows,
+                    std::vector<Transfer::Entry>& entries) {
   const FacesAround around(surface);
-  const base::PointTree vertices(surface.vertices), centres(surface.face_centres);
-  SparseMap map;
-  map.n_from = surface.vertices.size();
-  for (const Vec3& p : targets) {
-    std::vector<Index> faces = centres.nearest(p, projection_faces);
-    for (const Index v : vertices.nearest(p, projection_vertices))
+  const base::PointTree vertex_tree(surface.vertices), centres(surface.face_centres);
+  for (std::size_t row = 0; row < targets.size(); ++row) {
+    std::vector<Index> faces = centres.nearest(targets[row], projection_faces);
+    for (const Index v : vertex_tree.nearest(targets[row], projection_vertices))
       faces.insert(faces.end(), around.face.begin() + around.offset[v],
                    around.face.begin() + around.offset[v + 1]);
     OnFace best;
     Index chosen = -1;
     for (const Index f : faces) {
-      OnFace found = on_face(surface, f, p);
+      OnFace found = on_face(surface, f, targets[row]);
       if (found.distance < best.distance) best = std::move(found), chosen = f;
     }
-    map.push_row(corners(surface, chosen), best.weights);
+    const auto corner = corners(surface, chosen);
+    for (std::size_t i = 0; i < corner.size(); ++i)
+      entries.push_back({rows[row], vertices[std::size_t(corner[i])], best.weights[i]});
   }
-  return map;
 }
 
 double distance_to_face(const coupling::Interface& surface, Index face, const Vec3& place) {
   return on_face(surface, face, place).distance;
 }
 
-void add_entries(const SparseMap& map, const std::vector<GlobalIndex>& targets,
-                 const std::vector<GlobalIndex>& sources, std::vector<Transfer::Entry>& entries) {
-  for (std::size_t row = 0; row < map.n_to(); ++row)
-    for (std::size_t k = map.offset[row]; k < map.offset[row + 1]; ++k)
-      entries.push_back({targets[row], sources[std::size_t(map.source[k])], map.weight[k]});
-}
-
-SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vector<Vec3>& targets,
-                              std::size_t k) {
-  const base::PointTree tree(sources);
-  SparseMap map;
-  map.n_from = sources.size();
-  for (const Vec3& p : targets) {
-    const std::vector<Index> near = tree.nearest(p, k);
-    map.push_row(near, local_weights(sources, near, p));
+void add_interpolation(MPI_Comm comm, const PointSet& among, const std::vector<Vec3>& targets,
+                       const std::vector<GlobalIndex>& rows, std::size_t k,
+                       std::vector<Transfer::Entry>& entries) {
+  const PointSet near = nearby(comm, targets, {}, k, among);
+  if (targets.empty()) return;
+  const base::PointTree tree(near.points);
+  for (std::size_t row = 0; row < targets.size(); ++row) {
+    const std::vector<Index> sources = tree.nearest(targets[row], k);
+    const std::vector<double> weights = local_weights(near.points, sources, targets[row]);
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      entries.push_back({rows[row], near.positions[std::size_t(sources[i])], weights[i]});
   }
-  return map;
 }
 
 void check_corners(const coupling::Interface& surface, const std::string& name, GlobalIndex vertices) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "common/base/error.hpp"
@@ -11,30 +10,15 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/face_corners.hpp"
+#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {
 
 using Place = coupling::Interface::Place;
 
-struct Box {
-  Vec3 low, high;
-  Box(MPI_Comm comm, const std::vector<Vec3>& points) {
-    constexpr double far = std::numeric_limits<double>::infinity();
-    low.setConstant(far), high.setConstant(-far);
-    for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, comm);
-    MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, comm);
-  }
-  double extent() const { return (high - low).norm(); }
-  std::string text() const {
-    return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", low.x(), low.y(), low.z(),
-                       high.x(), high.y(), high.z());
-  }
-};
-
-/// Extent of each face of this rank [m]: largest distance of known corners (a face may be long and thin),
-/// otherwise the edge of a square of its area; in 2-D areas are lengths. Collective.
+/// Extent of each face of this rank [m]: between corners where these are known (a face may be long and thin),
+/// else the edge of a square of its area; in 2-D areas are lengths. Collective.
 std::vector<double> extents(MPI_Comm comm, const Side& side) {
   const coupling::Interface& i = side.interface;
   const FaceCorners corners(comm, side);
@@ -71,8 +55,13 @@ std::string first_text(MPI_Comm comm, const std::string& text) {
   return {all.begin(), all.end()};
 }
 
-/// Boxes must agree within a tenth of the smaller and two faces of the coarser side.
-std::string other_extent(const Box& a, const std::string& from, const Box& b, const std::string& to,
+std::string text(const PointBox& b) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", b.low.x(), b.low.y(), b.low.z(),
+                     b.high.x(), b.high.y(), b.high.z());
+}
+
+/// Both boxes must be the same within a tenth of the smaller and two faces of the coarser side.
+std::string other_extent(const PointBox& a, const std::string& from, const PointBox& b, const std::string& to,
                          double face) {
   const double least = std::min(a.extent(), b.extent());
   const double allowed = 0.1 * least + 2 * std::min(face, least);
@@ -82,7 +71,7 @@ std::string other_extent(const Box& a, const std::string& from, const Box& b, co
   return fmt::format(
       "The interface of '{}' extends from {} m and that of '{}' from {} m: their positions differ{}. Check "
       "the meshes' units and positions and which patches are of type interface.",
-      from, a.text(), to, b.text(),
+      from, text(a), to, text(b),
       ratio > 5 || ratio < 0.2
           ? fmt::format(", one is {:.3g} times as large as the other", std::max(ratio, 1 / ratio))
           : "");
@@ -115,8 +104,8 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
   const PointSet source = from.places(Place::vertices), target = to.places(Place::vertices);
   const std::vector<double> target_size = local_size(comm, target.points, to),
                             source_size = local_size(comm, source.points, from);
-  report.problem = other_extent(Box(comm, source.points), from.name, Box(comm, target.points), to.name,
-                                std::max(mean(comm, source_size), mean(comm, target_size)));
+  report.problem = other_extent(PointBox(comm, source.points), from.name, PointBox(comm, target.points),
+                                to.name, std::max(mean(comm, source_size), mean(comm, target_size)));
   if (!report.problem.empty()) return report;
   const std::vector<Neighbour> found = nearest(comm, target.points, source);
   // Sizes of the source's faces at the targets.
@@ -222,13 +211,11 @@ void add_up(MPI_Comm comm, double* values, int n) {
 }
 
 void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts& facts) {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  facts.low.setConstant(far), facts.high.setConstant(-far);
+  std::vector<Vec3> points;
   for (const Side* side : sides)
-    for (const Vec3& p : side->interface.vertices)
-      facts.low = facts.low.cwiseMin(p), facts.high = facts.high.cwiseMax(p);
-  MPI_Allreduce(MPI_IN_PLACE, facts.low.data(), 3, MPI_DOUBLE, MPI_MIN, comm);
-  MPI_Allreduce(MPI_IN_PLACE, facts.high.data(), 3, MPI_DOUBLE, MPI_MAX, comm);
+    points.insert(points.end(), side->interface.vertices.begin(), side->interface.vertices.end());
+  const PointBox box(comm, points);
+  facts.low = box.low, facts.high = box.high;
 }
 
 std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }

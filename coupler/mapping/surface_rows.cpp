@@ -35,10 +35,10 @@ SurfacePart around(MPI_Comm comm, const Surroundings& structure, const coupling:
   std::vector<double> far;
   for (Index f = 0; f < Index(mine.face_centres.size()); ++f)
     far.push_back(reach(mine, f) / 2 + std::max(widest, reach(mine, f)) / 2);
-  const Nearby near = nearby(comm, mine.face_centres, far, nearest_faces, structure.faces());
+  const PointSet near = nearby(comm, mine.face_centres, far, nearest_faces, structure.faces());
   std::vector<GlobalIndex> faces = near.positions;
   if (type == MappingParameters::Type::rbf) {
-    const Nearby further = nearby(comm, near.points, {}, Slopes::looks_at(mine.dim), structure.faces());
+    const PointSet further = nearby(comm, near.points, {}, Slopes::looks_at(mine.dim), structure.faces());
     faces.insert(faces.end(), further.positions.begin(), further.positions.end());
   }
   const std::vector<GlobalIndex> touching = structure.faces_around(structure.with(near.positions).vertices);
@@ -251,10 +251,7 @@ std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& stru
   std::vector<GlobalIndex> positions;
   for (std::size_t i = 0; i < has.size(); ++i)
     if (!has[i]) lone.push_back(points.points[i]), positions.push_back(points.positions[i]);
-  const std::size_t k = structure.dim == 2 ? 3 : 5;
-  const Nearby next = nearby(comm, lone, {}, k, theirs.faces());
-  if (!lone.empty())
-    add_entries(local_interpolation(next.points, lone, k), positions, next.positions, entries);
+  add_interpolation(comm, theirs.faces(), lone, positions, structure.dim == 2 ? 3 : 5, entries);
   return entries;
 }
 

@@ -140,14 +140,15 @@ void sort_and_keep_one_each(std::vector<GlobalIndex>& list) {
 
 }  // namespace
 
-Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
-              std::size_t k, const PointSet& among) {
+PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
+                std::size_t k, const PointSet& among) {
   struct Ball {
     Vec3 centre;
     double radius;
   };
   struct Found {
-    GlobalIndex position;
+    GlobalIndex position, id;
+    double size;
     Vec3 point;
   };
   const std::vector<Count> all =
@@ -169,15 +170,54 @@ Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector
       for (const Index i : tree->within(ball.centre, ball.radius)) inside[std::size_t(i)] = 1;
     auto& found = answers.emplace_back();
     for (std::size_t i = 0; i < inside.size(); ++i)
-      if (inside[i]) found.push_back({among.positions[i], among.points[i]});
+      if (inside[i])
+        found.push_back(
+            {among.positions[i], among.ids[i], among.sizes.empty() ? 1 : among.sizes[i], among.points[i]});
   }
   std::vector<Found> found;
   for (const auto& part : parallel::all_to_all(comm, answers))
     found.insert(found.end(), part.begin(), part.end());
   std::ranges::sort(found, {}, &Found::position);
-  Nearby result;
-  for (const Found& f : found) result.points.push_back(f.point), result.positions.push_back(f.position);
+  PointSet result;
+  for (const Found& f : found) {
+    result.points.push_back(f.point), result.positions.push_back(f.position);
+    result.ids.push_back(f.id), result.sizes.push_back(f.size);
+  }
   return result;
+}
+
+namespace {
+
+const Neighbour none{std::numeric_limits<double>::infinity(), -1, std::numeric_limits<GlobalIndex>::max(), 0,
+                     Vec3::Zero()};
+
+/// Of two the nearer one; of equals (to rounding) the one of the smaller id.
+bool better(const Neighbour& a, const Neighbour& b) {
+  const double equal = 1e-9 * std::max(a.distance, b.distance);
+  if (std::isfinite(equal) && std::abs(a.distance - b.distance) <= equal) return a.id < b.id;
+  return a.distance < b.distance;
+}
+
+std::vector<Neighbour> nearest_here(const std::vector<Vec3>& points, const PointSet& among) {
+  std::vector<Neighbour> found(points.size(), none);
+  if (among.points.empty()) return found;
+  const base::PointTree tree(among.points);
+  constexpr std::size_t candidates = 4;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const Index candidate : tree.nearest(points[i], candidates)) {
+      const auto j = std::size_t(candidate);
+      const Neighbour here{(points[i] - among.points[j]).norm(), among.positions[j], among.ids[j],
+                           among.sizes.empty() ? 1 : among.sizes[j], among.points[j]};
+      if (better(here, found[i])) found[i] = here;
+    }
+  return found;
+}
+
+}  // namespace
+
+std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among) {
+  if (parallel::comm_size(comm) == 1) return nearest_here(points, among);
+  return nearest_here(points, nearby(comm, points, {}, 1, among));
 }
 
 Surroundings::Surroundings(MPI_Comm comm, const coupling::Interface& part) : comm_(comm), part_(part) {

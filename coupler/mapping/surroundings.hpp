@@ -9,18 +9,16 @@
 
 namespace couplet::coupler {
 
-/// Points requested by a rank from a distributed list, by position.
-struct Nearby {
-  std::vector<Vec3> points;
-  std::vector<GlobalIndex> positions;  ///< ascending, each once
-};
+/// The points of `among` (any rank's) that are one of the `k` nearest of a centre on this rank, those that are
+/// equally far (to rounding) as its k-th, and with `reach` [m] all that are nearer than the k-th and twice this
+/// centre's reach: then the k nearest of every place within the reach are there. Each centre asks the ranks whose
+/// boxes are nearest for a bound, then those ranks whose boxes lie within it. By position, each once. Collective.
+PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
+                std::size_t k, const PointSet& among);
 
-/// Returns points of `among` (on any rank) that are among the `k` nearest of a center on this rank, or
-/// equally far (to rounding) as the k-th. With `reach` [m] it adds all points nearer than the k-th plus twice
-/// the center's reach, which includes the k nearest of every place within reach. Each center asks the ranks
-/// with the nearest boxes for a bound, then the ranks whose boxes are within it. Collective.
-Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
-              std::size_t k, const PointSet& among);
+/// For each point of `points` on this rank the nearest of `among` on any rank; of equals the one of the
+/// smallest id. Collective.
+std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
 
 /// Faces of a surface and their vertices, with positions in the global lists; corners refer to vertices
 /// within the part.

@@ -11,6 +11,7 @@
 import atexit
 import math
 import os
+import socket
 import struct
 import sys
 import time
@@ -20,7 +21,7 @@ from mpi4py import MPI  # MPI starts here
 
 from couplet.relay import OverMpi, OverSocket, wait as _wait
 
-VERSION, COMMAND, REPLY, HELLO = 5, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
+VERSION, COMMAND, REPLY, HELLO = 6, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
 JOIN_TAG, COMMAND_TAG, REPLY_TAG, INPUT_TAG, PLACES_TAG, OUTPUT_TAG = 100, 101, 102, 103, 104, 105
 EVENTS = {2: "begin", 3: "solve", 4: "accept", 5: "output", 6: "save", 7: "load"}
 INITIALISE, SOLVE, FINALISE = 1, 3, 8
@@ -90,7 +91,7 @@ class Client:
                       (f": version {others[0]}, this client version {VERSION}" if others else ""))
         world.Split(MPI.UNDEFINED, world.rank)
         number = world.Get_attr(MPI.APPNUM) or 0
-        fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank)]
+        fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank), f"{os.getpid()}@{socket.gethostname()}"]
         strings = self._all_strings(world, ("".join(f + "\x1f" for f in fields) + "\x1e").encode())
         participants = [s.split("\x1f")[1] for s in strings]
         problem, worst = numpy.zeros(1, "i8"), numpy.zeros(1, "i8")
@@ -154,7 +155,7 @@ class Client:
                 return EVENTS[self.operation]
 
     def read(self, datum):
-        """Values (locations, components) of this process, or zeros if no participant has given them yet."""
+        """(places, components) of this process; zeros if nobody has given it yet. After the last event: as the others gave it last."""
         entry = next(d for d in self._takes if d[0] == datum)
         return self._input.get(datum, numpy.zeros(self._shape(entry)))
 
@@ -214,7 +215,7 @@ class Client:
         names = [r.text() for _ in range(r.take("q"))]
         self._input, self._output, self._status, self._why = {}, {}, 0, ""
         self._started, self._pending = time.monotonic(), True
-        if self.operation == SOLVE:
+        if names:
             self._receive_input(names)
 
     def _cut(self, n):

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/case/roll_call.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <sstream>
@@ -12,6 +15,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/coupling/messages.hpp"
+#include "common/coupling/roles.hpp"
 #include "common/coupling/wait.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -25,9 +29,9 @@ constexpr std::int64_t hello_mark = 0x434f55504c4554;  // "COUPLET"
 
 std::string encode(const Attendant& a) {
   std::string text;
-  for (const std::string& field :
-       {a.program, a.participant, a.case_file, std::to_string(a.case_hash), a.restart,
-        std::string(a.named ? "1" : "0"), std::to_string(a.application), std::to_string(a.world_rank)})
+  for (const std::string& field : {a.program, a.participant, a.case_file, std::to_string(a.case_hash),
+                                   a.restart, std::string(a.named ? "1" : "0"), std::to_string(a.application),
+                                   std::to_string(a.world_rank), a.process})
     text += field + field_end;
   for (const std::string& error : a.errors) text += error + field_end;
   return text + text_end;
@@ -46,7 +50,23 @@ bool is_name(const std::string& text) {
 
 std::string label(const Attendant& a) { return a.participant.empty() ? a.program : a.participant; }
 
-/// Text "mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml ..."
+/// The first that reads the case: a guest that does not says 0.
+const Attendant& reader_of(const std::vector<Attendant>& attendants) {
+  const auto reader = std::ranges::find_if(attendants, [](const Attendant& a) { return a.case_hash != 0; });
+  return reader == attendants.end() ? attendants.front() : *reader;
+}
+
+/// Tells whether a program can be started by its name: one of the project's, or one on the PATH.
+bool is_known(const std::string& program) {
+  if (program == coupler_name || coupling::player_of(program) != nullptr) return true;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((folder + "/" + program).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+/// "mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 <command of 'guest'> ..."
 std::string launch_line(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected) {
   std::map<std::string, int> ranks, users, application;
   for (const Attendant& a : attendants)
@@ -56,9 +76,10 @@ std::string launch_line(const std::vector<Attendant>& attendants, const std::vec
   std::string line = "mpirun";
   for (const Expected& e : expected) {
     const int n = std::max(1, ranks[e.participant]);
-    line += fmt::format("{} -n {} {} {}", &e == &expected.front() ? "" : " :", n, e.program,
-                        attendants.front().case_file);
-    if (users[e.program] > 1) line += " --participant " + e.participant;
+    line += fmt::format("{} -n {} ", &e == &expected.front() ? "" : " :", n);
+    line += is_known(e.program) ? e.program + " " + reader_of(attendants).case_file
+                                : fmt::format("<command of '{}'>", e.participant);
+    if (is_known(e.program) && users[e.program] > 1) line += " --participant " + e.participant;
   }
   return line;
 }
@@ -87,9 +108,7 @@ std::string configuration_errors(const std::vector<Attendant>& attendants) {
 
 /// First difference between what two processes read.
 std::string disagreement(const std::vector<Attendant>& attendants) {
-  // A guest that does not read the file sends 0.
-  const auto reader = std::ranges::find_if(attendants, [](const Attendant& a) { return a.case_hash != 0; });
-  const Attendant& first = reader == attendants.end() ? attendants.front() : *reader;
+  const Attendant& first = reader_of(attendants);
   for (const Attendant& a : attendants) {
     if (a.case_hash == 0) continue;
     if (a.case_hash != first.case_hash)
@@ -147,7 +166,7 @@ Attendant introduced(const std::string& text, int process) {
         "format.",
         process, why);
   };
-  if (fields.size() < 8) throw malformed(fmt::format("it has {} fields, expected 8", fields.size()));
+  if (fields.size() < 9) throw malformed(fmt::format("it has {} fields, expected 9", fields.size()));
   Attendant a;
   a.program = fields[0];
   a.participant = fields[1];
@@ -162,7 +181,8 @@ Attendant introduced(const std::string& text, int process) {
   if (!parse(fields[3], a.case_hash) || !parse(fields[6], a.application) || !parse(fields[7], a.world_rank))
     throw malformed("the hash of its case, the index of its program or its rank is not a whole number");
   if (a.world_rank != process) throw malformed(fmt::format("it claims to be process {}", a.world_rank));
-  a.errors.assign(fields.begin() + 8, fields.end());
+  a.process = fields[8];
+  a.errors.assign(fields.begin() + 9, fields.end());
   return a;
 }
 

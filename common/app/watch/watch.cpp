@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -34,42 +35,44 @@ namespace {
 
 /// Returns true if a healthy job is asked to end during its steps: no process is gone or ending.
 bool is_a_wish() {
-  if (app::watching::board.slots[app::watching::board.mine].phase <= int(Phase::initialise)) return false;
-  for (int i = 0; i < app::watching::board.count; ++i) {
-    const app::watching::Slot& slot = app::watching::board.slots[i];
-    if (slot.ending || slot.terminating || (!slot.finished && app::watching::gone(slot.pid))) return false;
+  if (board.slots[board.mine].phase <= int(Phase::initialise)) return false;
+  for (int i = 0; i < board.count; ++i) {
+    const Slot& slot = board.slots[i];
+    if (slot.ending || slot.terminating || (!slot.finished && gone(slot.pid))) return false;
   }
   return true;
 }
 
 void report_the_dead() {
-  // The launcher may end the survivors one by one, so processes that reach this point are not the cause, even
-  // if gone.
-  app::watching::board.slots[app::watching::board.mine].terminating = 1;
+  // The launcher may end the survivors one by one: those that have come here are no culprits, even if they
+  // are gone. Guests do not come here. The one whose death the launcher has noticed is buried; those that it
+  // ends therefore are not yet.
+  board.slots[board.mine].terminating = 1;
   const char* separator = "couplet: ";
-  app::watching::Line line;
+  Line line;
   bool any = false;
-  for (int i = 0; i < app::watching::board.count; ++i) {
-    const app::watching::Slot& slot = app::watching::board.slots[i];
+  for (int i = 0; i < board.count; ++i) {
+    const Slot& slot = board.slots[i];
     if (slot.ending) return;
-    if (i == app::watching::board.mine || slot.finished || slot.terminating || !app::watching::gone(slot.pid))
+    if (i == board.mine || slot.finished || slot.terminating ||
+        (slot.guest ? any || state_of(slot.pid) != 'X' : !gone(slot.pid)))
       continue;
     any = true;
     line << separator;
-    app::watching::describe(line, slot, "was killed or has ended unexpectedly");
+    describe(line, slot, "was killed or has ended unexpectedly");
     separator = "; ";
   }
-  if (!any && !app::watching::board.whole_job) return;
+  if (!any && !board.whole_job) return;
   if (!any) line << "couplet: the job was stopped from outside (signal SIGTERM)";
   line << ". All programs of the job end.\n";
-  // Only the first survivor prints the line.
-  if (app::watching::board.slots[0].spoke_for_all.exchange(1) == 0) line.write_to(STDERR_FILENO);
+  // One line for all: that of the first survivor to come here.
+  if (board.slots[0].spoke_for_all.exchange(1) == 0) line.write_to(STDERR_FILENO);
 }
 
 extern "C" void on_terminate(int) {
   const int error = errno;
   if (is_a_wish()) {
-    app::watching::board.slots[0].stop_requested = 1;
+    board.slots[0].stop_requested = 1;
     errno = error;
     return;
   }
@@ -80,8 +83,8 @@ extern "C" void on_terminate(int) {
   ::_exit(128 + SIGTERM);
 }
 
-app::watching::Slot* share_page(MPI_Comm machine, int rank, int size) {
-  const std::size_t bytes = sizeof(app::watching::Slot) * std::size_t(size);
+Slot* share_page(MPI_Comm machine, int rank, int slots) {
+  const std::size_t bytes = sizeof(Slot) * std::size_t(slots);
   std::string path = fmt::format("/couplet-{}", ::getpid());
   parallel::broadcast(machine, path);
   int file = -1;
@@ -97,94 +100,94 @@ app::watching::Slot* share_page(MPI_Comm machine, int rank, int size) {
   if (rank == 0) ::shm_unlink(path.c_str());
   // Without shared memory the job runs normally, but without the line about dead processes.
   if (parallel::any(machine, page == MAP_FAILED)) return nullptr;
-  return static_cast<app::watching::Slot*>(page);
+  return static_cast<Slot*>(page);
 }
 
 }  // namespace
 
 const char* name(Phase phase) {
-  switch (phase) {
-    case Phase::roll_call:
-      return "roll-call";
-    case Phase::initialise:
-      return "initialise";
-    case Phase::waiting:
-      return "waiting";
-    case Phase::begin_step:
-      return "begin_step";
-    case Phase::solve:
-      return "solve";
-    case Phase::accept:
-      return "accept";
-    case Phase::output:
-      return "output";
-    case Phase::save:
-      return "save";
-    case Phase::load:
-      return "load";
-    case Phase::finalise:
-      return "finalise";
-  }
-  return "an unknown phase";
+  constexpr std::array names{"roll-call", "initialise", "waiting", "begin_step", "solve",
+                             "accept",    "output",     "save",    "load",       "finalise"};
+  static_assert(names.size() == std::size_t(Phase::finalise) + 1);
+  return names[std::size_t(phase)];
 }
 
 Watch::Watch(MPI_Comm world, const std::string& participant) {
   MPI_Comm machine;
   MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, parallel::comm_rank(world), MPI_INFO_NULL, &machine);
-  app::watching::board.count = parallel::comm_size(machine);
-  app::watching::board.mine = parallel::comm_rank(machine);
-  app::watching::board.whole_job = app::watching::board.count == parallel::comm_size(world);
-  app::watching::board.has_guests = parallel::comm_size(world) < parallel::comm_size(MPI_COMM_WORLD);
-  app::watching::Slot* slots = share_page(machine, app::watching::board.mine, app::watching::board.count);
+  board.count = parallel::comm_size(machine);
+  board.mine = parallel::comm_rank(machine);
+  board.whole_job = board.count == parallel::comm_size(world);
+  const int guests = parallel::comm_size(MPI_COMM_WORLD) - parallel::comm_size(world);
+  board.has_guests = guests > 0;
+  Slot* slots = share_page(machine, board.mine, board.count + guests);
   if (slots != nullptr) {
-    app::watching::Slot& slot = slots[app::watching::board.mine];
+    Slot& slot = slots[board.mine];
     std::strncpy(slot.participant, participant.c_str(), sizeof slot.participant - 1);
     slot.rank = -1;
     slot.time = -1;
     slot.phase = int(Phase::roll_call);
-    slot.alive = app::watching::now();
+    slot.alive = now();
     slot.pid = ::getpid();
   }
   MPI_Barrier(machine);
   MPI_Comm_free(&machine);
-  app::watching::board.slots = slots;
-  if (slots)
-    log::listen_for_life(
-        {&slots[app::watching::board.mine].alive, &slots[app::watching::board.mine].long_work});
-  app::watching::watch_waits();
+  board.slots = slots;
+  if (slots) log::listen_for_life({&slots[board.mine].alive, &slots[board.mine].long_work});
+  watch_waits();
   install();
 }
 
 void Watch::install() {
-  if (app::watching::board.slots == nullptr) return;
+  if (board.slots == nullptr) return;
   struct sigaction action {};
   action.sa_handler = on_terminate;
   sigaction(SIGTERM, &action, nullptr);
 }
 
 void Watch::set_rank(int rank) {
-  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].rank = rank;
+  if (board.slots) board.slots[board.mine].rank = rank;
+}
+
+/// Each process of the machine writes the same.
+void Watch::add_guest(const std::string& participant, const std::string& process) {
+  char machine[256] = "";
+  ::gethostname(machine, sizeof machine - 1);
+  const std::size_t at = process.find('@');
+  const int pid = std::atoi(process.c_str());
+  if (!board.slots || at == std::string::npos || process.substr(at + 1) != machine || pid <= 0 || gone(pid))
+    return;
+  Slot& slot = board.slots[board.count];
+  std::strncpy(slot.participant, participant.c_str(), sizeof slot.participant - 1);
+  slot.rank = -1;
+  slot.phase = int(Phase::waiting);  // its signs of life are its own affair
+  slot.guest = 1;
+  slot.pid = pid;
+  ++board.count;
 }
 
 void Watch::enter(Phase phase) {
   phase_ = phase;
-  if (!app::watching::board.slots) return;
-  app::watching::board.slots[app::watching::board.mine].phase = int(phase);
-  app::watching::board.slots[app::watching::board.mine].alive = app::watching::now();
+  if (!board.slots) return;
+  if (phase == Phase::finalise)  // guests may be gone from now on
+    for (int i = 0; i < board.count; ++i)
+      if (board.slots[i].guest) board.slots[i].finished = 1;
+  board.slots[board.mine].phase = int(phase);
+  board.slots[board.mine].alive = now();
 }
 
 void Watch::set_time(double time) {
-  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].time = time;
+  if (board.slots) board.slots[board.mine].time = time;
 }
 
 void Watch::limit_silence(double seconds) {
-  if (!app::watching::board.slots || seconds <= 0 || app::watching::board.count < 2) return;
+  if (!board.slots || seconds <= 0 || board.count < 2) return;
   guard_ = std::jthread([seconds](const std::stop_token& stop) {
     // Signals are handled by the main thread.
     sigset_t all;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
-    app::watching::Listener listener(seconds);
+    Listener listener(seconds);
     std::mutex mutex;
     std::condition_variable_any bell;
     std::unique_lock lock(mutex);
@@ -193,32 +196,29 @@ void Watch::limit_silence(double seconds) {
   });
 }
 
-bool Watch::stop_requested() {
-  return app::watching::board.slots && app::watching::board.slots[0].stop_requested;
-}
+bool Watch::stop_requested() { return board.slots && board.slots[0].stop_requested; }
 
 void Watch::stopped() {
-  if (app::watching::board.slots) app::watching::board.slots[0].stopped = 1;
+  if (board.slots) board.slots[0].stopped = 1;
 }
 
-bool Watch::has_stopped() { return app::watching::board.slots && app::watching::board.slots[0].stopped; }
+bool Watch::has_stopped() { return board.slots && board.slots[0].stopped; }
 
 bool Watch::claim_report() {
-  if (!app::watching::board.slots) return true;
-  for (int i = 0; i < app::watching::board.count; ++i)
-    if (std::strcmp(app::watching::board.slots[i].participant,
-                    app::watching::board.slots[app::watching::board.mine].participant) == 0)
-      return app::watching::board.slots[i].reported.exchange(1) == 0;
+  if (!board.slots) return true;
+  for (int i = 0; i < board.count; ++i)
+    if (std::strcmp(board.slots[i].participant, board.slots[board.mine].participant) == 0)
+      return board.slots[i].reported.exchange(1) == 0;
   return true;
 }
 
 void Watch::ending() {
-  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].ending = 1;
+  if (board.slots) board.slots[board.mine].ending = 1;
 }
 
 void Watch::finished() {
-  if (app::watching::board.slots) app::watching::board.slots[app::watching::board.mine].finished = 1;
-  // A launcher that cleans up after another exit code must not change the exit code of this process.
+  if (board.slots) board.slots[board.mine].finished = 1;
+  // A launcher that clears up after another process's exit code must not spoil this one's.
   std::signal(SIGTERM, SIG_IGN);
 }
 

@@ -38,6 +38,8 @@ class Watch {
   static void install();
   /// Sets the rank within the participant, once it is known.
   void set_rank(int rank);
+  /// An external program's process ("PID@MACHINE"), which is named if it dies. Before limit_silence().
+  void add_guest(const std::string& participant, const std::string& process);
   void enter(Phase phase);
   Phase phase() const { return phase_; }
   void set_time(double time);

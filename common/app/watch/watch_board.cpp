@@ -81,7 +81,9 @@ void describe(Line& line, const Slot& slot, std::string_view fate) {
     line << " (rank " << long(slot.rank) << ", pid " << long(slot.pid) << ")";
   else
     line << " (pid " << long(slot.pid) << ")";
-  line << " " << fate << "; last heard of in " << name(Phase(slot.phase.load()));
+  line << " " << fate;
+  if (slot.guest) return;
+  line << "; last heard of in " << name(Phase(slot.phase.load()));
   if (slot.time >= 0) line << " at t = " << slot.time.load() << " s";
 }
 

@@ -15,8 +15,8 @@ namespace couplet::app::watching {
 
 struct Slot {
   char participant[64];
-  std::atomic<int> pid, rank, phase, ending, finished, terminating, reported, spoke_for_all;
-  std::atomic<int> stop_requested, stopped;  // of the job, in the first slot
+  std::atomic<int> pid, rank, phase, guest, ending, finished, terminating, reported, spoke_for_all;
+  std::atomic<int> stop_requested, stopped;  // of the job: in the first slot
   std::atomic<double> time;
   std::atomic<double> alive;        // last sign of life [s] on the machine's steady clock
   std::atomic<int> long_work;       // above 0: processor time is the sign (log::LongWork)
@@ -28,7 +28,7 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<double>::is_a
 
 // Signal handlers can only use static storage. Written once, before the handler is installed.
 struct Board {
-  Slot* slots = nullptr;  // one per process of this machine, by world rank
+  Slot* slots = nullptr;  // one a process of this machine, by world rank; behind them those of guests
   int count = 0;
   int mine = 0;
   bool whole_job = false;  // all of the project's processes of the job are on this machine

@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
               : how == "words" ? "a\x1f"
                                  "b\x1f"
                                  "c\x1fhash\x1f\x1f"
-                                 "1\x1fnumber\x1frank\x1f\x1e"
+                                 "1\x1fnumber\x1frank\x1f\x1f\x1e"
                                : std::string(3, '\x1e'));
     stay();
   }

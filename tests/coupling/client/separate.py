@@ -174,7 +174,7 @@ def answer(place, data):
 def noise(number, place, token):
     """Greetings that are almost right, and bytes that are nothing."""
     generator = random.Random(20261123)
-    good = f"couplet-join 5 {token} 0 1 body\n".encode()
+    good = f"couplet-join 6 {token} 0 1 body\n".encode()
     welcome = 0
     for _ in range(number):
         data = bytearray(good)
@@ -207,11 +207,11 @@ def strangers(number):
             if way == "unix":
                 check("the socket's folder is for its owner alone", stat.S_IMODE(os.stat(pathlib.Path(place[1]).parent).st_mode) == 0o700)
             wrong = "0" * len(token)
-            check("a wrong token is refused", "the token is wrong" in answer(place, f"couplet-join 5 {wrong} 0 1 body\n".encode()))
-            check("so is part of the token", "the token is wrong" in answer(place, f"couplet-join 5 {token[:32]} 0 1 body\n".encode()))
-            check("another version", "not the greeting of version 5" in answer(place, f"couplet-join 4 {token} 0 1 body\n".encode()))
-            check("another participant", "the relay of 'body'" in answer(place, f"couplet-join 5 {token} 0 1 fluid\n".encode()))
-            check("another number of processes", "expected process 0 of 1" in answer(place, f"couplet-join 5 {token} 1 2 body\n".encode()))
+            check("a wrong token is refused", "the token is wrong" in answer(place, f"couplet-join 6 {wrong} 0 1 body\n".encode()))
+            check("so is part of the token", "the token is wrong" in answer(place, f"couplet-join 6 {token[:32]} 0 1 body\n".encode()))
+            check("another version", "not the greeting of version 6" in answer(place, f"couplet-join 4 {token} 0 1 body\n".encode()))
+            check("another participant", "the relay of 'body'" in answer(place, f"couplet-join 6 {token} 0 1 fluid\n".encode()))
+            check("another number of processes", "expected process 0 of 1" in answer(place, f"couplet-join 6 {token} 1 2 body\n".encode()))
             with connect(place):  # says nothing and stays: refused after a second
                 check(f"{number} greetings that are almost right: none is let in", noise(number, place, token) == 0)
             guest = participant(folder, bodies["c++"])

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs on preCICE's interface in a job: C++, C, Python and Fortran against each other, all schemes and sub-steps against the same
 scheme computed here, several processes, wrong calls, and the import of configurations.
-Usage: run.py PROJECT BUILD MPIRUN... -- languages | schemes | waveforms | ranks | meshes | wrong | import"""
+Usage: run.py PROJECT BUILD MPIRUN... -- languages | schemes | waveforms | ranks | meshes | wrong | answers | import"""
+import json
 import os
 import pathlib
 import re
@@ -22,7 +23,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from checks import check, end  # noqa: E402
 
 here, python = project / "tests/coupling/precice", "/usr/bin/python3"
-environment = dict(os.environ, PYTHONPATH=str(project / "client/precice/python"), COUPLET_PRECICE_LIBRARY=str(build / "precice/lib/libprecice.so.3"))
+os.environ["COUPLET_PRECICE_LIBRARY"] = str(build / "precice/lib/libprecice.so.3")
+environment = dict(os.environ, PYTHONPATH=str(project / "client/precice/python"))
 programs = {"c++": [build / "bin/tests/precice_oscillators"], "c": [build / "bin/tests/precice_oscillators_c"], "python": [python, here / "oscillators.py"]}
 
 
@@ -323,7 +325,87 @@ def meshes():
             check(f"two meshes in one place keep their data apart, coupler on {coupler}", done.returncode == 0 and done.stdout.count("has seen what it should") == 2, done.stderr[-800:])
 
 
-SAID = {"unknown participant": '"Middle" is not defined', "no configuration": '"none.xml" cannot be opened', "rank": "The process index is 1", "advance first": "initialize() has to be called",
+AMOUNTS = """<precice-configuration>
+  <data:vector name="Force" />
+  <mesh name="Left-Mesh" dimensions="DIM"><use-data name="Force" /></mesh> <mesh name="Right-Mesh" dimensions="DIM"><use-data name="Force" /></mesh>
+  <participant name="Left"><provide-mesh name="Left-Mesh" /><receive-mesh name="Right-Mesh" from="Right" /><write-data name="Force" mesh="Left-Mesh" />
+    <mapping:KIND direction="write" from="Left-Mesh" to="Right-Mesh" constraint="conservative" /></participant>
+  <participant name="Right"><provide-mesh name="Right-Mesh" /><read-data name="Force" mesh="Right-Mesh" /></participant>
+  <m2n:sockets acceptor="Left" connector="Right" />
+  <coupling-scheme:serial-explicit>
+    <participants first="Left" second="Right" /><time-window-size value="1" /><max-time value="2" /><exchange data="Force" mesh="Right-Mesh" from="Left" to="Right" />
+  </coupling-scheme:serial-explicit>
+</precice-configuration>
+"""
+# The first controls and gets a datum for that alone, which it does not read.
+CHAIN = """<precice-configuration>
+  <data:scalar name="Left" /> <data:scalar name="Near" /> <data:scalar name="Far" /> <data:scalar name="Right" />
+  <mesh name="Left-Mesh" dimensions="2"><use-data name="Left" /><use-data name="Near" /></mesh> <mesh name="Right-Mesh" dimensions="2"><use-data name="Right" /><use-data name="Far" /></mesh>
+  <mesh name="Middle-Mesh" dimensions="2"><use-data name="Left" /><use-data name="Near" /><use-data name="Far" /><use-data name="Right" /></mesh>
+  <participant name="Left"><provide-mesh name="Left-Mesh" /><receive-mesh name="Right-Mesh" from="Right" /><write-data name="Left" mesh="Left-Mesh" /><read-data name="Near" mesh="Left-Mesh" /></participant>
+  <participant name="Middle"><provide-mesh name="Middle-Mesh" /><receive-mesh name="Left-Mesh" from="Left" /><receive-mesh name="Right-Mesh" from="Right" />
+    <read-data name="Left" mesh="Middle-Mesh" /><write-data name="Near" mesh="Middle-Mesh" /><write-data name="Far" mesh="Middle-Mesh" /><read-data name="Right" mesh="Middle-Mesh" />
+    <mapping:nearest-neighbor direction="read" from="Left-Mesh" to="Middle-Mesh" constraint="consistent" /><mapping:nearest-neighbor direction="write" from="Middle-Mesh" to="Left-Mesh" constraint="consistent" />
+    <mapping:nearest-neighbor direction="read" from="Right-Mesh" to="Middle-Mesh" constraint="consistent" /><mapping:nearest-neighbor direction="write" from="Middle-Mesh" to="Right-Mesh" constraint="consistent" />
+  </participant>
+  <participant name="Right"><provide-mesh name="Right-Mesh" /><write-data name="Right" mesh="Right-Mesh" /><read-data name="Far" mesh="Right-Mesh" /></participant>
+  <m2n:sockets acceptor="Left" connector="Middle" /><m2n:sockets acceptor="Middle" connector="Right" /><m2n:sockets acceptor="Left" connector="Right" />
+  <coupling-scheme:multi>
+    <participant name="Left" control="yes" /><participant name="Middle" /><participant name="Right" />
+    <max-time value="3" /><time-window-size value="1" /><max-iterations value="60" />
+    <exchange data="Left" mesh="Left-Mesh" from="Left" to="Middle" /><exchange data="Near" mesh="Left-Mesh" from="Middle" to="Left" />
+    <exchange data="Far" mesh="Right-Mesh" from="Middle" to="Right" /><exchange data="Right" mesh="Right-Mesh" from="Right" to="Middle" /><exchange data="Right" mesh="Right-Mesh" from="Right" to="Left" />
+    <relative-convergence-measure data="Near" mesh="Left-Mesh" limit="1e-9" /><relative-convergence-measure data="Right" mesh="Right-Mesh" limit="1e-9" />
+  </coupling-scheme:multi>
+</precice-configuration>
+"""
+
+
+def small(folder, text, case, number=0, people=("Left", "Right"), coupler=1):
+    """What the programs of small.py print, by participant."""
+    imported(folder, text)
+    done = launch(folder, {name: [python, here / "small.py", case, name, "precice-config.xml", number] for name in people}, ranks={"coupler": coupler})
+    check(f"{case} {number:g}: runs", done.returncode == 0, done.stderr[-800:])
+    return {name: json.loads(rows) for name, rows in re.findall(r"(Left|Middle|Right) (\[\[.*?\}\]\])", done.stdout)}  # lines of two may be one
+
+
+def answers():
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        for scheme, windows in (("serial-explicit", 3), ("serial-explicit", 1), ("parallel-explicit", 3), ("serial-implicit", 2), ("parallel-implicit", 1)):
+            seen = small(folder, configuration(scheme, initialize="false", end=windows / 10), "time")
+            off = max((abs(read[f"Displacement-{'Right' if me == 'Left' else 'Left'}"][0] - (10 if me == "Left" else 1) * t) for me, rows in seen.items() for t, _, read in rows), default=1)
+            check(f"{scheme}, {windows} windows: after each of them the other's value at that time is read", off < 1e-12 and [len(rows) for rows in seen.values()] == [windows] * 2, f"{off:.1e}")
+        found = []
+        for stiffness in (1e3, 1e6, 1e9):
+            text = configuration("parallel-implicit", initialize="false", end=0.3).replace('limit="1e-12"', 'limit="1e-9"')
+            rows = small(folder, text, "springs", stiffness).get("Left", [])
+            exact = 1000 / (1 + np.array([2, 1, 0.5]) * stiffness)
+            found.append([passes for _, passes, _ in rows])
+            off = max((np.abs(np.array(read["Displacement-Right"]) * (1 + np.array([2, 1, 0.5])) * stiffness / 1000 - 1).max() for _, _, read in rows), default=1)
+            check(f"springs of {stiffness:g} N/m, side by side: exact", off < 1e-6, f"{off:.1e} in {found[-1]} passes")
+        check("in as many passes whatever the units", found[0] and found.count(found[0]) == 3, found)
+        for dim in (2, 3):
+            for kind in ("nearest-projection", "rbf-global-direct", "nearest-neighbor"):
+                for coupler in (1, 2, 3):
+                    seen = small(folder, AMOUNTS.replace("KIND", kind).replace("DIM", str(dim)), "amounts", dim, coupler=coupler)
+                    taken = np.array(seen.get("Right", [[0, 0, {"Force": np.zeros((3 ** (dim - 1), dim))}]])[-1][2]["Force"])[:, 1].reshape(-1, 3)
+                    moment = (taken * [0, 0.5, 1]).sum()
+                    check(f"{kind} in {dim} dimensions, coupler on {coupler}: all forces arrive, but for nearest-neighbor with their moment", abs(taken.sum() - 5 ** (dim - 1)) < 1e-12 and
+                          (kind == "nearest-neighbor" or abs(moment - 5 ** (dim - 1) / 2) < 1e-12), taken)
+                    if kind == "nearest-projection":
+                        sides = np.array([1.5, 2, 1.5])
+                        check("as projected by hand", np.abs(taken - sides if dim == 2 else taken.sum(axis=0) - 5 * sides).max() < 1e-12, taken)
+        seen = small(folder, CHAIN, "chain", people=("Left", "Middle", "Right"))
+        for t, _, read in seen.get("Middle", []):
+            # Left, Near, Far, Right
+            exact = np.linalg.solve([[1, -0.5, 0, 0], [0.4, 1, 0, -0.3], [-0.6, 0, 1, 0.2], [0, 0, -0.7, 1]], [t, 0, 0, 1])
+            off = max(abs(read["Left"][0] - exact[0]), abs(read["Right"][0] - exact[3]))
+            check(f"three in a row, the first controls, at {t:g}: exact", off < 1e-7, f"{off:.1e}")
+        check("three in a row: to the end", len(seen.get("Middle", [])) == 3, seen)
+
+
+SAID = {"unknown participant": '"Middle" is not defined', "no configuration": '"none.xml" cannot be opened', "rank": "The process index is 1", "second participant": 'this process has been "Left"', "advance first": "initialize() has to be called",
         "read first": "cannot be called before initialize()", "unknown mesh": 'The mesh named "Mesh" is unknown', "received mesh": "does not provide the mesh", "coordinates": "2 coordinates and 6 ids",
         "no vertex": "the vertex id 0 is invalid", "edge": "the vertex id 0 is invalid", "twice in an edge": "stands twice", "initial data": "Initial data has to be written",
         "initialize twice": "may only be called once", "mesh is locked": "is locked", "unknown data": 'The data "Force" is unknown', "data is read": "does not write the data",
@@ -369,6 +451,16 @@ def ended(folder):
         os.kill(found[0] if victim == "Right" else process.pid, number)
         out, told = process.communicate(timeout=30)
         check(f"{victim} ended by signal {number}: the reason is named, nothing to resume", process.returncode not in (0, 3) and said in told and "couplet resume" not in told, (process.returncode, told[-500:]))
+    plain = [*mpirun, "-n", 1, build / "bin/coupler", "case.yaml", *(w for n in ("Left", "Right") for w in (":", "-n", 1, programs["c++"][0], n, "precice-config.xml", 1))]
+    process = subprocess.Popen(list(map(str, plain)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+    for words in process.stdout:
+        if "step 3 " in words:
+            break
+    victim = next(int(pid) for pid in os.listdir("/proc") if pid.isdigit() and words_of(pid)[:2] == [str(programs["c++"][0]), "Right"] and os.readlink(f"/proc/{pid}/cwd") == str(folder.resolve()))
+    os.kill(victim, signal.SIGKILL)
+    out, told = process.communicate(timeout=30)
+    check("a program that is killed is named without couplet run, too", process.returncode != 0 and f"participant 'Right' (pid {victim}) was killed or has ended unexpectedly" in told and
+          "'Left'" not in told and "MPI_ERR" not in told, (process.returncode, told[-800:]))
     done = subprocess.run(list(map(str, [*line, "--set", "simulation.checkpoint.interval=1"])), cwd=folder, capture_output=True, text=True, env=surroundings, timeout=60)
     check("checkpoints are refused", done.returncode == 2 and "simulation.checkpoint.interval: 1 s here, but 'Left'" in done.stderr, done.stderr[-500:])
     pages = Pages()
@@ -409,18 +501,18 @@ def edited(folder, words):
 
 GOOD = configuration("serial-implicit", substeps="false")
 BAD = {  # replaced, by what, what is said
-    "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: direct access to the received mesh 'Right-Mesh'"),
+    "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: <receive-mesh> with api-access is not supported: direct access"),
     "just-in-time mapping": ('from="Right-Mesh" to="Left-Mesh" constraint', 'from="Right-Mesh" constraint', "just-in-time mapping"),
     "actions": ("<m2n:sockets", '<action:summation /><m2n:sockets', "<action:summation> is not supported: actions on data"),
     "gradients": ("mapping:nearest-neighbor direction", "mapping:nearest-neighbor-gradient direction", "mapping with gradients"),
-    "scaled": ('constraint="consistent"', 'constraint="scaled-consistent-surface"', "the constraint 'scaled-consistent-surface' is not supported"),
+    "scaled": ('constraint="consistent"', 'constraint="scaled-consistent-surface"', 'with constraint "scaled-consistent-surface" is not supported'),
     "another element": ("<m2n:sockets", "<shape><m2n:sockets", ":34: mismatched tag"),
     "an unknown element": ("<m2n:sockets", "<shape /><m2n:sockets", "<shape> is not known"),
     "version 2": ("precice-configuration", "solver-interface", "<precice-configuration> of preCICE's version 3 is expected"),
     "no end": ('<max-time value="1" />', "", "neither <max-time> nor <max-time-windows>"),
-    "a degree": ("<data:scalar name", '<data:scalar waveform-degree="-1" name', ":5: the waveform-degree '-1' of 'Displacement-Left' is not supported"),
-    "a degree without sub-steps": ('<data:scalar name="Displacement-Left" />', '<data:scalar name="Displacement-Left" waveform-degree="2" />', ":28: waveform-degree 2 of 'Displacement-Left' without"),
-    "windows by the first": ('<time-window-size value="0.1" />', '<time-window-size value="-1" method="first-participant" />', "time windows by the first participant"),
+    "a degree": ("<data:scalar name", '<data:scalar waveform-degree="-1" name', ':5: waveform-degree of "Displacement-Left" is "-1"; expected a whole number from 0 to 99'),
+    "a degree without sub-steps": ('<data:scalar name="Displacement-Left" />', '<data:scalar name="Displacement-Left" waveform-degree="2" />', ':28: waveform-degree 2 of "Displacement-Left" needs its values at the sub-steps'),
+    "windows by the first": ('<time-window-size value="0.1" />', '<time-window-size value="-1" method="first-participant" />', '<time-window-size method="first-participant"> is not supported'),
     "data that are read and never exchanged": ('<exchange data="Displacement-Left"', '<exchange data="Displacement-Right"', "reads 'Displacement-Left', but no <exchange> brings it there"),
     "exchanged data without a name": ('<exchange data="Displacement-Left"', '<exchange data="Displacment"', "<exchange>: the data 'Displacment' is not one of: "),
     "an attribute that nobody knows": ('initialize="true"', 'initialise="true"', ":29: <exchange>: the attribute 'initialise' is not known, only: data, mesh, from, to, initialize, substeps."),
@@ -461,5 +553,5 @@ def imports():
         check("a higher degree is taken as it is", done.returncode == 0 and "waveform" not in done.stdout, done.stdout)
 
 
-{"languages": languages, "schemes": schemes, "waveforms": waveforms, "ranks": ranks, "meshes": meshes, "wrong": wrong, "import": imports, "separate": separately}[what]()
+{"languages": languages, "schemes": schemes, "waveforms": waveforms, "ranks": ranks, "meshes": meshes, "wrong": wrong, "answers": answers, "import": imports, "separate": separately}[what]()
 end()

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   refused("no configuration", [&] { precice::Participant("Left", "none.xml", 0, 1); });
   refused("rank", [&] { precice::Participant("Left", xml, 1, 1); });
   precice::Participant p("Left", xml, 0, 1);
+  refused("second participant", [&] { precice::Participant("Right", xml, 0, 1); });
   std::vector<double> one(1), two(2), line{0, 0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0}, values(6);
   std::vector<int> ids(6), first{0};
   refused("advance first", [&] { p.advance(0.1); });

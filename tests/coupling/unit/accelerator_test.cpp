@@ -34,7 +34,7 @@ const ResidualMeasure residual_of = [](const Iterate& x, const Iterate& image) {
   return std::vector<Residual>{{relative, std::sqrt(r / double(x.unknown.size()))}};
 };
 
-const IterationObserver nobody = [](int, const Residual&, double) {};
+const IterationObserver nobody = [](int, const std::vector<Residual>&, double) {};
 
 using Type = AccelerationParameters::Type;
 

@@ -75,6 +75,17 @@ TEST(MapsOverRanks, matched_points_find_their_twins_on_any_rank) {
   for (std::size_t i = 0; i < carried.size(); ++i) EXPECT_EQ(carried[i], to.points[i].z());
 }
 
+/// Of values of two components at points of all ranks: sums, first moments about x and y.
+std::vector<double> sums(const std::vector<Vec3>& points, const std::vector<double>& values) {
+  std::vector<double> list(6, 0.);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Vec3& p = points[i / 2];
+    list[i % 2] += values[i], list[2 + i % 2] += p.x() * values[i], list[4 + i % 2] += p.y() * values[i];
+  }
+  for (double& value : list) value = sum(world, value);
+  return list;
+}
+
 /// Both kinds of maps of second order between parts, against those between the whole surfaces on one rank.
 void expect_as_on_one_rank(const Interface& a, const Interface& b, MappingParameters::Type type) {
   using Place = Interface::Place;
@@ -83,19 +94,26 @@ void expect_as_on_one_rank(const Interface& a, const Interface& b, MappingParame
   const Side from(world, "a", tests::part_of(world, a)), to(world, "b", tests::part_of(world, b)),
       all_from(MPI_COMM_SELF, "a", a), all_to(MPI_COMM_SELF, "b", b);
   for (const auto kind : {Mapping::Kind::consistent, Mapping::Kind::conservative})
-    for (const Place place : {Place::vertices, Place::faces}) {
-      if (kind == Mapping::Kind::conservative && place == Place::vertices) continue;
-      const PointSet mine = from.places(place);
+    for (const auto& [given, taken] :
+         {std::pair{Place::vertices, Place::vertices}, std::pair{Place::vertices, Place::faces},
+          std::pair{Place::faces, Place::vertices}, std::pair{Place::faces, Place::faces}}) {
+      const PointSet mine = from.places(given), theirs = to.places(taken);
       std::vector<double> values;
       for (const Vec3& p : mine.points)
         values.insert(values.end(), {std::sin(9 * p.x() + p.y()), p.y() * p.y()});
-      const Mapping map(world, kind, mine, to.places(place), parameters);
-      const Mapping alone(MPI_COMM_SELF, kind, all_from.places(place), all_to.places(place), parameters);
+      const Mapping map(world, kind, mine, theirs, parameters);
+      const Mapping alone(MPI_COMM_SELF, kind, all_from.places(given), all_to.places(taken), parameters);
       const auto carried = all_gather(world, map.apply(values, 2)),
                  expected = alone.apply(all_gather(world, values), 2);
       ASSERT_EQ(carried.size(), expected.size());
       for (std::size_t i = 0; i < carried.size(); ++i)
-        ASSERT_NEAR(carried[i], expected[i], 1e-14) << int(type) << int(kind) << int(place) << " at " << i;
+        ASSERT_NEAR(carried[i], expected[i], 1e-14)
+            << int(type) << int(kind) << int(given) << int(taken) << " at " << i;
+      if (kind == Mapping::Kind::consistent) continue;
+      const auto out = sums(mine.points, values), in = sums(theirs.points, map.apply(values, 2));
+      for (std::size_t i = 0; i < out.size(); ++i)
+        EXPECT_NEAR(out[i], in[i], 1e-12 * double(expected.size()))
+            << int(type) << int(given) << int(taken) << " sum " << i;
     }
 }
 
@@ -110,10 +128,34 @@ TEST(MapsOverRanks, of_second_order_are_built_in_parts_as_on_one_rank) {
   }
 }
 
+/// n vertices on a line of 1 m, joined by edges.
+Interface line(int n) {
+  Interface s;
+  s.dim = 2;
+  for (int i = 0; i < n; ++i) s.vertices.emplace_back(i / (n - 1.), 0, 0);
+  for (Index i = 0; i + 1 < n; ++i) tests::add_face(s, {i, i + 1}, {0, 1 / (n - 1.), 0});
+  return s;
+}
+
+TEST(MapsOverRanks, an_amount_at_a_vertex_goes_to_where_it_projects) {
+  const Side from(world, "a", tests::part_of(world, line(5))), to(world, "b", tests::part_of(world, line(3)));
+  MappingParameters parameters;
+  for (const auto type : {MappingParameters::Type::projection, MappingParameters::Type::rbf}) {
+    parameters.type = type;
+    const PointSet mine = from.places(Place::vertices), theirs = to.places(Place::vertices);
+    const Mapping map(world, Mapping::Kind::conservative, mine, theirs, parameters);
+    const auto taken = all_gather(world, map.apply(std::vector<double>(mine.points.size(), 1.), 1));
+    ASSERT_EQ(taken.size(), 3u);
+    EXPECT_NEAR(taken[0] + taken[1] + taken[2], 5, 1e-14);
+    EXPECT_NEAR(taken[1] / 2 + taken[2], 2.5, 1e-14);
+    EXPECT_NEAR(taken[0], type == MappingParameters::Type::projection ? 1.5 : taken[2], 1e-14);
+  }
+}
+
 TEST(MapsOverRanks, need_of_the_other_surface_what_is_near_alone) {
   const Side sheet(world, "sheet", tests::part_of(world, tests::plate(24, false, 1)));
   const PointSet mine = sheet.places(Interface::Place::faces);
-  const Nearby near = nearby(world, mine.points, {}, 4, mine);
+  const PointSet near = nearby(world, mine.points, {}, 4, mine);
   // A rank's own part (rows of the sheet) and the row beside it on each side.
   const std::size_t rows = 24, row = 48;
   EXPECT_LE(near.positions.size(), comm_size(world) > 1 ? mine.points.size() + 2 * row : rows * row);

@@ -109,7 +109,7 @@ TEST(Messages, another_kind_or_version_is_refused) {
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "A reply has protocol version 99, but this program uses version 5: use programs of one version.");
+        "A reply has protocol version 99, but this program uses version 6: use programs of one version.");
   }
 }
 

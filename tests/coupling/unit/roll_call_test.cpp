@@ -40,6 +40,16 @@ TEST(RollCall, names_who_is_missing_and_how_to_start) {
       "case.yaml");
 }
 
+TEST(RollCall, launch_line_has_a_placeholder_for_a_program_that_is_not_there) {
+  std::vector<Expected> foreign = expected;
+  foreign[1].program = "no-such-program";
+  std::vector<Attendant> list = come({"fluid", "coupler"});
+  list.front().case_file = "(guest)", list.front().case_hash = 0;
+  EXPECT_THAT(
+      judge(list, foreign, true).problem,
+      HasSubstr("mpirun -n 1 coupler case.yaml : -n 1 <command of 'fluid'> : -n 1 solid_solver case.yaml"));
+}
+
 TEST(RollCall, launch_line_keeps_the_ranks_that_have_come) {
   std::vector<Attendant> list = come({"coupler", "fluid"});
   list.push_back(list.back());

@@ -41,12 +41,14 @@ TEST(Unknown, one_after_the_other_it_is_what_the_later_gives_to_the_earlier_side
 TEST(Unknown, several_data_are_scaled_to_like_size_and_come_back_as_they_were) {
   Pair p;
   const std::vector<Exchange> given{{{"force", {1e6}}}, {{"displacement", {1e-4}}, {"velocity", {0.1}}}};
-  EXPECT_TRUE(p.serial.scaled());
-  EXPECT_FALSE(p.parallel.scaled());
+  EXPECT_TRUE(p.serial.parts()[0].scaled);
+  EXPECT_FALSE(p.parallel.parts()[0].scaled);
   p.parallel.scale(given);
   const Iterate x = p.parallel.gather(given);
   ASSERT_EQ(x.unknown.size(), 2u);
   for (const double v : x.unknown) EXPECT_DOUBLE_EQ(v, 1);
+  EXPECT_EQ(x.rider[0], 0.1);
+  EXPECT_DOUBLE_EQ(predict(p.parallel, {x, {}, {}, 0, 0}, 0.01, 1).unknown[0], 1 + 0.01 * 0.1 / 1e-4);
   std::vector<Exchange> again(2);
   p.parallel.scatter(x, again);
   for (std::size_t i = 0; i < 2; ++i)
@@ -56,6 +58,28 @@ TEST(Unknown, several_data_are_scaled_to_like_size_and_come_back_as_they_were) {
   image.unknown[0] *= 1.01;
   image.unknown[1] *= 1.02;
   for (const Residual& r : p.parallel.measure(x, image)) EXPECT_GT(r.relative, 0.009);
+}
+
+TEST(Unknown, data_without_units_are_scaled_each_by_its_first_values_that_are_not_zero) {
+  const std::vector<Interface::Datum> a{{"alfa", "1", Place::vertices, 1}},
+      b{{"beta", "1", Place::vertices, 1}};
+  const std::vector<Side> sides{point("left", b, a), point("right", a, b)};
+  const Links links(MPI_COMM_SELF, sides, {});
+  Unknown unknown(MPI_COMM_SELF, sides, links, {0, 1}, true);
+  unknown.scale({{{"alfa", {0}}}, {{"beta", {1e-6}}}});
+  EXPECT_EQ(unknown.parts()[0].scaled + 2 * unknown.parts()[1].scaled,
+            unknown.parts()[0].datum.name == "alfa" ? 2 : 1);
+  const std::vector<Exchange> later{{{"alfa", {500}}}, {{"beta", {3e-6}}}};
+  unknown.scale(later);
+  const std::vector<double> weights = unknown.weights();
+  Unknown restored(MPI_COMM_SELF, sides, links, {0, 1}, true);
+  restored.restore_weights(weights);
+  for (Unknown* one : {&unknown, &restored}) {
+    const Iterate x = one->gather(later);
+    EXPECT_DOUBLE_EQ(x.unknown[0] * x.unknown[1], 3);
+    const std::vector<Residual> r = one->measure(x, x);
+    EXPECT_DOUBLE_EQ(r[0].size * r[1].size, 500 * 3e-6);
+  }
 }
 
 TEST(Unknown, rest_is_a_start_for_motion_alone) {

@@ -31,6 +31,7 @@ def text_of(found, file, output):
 def run(arguments):
     file = arguments.configuration
     found = Import(read(file))
+    found.ask_library(file)
     if found.refusals:
         raise Wrong("\n".join(f"{file}:{line}: {why}." for line, why in sorted(set(found.refusals))))
     for line, note in sorted(found.notes):

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Case for a preCICE configuration, with its differences (notes) and unsupported features (refusals), each with its line."""
+"""The case that a configuration of preCICE asks for, what of it differs here (notes), and what is not supported (refusals), each
+with its line."""
+import ctypes
 import math
+import os
+import pathlib
 import re
 
+from couplet import places
 from couplet.precice.elements import MAPPED, REFUSED, SILENT, WITHOUT_EFFECT, digest, listed
 
-TRUE = ("true", "1", "yes", "on")
 KINDS = {"nearest-neighbor": ("nearest", 0), "nearest-projection": ("projection", 1), "rbf": ("rbf", 2)}
 MEASURES = ("relative-convergence-measure", "absolute-convergence-measure", "absolute-or-relative-convergence-measure")
 ACCELERATIONS = {"constant": "constant", "aitken": "aitken", "IQN-ILS": "iqn-ils", "IQN-IMVJ": "iqn-mvj"}
@@ -17,7 +21,7 @@ class Import:
         self.schemes = root.starting("coupling-scheme:")
         for element in root.walk():
             self._look_at(element)
-        self._participants()
+        self.case["participants"] = {p.get("name"): {"program": "precice"} for p in root.all("participant")}
         self._names()
         if self.schemes:
             self._scheme()
@@ -49,34 +53,19 @@ class Import:
         for key in e.attributes:
             if key not in words:
                 self._refuse(e, f"<{e.name}>: the attribute '{key}' is not known" + (f", only: {', '.join(words)}" if words else ""))
-        if e.name == "receive-mesh" and (e.get("api-access") in TRUE or e.get("direct-access") in TRUE):
-            self._refuse(e, f"direct access to the received mesh '{e.get('name')}' is not supported")
-        if e.name.startswith("mapping:") and not (e.get("from") and e.get("to")):
-            self._refuse(e, f"<{e.name}> without from or to is not supported: just-in-time mapping")
-        if e.get("constraint").startswith("scaled"):
-            self._refuse(e, f"the constraint '{e.get('constraint')}' is not supported")
-        if e.name == "time-window-size" and e.get("method") == "first-participant":
-            self._refuse(e, "time windows by the first participant are not supported")
-        if e.name.startswith("data:") and not re.fullmatch("[0-9]{1,2}", e.get("waveform-degree", "1")):
-            self._refuse(e, f"the waveform-degree '{e.get('waveform-degree')}' of '{e.get('name')}' is not supported; expected a whole number from 0 to 99")
-        if e.name == "exchange" and e.get("substeps", "true") not in TRUE:
-            degree = next((d.get("waveform-degree", "1") for d in self.root.starting("data:") if d.get("name") == e.get("data")), "1")
-            if degree.isdigit() and int(degree) > 1:
-                self._refuse(e, f"waveform-degree {degree} of '{e.get('data')}' without the values at its sub-steps (substeps='{e.get('substeps')}') is not supported")
 
-    # -- who takes part -----------------------------------------------------------------------------------------------
-    def _participants(self):
-        for p in self.root.all("participant"):
-            if not p.all("provide-mesh"):
-                self._refuse(p, f"the participant '{p.get('name')}' provides no mesh, which is not supported")
-            received = {m.get("name") for m in p.all("receive-mesh")}
-            for d in p.all("read-data", "write-data"):
-                if d.get("mesh") in received:
-                    self._refuse(d, f"data on the received mesh '{d.get('mesh')}' are not supported: direct access and just-in-time mapping")
-            sizes = {m.get("dimensions") for m in self.root.all("mesh") if m.get("name") in {q.get("name") for q in p.all("provide-mesh")}}
-            if len(sizes) > 1:
-                self._refuse(p, f"meshes of two and of three dimensions in one participant ('{p.get('name')}') are not supported")
-        self.case["participants"] = {p.get("name"): {"program": "precice"} for p in self.root.all("participant")}
+    def ask_library(self, file):
+        """What the library refuses of the configuration when its programs start: its rules are not repeated here."""
+        places_of = [os.environ.get("COUPLET_PRECICE_LIBRARY", ""), *(places.build() / part / "libprecice.so.3" for part in ("precice/lib", "lib/couplet/precice/lib"))]
+        library = next((path for path in map(pathlib.Path, places_of) if path.is_file()), None)
+        if library is None:
+            return self._note(self.root, f"not checked by the library, which is not at {places_of[1]}")
+        ask = ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL).couplet_precice_problem
+        ask.restype = ctypes.c_char_p
+        for name in self.case["participants"]:
+            if problem := ask(os.fsencode(file), name.encode()).decode(errors="replace").removesuffix("."):
+                line, _, why = problem.removeprefix(f"{file}:").partition(": ")
+                self.refusals.append((int(line), why) if line.isdigit() else (self.root.line, problem.removeprefix(f"{file}: ")))
 
     def _names(self):
         """Checks for unknown names, and for data that are read but never exchanged, which would be zero."""

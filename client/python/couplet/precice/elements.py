@@ -95,7 +95,9 @@ MAPPED = {
 }
 # Elements that do not affect the result and are not used.
 SILENT = {"log", "sink", "profiling", "m2n:", "intra-comm:", "master:", "data", "executor:", "imvj-restart-mode"}
-# Elements that do not affect the result, with their replacement.
+# Refused by the library itself.
+SILENT |= {"mapping:nearest-neighbor-gradient", "mapping:axial-geometric-multiscale", "mapping:radial-geometric-multiscale", "use-mesh"}
+# Has no part in the answer: what there is in its place.
 WITHOUT_EFFECT = {
     "export:": "`coupling.interface-output: true` writes the data of all interfaces for ParaView",
     "watch-point": "no watch at a point: `coupling.watch` has integrals", "watch-integral": "`coupling.watch` has integrals over interfaces",
@@ -103,11 +105,9 @@ WITHOUT_EFFECT = {
 }
 # Elements that the library and the coupler do not support.
 REFUSED = {
-    "action:": "actions on data", "mapping:nearest-neighbor-gradient": "mapping with gradients of data", "mapping:linear-cell-interpolation": "interpolation inside cells of a volume",
-    "mapping:axial-geometric-multiscale": "mapping between dimensions", "mapping:radial-geometric-multiscale": "mapping between dimensions",
+    "action:": "actions on data", "mapping:linear-cell-interpolation": "interpolation inside cells of a volume",
     "residual-relative-convergence-measure": "convergence against the first residual of a window", "min-iteration-convergence-measure": "a least number of iterations",
-    "coupling-scheme:compositional": "schemes composed by hand", "use-mesh": "preCICE's version 2",
-    "acceleration:broyden": "Broyden's acceleration", "extrapolation-order": "extrapolation of preCICE's version 2",
+    "coupling-scheme:compositional": "schemes composed by hand", "acceleration:broyden": "Broyden's acceleration", "extrapolation-order": "extrapolation of preCICE's version 2",
 }
 
 
