@@ -146,7 +146,7 @@ std::vector<Kind> kinds() {
                      hands[8] = {mark, protocol_version, 0, 0, mark, protocol_version, 1, 0};
   const std::string separator(1, '\x1f');
   std::string introduction;
-  for (const char* field : {"my_solver", "solid", "(guest)", "0", "", "1", "2", "3"})
+  for (const char* field : {"my_solver", "solid", "(guest)", "0", "", "1", "2", "3", "7@machine"})
     introduction += field + separator;
   return {{"command", text_of(pack(command())), read_command},
           {"command to a client", text_of(pack(command())), read_as_client},

@@ -47,5 +47,6 @@ while p.is_coupling_ongoing():
         continue
     windows.append([t, passes, {d: p.read_data(mesh, d, ids, 0.0).tolist() for d in reads}])
     passes = 0
+sys.stdout.write(f"{me} {json.dumps(windows)}\n")
+sys.stdout.flush()
 p.finalize()
-print(me, json.dumps(windows), flush=True)
