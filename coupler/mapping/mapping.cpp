@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/transfer.hpp"
+#include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
 #include "coupler/mapping/surface_rows.hpp"
 #include "coupler/mapping/surroundings.hpp"
@@ -116,16 +118,17 @@ std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, con
   const int dim = from.surface != nullptr ? from.surface->dim : 3;
   const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
   const PointSet &ask = amount ? from : to, &among = amount ? to : from;
-  const bool by_faces = !from.own_surface && !to.own_surface && among.surface,
-             corners = by_faces && Surroundings(comm, *among.surface).has_corners();
+  std::optional<Surroundings> known;
+  if (!from.own_surface && !to.own_surface && among.surface) known.emplace(comm, *among.surface);
+  const bool corners = known && known->has_corners();
   std::vector<Transfer::Entry> entries;
   if (amount && corners && ask.place == Place::faces && ask.surface &&
       Surroundings(comm, *ask.surface).has_corners()) {
     entries = faces_to_faces(comm, *among.surface, *ask.surface, type);
     if (among.place == Place::vertices)
-      entries = product(comm, Surroundings(comm, *among.surface).faces().starts, entries,
-                        vertices_to_faces(comm, *among.surface));
-  } else if (projection && by_faces && among.place == Place::vertices && (corners || !amount)) {
+      entries = product(comm, known->faces().starts, entries, vertices_to_faces(comm, *among.surface));
+  } else if (projection && among.place == Place::vertices &&
+             (corners || (!amount && known && known->faces().starts.back() > 0))) {
     entries = projected(comm, among, ask);
   } else {
     add_interpolation(comm, among, ask.points, ask.positions, k, entries);

@@ -14,8 +14,8 @@ namespace couplet::coupler {
 /// reference configuration. Types of `coupling.mapping`:
 ///   matched     matching vertices and faces, weight 1
 ///   nearest     as below
-///   projection  at vertices: the value at the nearest point of the other surface; at faces: local
-///               interpolants through few neighbours
+///   projection  at vertices: the value at the nearest point of the other surface; at faces, and where that has
+///               no faces: local interpolants through few neighbours
 ///   rbf         local interpolants by compact radial functions through more neighbours
 /// Both of the latter carry linear fields exactly. Amounts go by the transpose of such a map the other way, so that
 /// their sum and their moment are kept: those at faces by that of means over faces, those at vertices by that of

@@ -326,14 +326,19 @@ def meshes():
 
 
 AMOUNTS = """<precice-configuration>
-  <data:vector name="Force" />
-  <mesh name="Left-Mesh" dimensions="DIM"><use-data name="Force" /></mesh> <mesh name="Right-Mesh" dimensions="DIM"><use-data name="Force" /></mesh>
-  <participant name="Left"><provide-mesh name="Left-Mesh" /><receive-mesh name="Right-Mesh" from="Right" /><write-data name="Force" mesh="Left-Mesh" />
+  <data:vector name="Force" /> <data:scalar name="Place" />
+  <mesh name="Left-Mesh" dimensions="DIM"><use-data name="Force" /><use-data name="Place" /></mesh>
+  <mesh name="Right-Mesh" dimensions="DIM"><use-data name="Force" /><use-data name="Place" /></mesh>
+  <participant name="Left"><provide-mesh name="Left-Mesh" /><receive-mesh name="Right-Mesh" from="Right" />
+    <write-data name="Force" mesh="Left-Mesh" /><write-data name="Place" mesh="Left-Mesh" />
     <mapping:KIND direction="write" from="Left-Mesh" to="Right-Mesh" constraint="conservative" /></participant>
-  <participant name="Right"><provide-mesh name="Right-Mesh" /><read-data name="Force" mesh="Right-Mesh" /></participant>
+  <participant name="Right"><provide-mesh name="Right-Mesh" /><receive-mesh name="Left-Mesh" from="Left" />
+    <read-data name="Force" mesh="Right-Mesh" /><read-data name="Place" mesh="Right-Mesh" />
+    <mapping:KIND direction="read" from="Left-Mesh" to="Right-Mesh" constraint="consistent" /></participant>
   <m2n:sockets acceptor="Left" connector="Right" />
   <coupling-scheme:serial-explicit>
     <participants first="Left" second="Right" /><time-window-size value="1" /><max-time value="2" /><exchange data="Force" mesh="Right-Mesh" from="Left" to="Right" />
+    <exchange data="Place" mesh="Left-Mesh" from="Left" to="Right" />
   </coupling-scheme:serial-explicit>
 </precice-configuration>
 """
@@ -386,14 +391,16 @@ def answers():
             check(f"springs of {stiffness:g} N/m, side by side: exact", off < 1e-6, f"{off:.1e} in {found[-1]} passes")
         check("in as many passes whatever the units", found[0] and found.count(found[0]) == 3, found)
         for dim in (2, 3):
-            for kind in ("nearest-projection", "rbf-global-direct", "nearest-neighbor"):
+            for kind, faces in (("nearest-projection", True), ("nearest-projection", False), ("rbf-global-direct", True), ("nearest-neighbor", True)):
                 for coupler in (1, 2, 3):
-                    seen = small(folder, AMOUNTS.replace("KIND", kind).replace("DIM", str(dim)), "amounts", dim, coupler=coupler)
+                    seen = small(folder, AMOUNTS.replace("KIND", kind).replace("DIM", str(dim)), "amounts" if faces else "loose amounts", dim, coupler=coupler)
+                    off = max((abs(read["Place"][i] - x) for me, rows in seen.items() for _, _, read in rows if me == "Right" for i, x in enumerate([0, 0.5, 1] * 3 ** (dim - 2))), default=1)
+                    check("a field that is linear in the place arrives as it is", kind == "nearest-neighbor" or off < 1e-12, off)
                     taken = np.array(seen.get("Right", [[0, 0, {"Force": np.zeros((3 ** (dim - 1), dim))}]])[-1][2]["Force"])[:, 1].reshape(-1, 3)
                     moment = (taken * [0, 0.5, 1]).sum()
                     check(f"{kind} in {dim} dimensions, coupler on {coupler}: all forces arrive, but for nearest-neighbor with their moment", abs(taken.sum() - 5 ** (dim - 1)) < 1e-12 and
                           (kind == "nearest-neighbor" or abs(moment - 5 ** (dim - 1) / 2) < 1e-12), taken)
-                    if kind == "nearest-projection":
+                    if kind == "nearest-projection" and faces:
                         sides = np.array([1.5, 2, 1.5])
                         check("as projected by hand", np.abs(taken - sides if dim == 2 else taken.sum(axis=0) - 5 * sides).max() < 1e-12, taken)
         seen = small(folder, CHAIN, "chain", people=("Left", "Middle", "Right"))

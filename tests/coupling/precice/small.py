@@ -16,14 +16,15 @@ if case == "time":      # the one writes t, the other 10 t
 elif case == "springs":  # -K x on the one side, x = (F + 1000 N)/number on the other: linear, and the same for all numbers but for units
     points, reads = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), [f"Displacement-{other}"]
     answer = lambda t, read: {f"Displacement-{me}": -K * read[reads[0]] if me == "Left" else (read[reads[0]] + 1000) / number}  # noqa: E731
-elif case == "amounts":  # 1 N at each of the points of the one side; a line in two dimensions, a square of triangles in three
+elif case.endswith("amounts"):  # 1 N at each of the points of the one side, and its place; a line in two dimensions, a square of triangles in three
     n, dim = {"Left": 5, "Right": 3}[me], int(number)
     side = np.linspace(0, 1, n)
     points = np.array([[x, 0] for x in side] if dim == 2 else [[x, y, 0] for y in side for x in side])
     corners = range(n - 1)
     elements = [[i, i + 1] for i in corners] if dim == 2 else [t for j in corners for a in (j * n + i for i in corners) for t in ([a, a + 1, a + n + 1], [a, a + n + 1, a + n])]
-    reads = ["Force"] if me == "Right" else []
-    answer = lambda t, read: {"Force": np.tile(np.eye(dim)[1], (len(points), 1))} if me == "Left" else {}  # noqa: E731
+    elements = () if case.startswith("loose") else elements
+    reads = ["Force", "Place"] if me == "Right" else []
+    answer = lambda t, read: {"Force": np.tile(np.eye(dim)[1], (len(points), 1)), "Place": points[:, 0]} if me == "Left" else {}  # noqa: E731
 else:  # Left = Near/2 + t; Near = -0.4 Left + 0.3 Right; Far = 0.6 Left - 0.2 Right; Right = 0.7 Far + 1
     reads = {"Left": ["Near"], "Right": ["Far"], "Middle": ["Left", "Right"]}[me]
     answer = {"Left": lambda t, read: {"Left": read["Near"] / 2 + t}, "Right": lambda t, read: {"Right": 0.7 * read["Far"] + 1},
