@@ -70,7 +70,7 @@ class Structure final : public coupling::Participant {
   std::vector<double> solved_;  // static analysis: the modes that direct_ and deflection_ belong to
   bool repeats_ = false;
   coupling::Step step_;
-  std::vector<double> fluid_force_;  // pressure forces of the last solve(), 3 a face
+  std::vector<double> fluid_force_;  // of a partner in the last solve(), 3 a face
   bool pressure_acts_ = false;       // a prescribed pressure was not 0 somewhere in the last solve()
   std::unique_ptr<PlateResults> results_;
 };
