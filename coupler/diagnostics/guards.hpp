@@ -53,8 +53,10 @@ class IterationGuard {
 /// velocity).
 class OscillationGuard {
  public:
-  /// `comm`: over whose ranks the motion is cut.
-  explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF) : comm_(comm) {}
+  /// `comm`: over whose ranks the motion is cut. `tolerance`: of the coupling, over the largest motion of the run; swings below
+  /// it are its noise.
+  explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF, double tolerance = 0)
+      : comm_(comm), tolerance_(tolerance) {}
   /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
   /// nothing.
   std::optional<std::string> accepted(const std::vector<double>& x, double dt, coupling::Scheme scheme);
@@ -70,6 +72,7 @@ class OscillationGuard {
 
  private:
   MPI_Comm comm_;
+  double tolerance_, largest_ = 0;  // largest: norm of x over the run
   std::vector<double> x_, velocity_, jump_;
   int turns_ = 0, levels_ = 0;  // levels: accepted states that are known
   std::vector<double> sizes_;   // of the differences since the turning began
