@@ -41,11 +41,6 @@ class RotatingFrame {
   Vec3 centre_, axis_;
 };
 
-/// Adds `factor` times |omega x (x - c)|^2 / 2 at the level's time, in the cells and at the boundary.
-template <int D>
-void add_centrifugal(const RotatingFrame<D>& frame, const Placement<D>& at, double factor,
-                     PressureLevel<D>& level);
-
 /// Integral of (grad u)^T.n over a face [m^2/s] from the velocities of its corners alone: the share of friction on a wall that
 /// comes from its motion along itself and its rotation. Where div u = 0, (grad u)^T.n = (n x grad) x u, and by
 /// Stokes' theorem its integral is that of dl x u around the face: exact for linear velocities (w x r gives -w x S),

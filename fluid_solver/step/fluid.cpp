@@ -73,7 +73,8 @@ void Fluid<D>::begin_step(double time, double dt) {
   split_ = false;
   begin_ = accepted_;
   begin_.time = time;
-  sizes_.begin_step(accepted_, time, dt, step_.frame() ? step_.frame()->rate(time, dt) : 0, begin_);
+  const auto& frame = step_.scene().frame;
+  sizes_.begin_step(accepted_, time, dt, frame ? frame->rate(time, dt) : 0, begin_);
   statistics_.sub_steps = 0;
 }
 
@@ -237,7 +238,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
     level->boundary.resize(s.w.size());
     initial_pressure.evaluate(geometry.cell_centre, time, level->p);
     initial_pressure.evaluate(at.boundary_centre, time, level->boundary);
-    if (step_.frame()) add_centrifugal(*step_.frame(), at, -parameters_.density, *level);
+    step_.scene().add_potential(at, -parameters_.density, *level);
     step_.start_level(at, *level);
     s.pressure[0] = level;
   }
@@ -318,9 +319,9 @@ void Fluid<D>::add_turning() {
 template <int D>
 std::shared_ptr<const PressureLevel<D>> Fluid<D>::pressure() const {
   const auto& latest = accepted_.pressure[0];
-  if (!latest || !step_.frame()) return latest;
+  if (!latest || !step_.scene().has_potential()) return latest;
   auto whole = std::make_shared<PressureLevel<D>>(*latest);
-  add_centrifugal(*step_.frame(), *accepted_.placement, parameters_.density, *whole);
+  step_.scene().add_potential(*accepted_.placement, parameters_.density, *whole);
   return whole;
 }
 

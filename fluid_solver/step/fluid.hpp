@@ -69,7 +69,7 @@ class Fluid {
   void accept();
 
   const State<D>& state() const { return accepted_; }
-  /// The pressure of the accepted state; nullptr before the first step. In a frame that turns that of the state lacks the centrifugal part.
+  /// The pressure of the accepted state; nullptr before the first step. That of the state lacks the potential (see Scene).
   std::shared_ptr<const PressureLevel<D>> pressure() const;
   /// Placement at the end of the step that was prepared.
   const Placement<D>& end() const { return step_.to(); }
