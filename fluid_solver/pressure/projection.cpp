@@ -248,8 +248,10 @@ void PressureProjection<D>::balance_closed_domain() {
         "The fluid domain is closed, but the prescribed velocities give a net outflow of {:.6g} m^3/s. Add "
         "an outlet or correct the velocities.",
         sums[total]);
-  // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over.
+  // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over. Of walls
+  // without a structure Fluid::keep_volume() has compared the displacements.
   if (adjustable && !scene_.boundary.has_convective_outlet() &&
+      !(scene_.boundary.sealed() && scene_.boundary.interface_patches().empty()) &&
       scene_.parameters.volume_level == VolumeLevelBy::nobody && !scene_.boundary.yields() &&
       std::abs(sums[total]) > largest_leftover * sums[size] &&
       std::abs(sums[total]) > round_speed * sums[speeds] &&

@@ -63,6 +63,10 @@ class Fluid {
   /// rho sqrt(nu dt) |w - w*| S / dt, over the load of the last solve_pressure() (less a uniform pressure),
   /// both as root mean square over the interface. Collective.
   double unseen_share(const Vectors<D>& w) const;
+  /// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its
+  /// volume, beyond the error of faces that stand for curved walls. Sets the walls back along their normals by that error, unless
+  /// a structure moves them. Collective.
+  void keep_volume(std::vector<Vec3>& points, double time) const;
   /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// The step becomes level n. Cannot fail.
