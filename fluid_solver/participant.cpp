@@ -126,6 +126,10 @@ template <int D>
 void FluidParticipant<D>::begin_step(const coupling::Step& step) {
   if (step.number == 0 || holds_volume(fluid_->parameters())) check_cavity(*fluid_, step.scheme);
   step_ = step;
+  if (interface_) {
+    std::vector<Vec3> points = fluid_->state().points;
+    fluid_->keep_volume(points, step.time);
+  }
   if (step.number == 0) tell_impulse();
   predicted_ = renewed_now_ = false;
   fluid_->begin_step(step.time, step.dt);
@@ -133,12 +137,18 @@ void FluidParticipant<D>::begin_step(const coupling::Step& step) {
 
 template <int D>
 std::vector<Vec3> FluidParticipant<D>::receive_points() {
-  if (prescribed_) return prescribed_->places(fluid_->points_at_rest(), step_.time + step_.dt);
-  if (!motion_) return {};
-  const std::vector<double> displacement = motion_->receive();
+  const double end = step_.time + step_.dt;
   std::vector<Vec3> points = fluid_->points_at_rest();
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i].template head<D>() += Eigen::Map<const Vec<D>>(displacement.data() + i * D);
+  if (prescribed_) {
+    points = prescribed_->places(points, end);
+  } else if (motion_) {
+    const std::vector<double> displacement = motion_->receive();
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i].template head<D>() += Eigen::Map<const Vec<D>>(displacement.data() + i * D);
+  } else {
+    return {};
+  }
+  if (!interface_) fluid_->keep_volume(points, end);
   return points;
 }
 

@@ -175,8 +175,10 @@ std::vector<double> Structure::received(const coupling::Exchange& in, const char
 coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   std::vector<double> fluid(surface_.n_modes(), 0);
   fluid_force_ = received(in, "pressure-force");
+  const std::vector<double> viscous = received(in, "viscous-force");
+  fluid_force_.resize(std::max(fluid_force_.size(), viscous.size()), 0.);
+  for (std::size_t i = 0; i < viscous.size(); ++i) fluid_force_[i] += viscous[i];
   surface_.add_load(fluid_force_, fluid);
-  surface_.add_load(received(in, "viscous-force"), fluid);
   pressure_acts_ = false;
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     // A partner's load is its mean over the step, valid at mid-step; schemes that solve later extrapolate it.
@@ -203,7 +205,10 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   trial_displacement_ = direct_.empty() ? u : direct_;
   if (parallel::comm_rank(context_.comm) != 0) return out;
   out["displacement"] = std::move(u);
-  out["velocity"] = surface_.motion(trial_.v);
+  std::vector<double> rate = trial_.v;  // without inertia: that of the step
+  if (parameters_.analysis == Parameters::Analysis::static_)
+    for (std::size_t m = 0; m < rate.size(); ++m) rate[m] = (trial_.q[m] - state_.q[m]) / step_.dt;
+  out["velocity"] = surface_.motion(rate);
   if (parameters_.surface_density) out["surface-density"] = model().face_density;
   return out;
 }
@@ -250,7 +255,10 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
 std::vector<double> Structure::direct_deflection(double t) const {
   const PlateModel& plate = *built_.plate;
   const modes::EigenModes one{
-      {0}, {plate.deflect(plate.load_of(cell_pressures(plate, parameters_, pressure_.get(), t)))}, 0, 0};
+      {0},
+      {plate.deflect(plate.load_of(cell_pressures(plate, parameters_, pressure_.get(), fluid_force_, t)))},
+      0,
+      0};
   return skin_of(plate, one, parameters_.placement, parameters_.wetted,
                  std::vector<bool>(plate.surface().patches.size(), false))
       .vertex_shape;

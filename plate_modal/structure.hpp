@@ -70,8 +70,8 @@ class Structure final : public coupling::Participant {
   std::vector<double> solved_;  // static analysis: modal coordinates of direct_ and deflection_
   bool repeats_ = false;
   coupling::Step step_;
-  std::vector<double> fluid_force_;  // pressure forces of the last solve(), 3 per face
-  bool pressure_acts_ = false;       // a prescribed pressure was not zero in the last solve()
+  std::vector<double> fluid_force_;  // of a partner in the last solve(), 3 a face
+  bool pressure_acts_ = false;       // a prescribed pressure was not 0 somewhere in the last solve()
   std::unique_ptr<PlateResults> results_;
 };
 

@@ -10,8 +10,12 @@
 
 namespace couplet::diagnostics {
 
-/// Contributions to a run's error as far as the run can estimate them cheaply, relative to the size of the
-/// solution [1]. Accurate to a factor of a few; NaN if unknown.
+/// Scale of a relative error: the largest `size` of the solution over body and run, but no less than what round-off leaves of
+/// a solution of the size `load`, which the loads would give if nothing balanced them.
+constexpr double scale_of(double size, double load) { return size > 1e-8 * load ? size : 1e-8 * load; }
+
+/// What a run's error is made of, as the run itself can know it cheaply, each over the size of the solution [1].
+/// Good to a factor of a few; NaN: not known.
 struct ErrorParts {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double mesh = unknown;      ///< spatial discretization error

@@ -109,6 +109,7 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
   }
   const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
   speed_.push_back(norm(comm_, velocity));
+  largest_ = std::max(largest_, norm(comm_, x));
   if (speed_.size() > 4) speed_.pop_front();
   // The motion reverses: most of its shape equals the last one with opposite sign.
   const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;
@@ -131,6 +132,7 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
   const double speed = *std::ranges::max_element(speed_);
   const double wanted = turns_ < 8 ? 3 : turns_ < 20 ? 2 : 1.5;
   if (!(now > wanted * then) || now < speed) return {};
+  if (0.125 * now * dt <= tolerance_ * largest_) return {};  // two jumps, each of four amplitudes
   return swing(turns_, now / then, std::pow(now / then, 1. / double(n - 2)), scheme);
 }
 
@@ -142,7 +144,7 @@ std::optional<std::string> OscillationGuard::suspects(coupling::Scheme scheme) c
 }
 
 void OscillationGuard::visit_numbers(io::Archive& archive) {
-  archive.common("swings", turns_, levels_, sizes_, speed_);
+  archive.common("swings", turns_, levels_, sizes_, speed_, largest_);
 }
 
 void OscillationGuard::visit_fields(io::Archive& archive, const parallel::GlobalOrder& order,

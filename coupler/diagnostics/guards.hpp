@@ -51,9 +51,12 @@ class IterationGuard {
 /// its wall shear uses the guessed velocity.
 class OscillationGuard {
  public:
-  /// `comm`: ranks over which the motion is distributed.
-  explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF) : comm_(comm) {}
-  /// Adds the motion x of an accepted step of length dt, this rank's part. Returns a reason if it oscillates.
+  /// `comm`: over whose ranks the motion is cut. `tolerance`: of the coupling, over the largest motion of the run; swings below
+  /// it are its noise.
+  explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF, double tolerance = 0)
+      : comm_(comm), tolerance_(tolerance) {}
+  /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
+  /// nothing.
   std::optional<std::string> accepted(const std::vector<double>& x, double dt, coupling::Scheme scheme);
   /// Call after a failed step. Returns a reason if the accepted steps before it had begun to oscillate.
   std::optional<std::string> suspects(coupling::Scheme scheme) const;
@@ -68,6 +71,7 @@ class OscillationGuard {
 
  private:
   MPI_Comm comm_;
+  double tolerance_, largest_ = 0;  // largest: norm of x over the run
   std::vector<double> x_, velocity_, jump_;
   int turns_ = 0, levels_ = 0;  // levels: number of known accepted states
   std::vector<double> sizes_;   // of the differences since the oscillation began

@@ -13,7 +13,8 @@ using OnDivergence = CouplingParameters::OnDivergence;
 /// Detects a growing oscillation of the interface from step to step (see OscillationGuard).
 class InterfaceOscillation final : public CouplingDiagnostic {
  public:
-  explicit InterfaceOscillation(const CouplingView& view) : view_(view), guard_(view.comm) {}
+  explicit InterfaceOscillation(const CouplingView& view)
+      : view_(view), guard_(view.comm, view.parameters.convergence.relative) {}
   void observe(diagnostics::Report& report) override {
     const auto reason = guard_.accepted(view_.unknown.motion(view_.last.image), view_.dt, view_.scheme.now());
     if (!reason) return;

@@ -100,7 +100,14 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
       return fmt::format("there is no participant '{}' that supports sub-steps", name);
     if (n != std::round(n) || n < 1 || n > 10000)
       return fmt::format("'{}' needs a whole number of sub-steps from 1 to 10000", name);
-    if (n == 1 || !p.fluid || name != p.fluid->participant) continue;
+    if (n == 1 || !p.fluid) continue;
+    if (p.structure && name == p.structure->participant && !p.structure->foreign() && !p.fluid->foreign())
+      return fmt::format(
+          "the structure '{}' supports no sub-steps: the fluid's added mass acts on the change of its velocity over "
+          "the whole step, which modes that vibrate within the step turn round, so that a light structure diverges; use a "
+          "smaller `simulation.time-step`, the fluid's steps are as long as its own limits allow",
+          name);
+    if (name != p.fluid->participant) continue;
     if (p.scheme.is_semi_implicit())
       return "the fluid supports no sub-steps in the semi-implicit scheme, which splits its step in two; "
              "use `scheme: implicit` or `explicit`";

@@ -233,6 +233,7 @@ void Boundary<D>::add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geomet
   if (condition.joined && parallel::sum(comm_, GlobalIndex(patch.count)) > 0)
     throw Error("{}: the mesh is not joined at this periodic patch.", where);
   rows_.set(faces, condition.row(b), condition.velocity == GivenBy::mesh);
+  sealed_ = sealed_ && condition.passage == Passage::none;
   if (gives_pressure(b)) {
     closed_ = false;
     pressure_patches_.push_back({faces, fv::Expression(b.pressure, where + ".pressure")});

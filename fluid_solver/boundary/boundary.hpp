@@ -115,6 +115,8 @@ class Boundary {
   const FaceRows& rows() const { return rows_; }
   /// True if no face of the whole domain has a given pressure, so that the pressure level is free.
   bool closed() const { return closed_; }
+  /// No fluid passes the boundary: walls surround it.
+  bool sealed() const { return sealed_; }
   /// Names of the patches of type interface.
   const std::vector<std::string>& interface_patches() const { return interface_patches_; }
   /// Patches of type body.
@@ -185,8 +187,8 @@ class Boundary {
   std::vector<const mesh::Patch*> body_patches_;
   std::vector<GivenVelocity<D>> velocity_patches_;
   std::vector<GivenPressure> pressure_patches_;
-  std::vector<FaceRange> convective_patches_;  // includes empty ones
-  bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
+  std::vector<FaceRange> convective_patches_;  // also empty ones
+  bool closed_ = true, sealed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;
   std::vector<double> wall_mass_, wall_load_;

@@ -43,25 +43,41 @@ struct Fit {
   Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
 };
 
-/// Divided differences of u in time. Updates rate and its change to this step and stores u.
+/// Weights of the differences of the change of the rate, and of the change itself: local errors of a step, and of one that
+/// a clock drives.
+struct Weights {
+  double local = 0, of_third = 0, of_second = 0;
+};
+
+/// Divided differences of u in time: rate and its change become those of this step, u is kept, `left` gets the local errors.
 template <int D>
 struct Differences {
   std::span<const double> volume;
   const Vec<D>* now;
   Vec<D>*u, *rate, *change;
-  double per_step, per_apart;  ///< per_apart 0: there is no rate yet
+  double per_step, per_apart;  ///< 0: there is none yet
+  Vec<D>* left;                ///< nullptr: nothing drives, or there is no third difference yet
+  const Vec<D>* carried;       ///< rates by convection, times the volume; nullptr: of other schemes
+  Weights weights;
 };
-/// Volume sums of the squares of u, its rate and two further differences, and the volume.
+/// Sums over the volume of the squares of u, its rate, the change of that and the change of that, the volume, and the squares of
+/// what is left; outflow is added later; of what is carried.
 template <int D>
-COUPLET_PROCESSOR_CLONES std::array<double, 5> renew(const Differences<D>& d) {
-  std::array<double, 5> sums{};
+COUPLET_PROCESSOR_CLONES std::array<double, 8> renew(const Differences<D>& d) {
+  std::array<double, 8> sums{};
   for (std::size_t c = 0; c < d.volume.size(); ++c) {
     const double volume = d.volume[c];
     const Vec<D> rate = (d.now[c] - d.u[c]) * d.per_step, change = (rate - d.rate[c]) * d.per_apart;
+    const Vec<D> third = change - d.change[c];
+    if (d.left) {
+      d.left[c] += d.weights.of_third * third + d.weights.of_second * change;
+      sums[5] += volume * d.left[c].squaredNorm();
+      sums[7] += d.carried ? d.carried[c].squaredNorm() / volume : volume * rate.squaredNorm();
+    }
     sums[0] += volume * d.now[c].squaredNorm();
     sums[1] += volume * rate.squaredNorm();
     sums[2] += volume * change.squaredNorm();
-    sums[3] += volume * (change - d.change[c]).squaredNorm();
+    sums[3] += volume * third.squaredNorm();
     sums[4] += volume;
     d.u[c] = d.now[c], d.rate[c] = rate, d.change[c] = change;
   }
@@ -88,7 +104,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override { report.errors = parts(); }
   void visit(io::Archive& archive) override {
     archive.common("numbers", seen_, judged_, dt_old_, time_, power_, gain_, energy_, work_, held_,
-                   left_of_late_, carried_, changed_, steps_, drift_);
+                   left_of_late_, carried_, changed_, largest_, steps_, drift_);
     for (const auto& [name, vectors] :
          {std::pair{"left", &left_}, {"rate", &rate_}, {"rate-change", &rate_change_}}) {
       const std::span<const double> numbers = flat<D>(*vectors);
@@ -112,9 +128,14 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const bool knows_third = seen_ > 2;
     for (Vectors<D>* v : {&u_, &rate_, &rate_change_}) v->resize(n, Vec<D>::Zero());
     if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
-    std::array<double, 8> squares{};
     const Weights weights = this->weights(dt, apart);
-    sum_differences(1 / dt, 1 / apart, weights, squares);
+    const State<D>& state = fluid_.state();
+    const Vectors<D>& carried = state.rates_old.rate;
+    std::array<double, 8> squares = renew(
+        Differences<D>{std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
+                       rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
+                       knows_third && !left_.empty() ? left_.data() : nullptr,
+                       carried.empty() ? nullptr : carried.data(), weights});
     if (knows_third) {
       for (Index f = fluid_.mesh().n_interior; f < fluid_.mesh().n_flux_faces(); ++f)
         squares[6] += std::max(0., fluid_.state().phi[f]);
@@ -122,6 +143,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
                     fluid_.mesh().comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
+      largest_ = std::max(largest_, mean(0));
       see_energy(dt);
       const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps);
       drift_.add(dt, held_, mean(1), mean(2), adams_bashforth_error * sub_step * sub_step);
@@ -150,13 +172,16 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     parts.dimension = D;
     const double speed = size(fluid_.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;
-    parts.mesh = recovered_difference() / speed;
-    parts.step = step_part();
+    const double falls = std::sqrt(pressure_range(view_).value_or(0) / fluid_.parameters().density);
+    const double scale = diagnostics::scale_of(std::max(speed, largest_), falls);
+    parts.mesh = recovered_difference() / scale;
+    parts.step = step_part() * steps_.size() / scale;
     const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
     // The trapezoidal rule also knows the divergence before.
     const auto& known = fluid_.parameters().compressibility;
     const bool open = known && known->scheme == WaveScheme::trapezoidal;
-    parts.linear = (open ? fluid_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
+    parts.linear =
+        speed / scale * (open ? fluid_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
     return parts;
   }
   /// Root mean square over the volume; per local cell.
@@ -170,11 +195,6 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     squares = parallel::sum(fluid_.mesh().comm, squares), whole = parallel::sum(fluid_.mesh().comm, whole);
     return whole > 0 ? std::sqrt(squares / whole) : 0;
   }
-  /// Weights of the second change and of the change of the rate: local errors of a step, and of one in a
-  /// driven flow.
-  struct Weights {
-    double local = 0, of_third = 0, of_second = 0;
-  };
   Weights weights(double dt, double apart) const {
     const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps), held = friction();
     const bool implicit = fluid_.state().implicit;
@@ -182,39 +202,6 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     return {.local = adams_bashforth_error * dt * sub_step * sub_step / apart,
             .of_third = less * driven_error * dt * sub_step * sub_step / apart,
             .of_second = less * (implicit ? held_error : held_explicitly) * held * dt * sub_step * sub_step};
-  }
-  /// Sums over the cells. `squares`: of u, its rate and two changes; the volume; of the residual outflow and
-  /// of the flux.
-  void sum_differences(double per_step, double per_apart, const Weights& weights,
-                       std::array<double, 8>& squares) {
-    const Vectors<D>& u = fluid_.state().u;
-    const std::vector<double>& volume = fluid_.state().placement->volume;
-    const std::size_t n = u_.size();
-    if (seen_ > 0 && !driving_.is_possible()) {
-      const std::array<double, 5> sums =
-          renew(Differences<D>{std::span(volume).first(n), u.data(), u_.data(), rate_.data(),
-                               rate_change_.data(), per_step, seen_ > 1 ? per_apart : 0});
-      std::ranges::copy(sums, squares.begin());
-      return;
-    }
-    const Vectors<D>& carried = fluid_.state().rates_old.rate;  // times the volume; empty with other schemes
-    for (std::size_t c = 0; c < n && seen_ > 0; ++c) {
-      const Vec<D> rate = (u[c] - u_[c]) * per_step;
-      const Vec<D> change = seen_ > 1 ? Vec<D>((rate - rate_[c]) * per_apart) : Vec<D>(Vec<D>::Zero());
-      const Vec<D> third = change - rate_change_[c];
-      if (seen_ > 2) {
-        left_[c] += weights.of_third * third + weights.of_second * change;
-        squares[5] += volume[c] * left_[c].squaredNorm();
-        squares[7] += carried.empty() ? volume[c] * rate.squaredNorm() : carried[c].squaredNorm() / volume[c];
-      }
-      squares[0] += volume[c] * u[c].squaredNorm();
-      squares[1] += volume[c] * rate.squaredNorm();
-      squares[2] += volume[c] * change.squaredNorm();
-      squares[3] += volume[c] * third.squaredNorm();
-      squares[4] += volume[c];
-      rate_[c] = rate, rate_change_[c] = change;
-    }
-    std::copy_n(u.begin(), n, u_.begin());
   }
   void see_energy(double dt) {
     const EnergyLedger& ledger = fluid_.state().ledger;
@@ -308,10 +295,11 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   double power_ = 0, gain_ = 0, energy_ = 0;  // recent means: work and gain of energy [W], energy [J]
   double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
   Driving driving_;
-  Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
-  double left_of_late_ = 0;  // largest recent norm
-  // Recent maxima: convective part of the rates, and the rates [m/s^2].
-  double carried_ = 0, changed_ = 0;
+  Vectors<D> left_;          // sum of local errors; empty: nothing drives
+  double left_of_late_ = 0;  // norm, the largest of late
+  double largest_ = 0;       // mean speed of the run [m/s]
+  double carried_ = 0,
+         changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
 };
 
 }  // namespace

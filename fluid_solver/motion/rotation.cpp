@@ -43,21 +43,6 @@ double RotatingFrame<D>::rate(double t, double dt) const {
   return 2 * std::max(std::abs(speed(t)), std::abs(speed(t + dt)));
 }
 
-template <int D>
-void add_centrifugal(const RotatingFrame<D>& frame, const Placement<D>& at, double factor,
-                     PressureLevel<D>& level) {
-  Vec3 x = Vec3::Zero();
-  for (std::size_t c = 0; c < level.p.size(); ++c) {
-    x.template head<D>() = at.centre[c];
-    level.p[c] += factor * frame.potential(level.time, x);
-  }
-  for (std::size_t b = 0; b < level.boundary.size(); ++b)
-    level.boundary[b] += factor * frame.potential(level.time, at.boundary_centre[b]);
-}
-
-template void add_centrifugal<2>(const RotatingFrame<2>&, const Placement<2>&, double, PressureLevel<2>&);
-template void add_centrifugal<3>(const RotatingFrame<3>&, const Placement<3>&, double, PressureLevel<3>&);
-
 template class RotatingFrame<2>;
 template class RotatingFrame<3>;
 

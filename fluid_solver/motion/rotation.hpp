@@ -40,16 +40,11 @@ class RotatingFrame {
   Vec3 centre_, axis_;
 };
 
-/// Adds `factor` times |omega x (x - c)|^2 / 2 at the level's time, in the cells and at the boundary.
-template <int D>
-void add_centrifugal(const RotatingFrame<D>& frame, const Placement<D>& at, double factor,
-                     PressureLevel<D>& level);
-
-/// Integral of (grad u)^T.n over a face [m^2/s], computed from the velocities of its corners. It is the part
-/// of wall friction due to tangential motion and rotation of the wall. If div u = 0, (grad u)^T.n = (n x
-/// grad) x u, and by Stokes' theorem its integral is that of dl x u around the face. It is exact for linear
-/// velocities (w x r gives -w x S), and the edges of a closed wall cancel. `corners` [m], `velocities` [m/s]:
-/// in order around the face; 2-D ignores corners.
+/// Integral of (grad u)^T.n over a face [m^2/s] from the velocities of its corners alone: the share of friction on a wall that
+/// comes from its motion along itself and its rotation. Where div u = 0, (grad u)^T.n = (n x grad) x u, and by
+/// Stokes' theorem its integral is that of dl x u around the face: exact for linear velocities (w x r gives -w x S),
+/// and the edges of a closed wall cancel. `corners` [m], `velocities` [m/s]: one after the other around the face, as
+/// the mesh has them; in two dimensions the places do not count.
 template <int D>
 Vec<D> turn_of(std::span<const Vec3> corners, std::span<const Vec3> velocities);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -106,8 +109,13 @@ struct Scene {
   Properties fluid;
   bool oblique = false;                      ///< the non-orthogonal parts are needed
   std::optional<RotatingFrame<D>> frame{};   ///< empty if there is none
-  std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr if the order is second everywhere
-  /// Obstacles; each step marks their cells.
+  std::vector<fv::Expression> body_force{};  ///< by direction [m/s^2]; empty if there is none
+  /// Directions of which the body force is uniform. There it is a gradient, which the pressure balances like the centrifugal
+  /// force of a frame (see RotatingFrame): no mesh makes a flow of a fluid at rest.
+  std::array<bool, D> balanced{};
+  Vec3 origin = Vec3::Zero();                ///< where the potential of the body force is 0
+  std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr: second order everywhere
+  /// Each step marks their cells.
   std::unique_ptr<Obstacles<D>> obstacles = std::make_unique<Obstacles<D>>(mesh);
 
   /// Placement for the pressure equation.
@@ -122,6 +130,24 @@ struct Scene {
     return fourth ? fourth->flux_velocity(at, u) : u;
   }
   bool is_compressible() const { return fluid.sound > 0; }
+  bool has_potential() const { return frame || std::ranges::any_of(balanced, std::identity()); }
+  /// Of all forces per mass that are gradients, at time t [m^2/s^2]. The pressure equation solves for p - rho potential.
+  double potential(double t, const Vec3& x) const {
+    double sum = frame ? frame->potential(t, x) : 0;
+    for (int c = 0; c < D; ++c)
+      if (balanced[c]) sum += body_force[c](Vec3::Zero(), t) * (x[c] - origin[c]);
+    return sum;
+  }
+  /// Adds `factor` times the potential at the level's time, in the cells and at the boundary.
+  void add_potential(const Placement<D>& at, double factor, PressureLevel<D>& level) const {
+    Vec3 x = Vec3::Zero();
+    for (std::size_t c = 0; c < level.p.size(); ++c) {
+      x.template head<D>() = at.centre[c];
+      level.p[c] += factor * potential(level.time, x);
+    }
+    for (std::size_t b = 0; b < level.boundary.size(); ++b)
+      level.boundary[b] += factor * potential(level.time, at.boundary_centre[b]);
+  }
 };
 
 /// Positions of the mesh within a coupling step. Points move on straight lines from level n to the end.

@@ -247,8 +247,10 @@ void PressureProjection<D>::balance_closed_domain() {
         "The fluid domain is closed, but the prescribed velocities give a net outflow of {:.6g} m^3/s. Add "
         "an outlet or correct the velocities.",
         sums[total]);
-  // With a level that keeps the volume, or responding walls, only guesses of the wall motion leave so much.
+  // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over. Of walls
+  // without a structure Fluid::keep_volume() has compared the displacements.
   if (adjustable && !scene_.boundary.has_convective_outlet() &&
+      !(scene_.boundary.sealed() && scene_.boundary.interface_patches().empty()) &&
       scene_.parameters.volume_level == VolumeLevelBy::nobody && !scene_.boundary.yields() &&
       std::abs(sums[total]) > largest_leftover * sums[size] &&
       std::abs(sums[total]) > round_speed * sums[speeds] &&
@@ -276,9 +278,9 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   set_boundary_flux(w);
   out_.boundary.assign(w.size(), 0.0);
   scene_.boundary.pressure_at(step_.middle(), now.boundary_centre, out_.boundary);
-  if (scene_.frame)
+  if (scene_.has_potential())
     for (const Index b : scene_.boundary.rows().of_pressure)
-      out_.boundary[b] -= scene_.fluid.rho * scene_.frame->potential(step_.middle(), now.boundary_centre[b]);
+      out_.boundary[b] -= scene_.fluid.rho * scene_.potential(step_.middle(), now.boundary_centre[b]);
   for (const auto& term : terms_) term->foresee(from, out_);
   side_.size = -1;
   side_.b.assign(mesh_.cells.n_local(), 0.0);

@@ -63,12 +63,17 @@ class Fluid {
   /// |w - w*| S/dt, relative to the load of the last solve_pressure() less a uniform pressure. Both are root
   /// mean squares over the interface. Collective.
   double unseen_share(const Vectors<D>& w) const;
+  /// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its
+  /// volume, beyond the error of faces that stand for curved walls. Sets the walls back along their normals by that error, unless
+  /// a structure moves them. Collective.
+  void keep_volume(std::vector<Vec3>& points, double time) const;
+  /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// Makes the step level n. Cannot fail.
   void accept();
 
   const State<D>& state() const { return accepted_; }
-  /// Pressure of the accepted state, which itself lacks the centrifugal part. nullptr before the first step.
+  /// The pressure of the accepted state; nullptr before the first step. That of the state lacks the potential (see Scene).
   std::shared_ptr<const PressureLevel<D>> pressure() const;
   /// Placement at the end of the prepared step.
   const Placement<D>& end() const { return step_.to(); }

@@ -33,7 +33,7 @@ void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<
       flux -= prediction.weight * scene.fluid.mu * to.conductance[f] * (c + 3 * c.dot(n) * n);
     }
     double p = projected.boundary[b];
-    if (scene.frame) p += scene.fluid.rho * scene.frame->potential(step.middle(), to.boundary_centre[b]);
+    if (scene.has_potential()) p += scene.fluid.rho * scene.potential(step.middle(), to.boundary_centre[b]);
     const Vec<D> normal = flux.dot(n) * n;
     pressure[b] = 0.5 * p * (from.placement->area[f] + to.area[f]) + normal;
     viscous[b] = flux - normal;
@@ -78,6 +78,7 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
       projection_(scene_, step_, prediction_, projected_, moving),
       energy_guard_(mesh, boundary, scene_.fluid, parameters.pressure_tolerance) {
   if (parameters.rotating_frame) scene_.frame.emplace(*parameters.rotating_frame);
+  set_body_force();
   if (!parameters.bodies.empty()) {
     auto bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
     bodies_ = bodies.get();
@@ -87,6 +88,23 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
     auto gaps = std::make_unique<Gaps<D>>(mesh, parameters, points_at_rest);
     gaps_ = gaps.get();
     scene_.obstacles = std::move(gaps);
+  }
+}
+
+/// The potential would differ between the two sides of periodic patches; compressed fluid has a density that follows p
+/// itself; and blocked cells, cut ones and convective outlets see the pressure as it is.
+template <int D>
+void FractionalStep<D>::set_body_force() {
+  const FluidParameters& p = scene_.parameters;
+  if (p.body_force.empty()) return;
+  scene_.body_force = fv::make_expressions(p.body_force, D, "body-force");
+  const bool balances = p.bodies.empty() && p.gaps.empty() && !scene_.is_compressible() &&
+                        !scene_.boundary.has_convective_outlet();
+  for (int c = 0; c < D; ++c) {
+    bool periodic = false;
+    for (const Vec3& shift : mesh_.neighbour_shift) periodic |= std::abs(shift[c]) > 1e-12 * shift.norm();
+    periodic = parallel::any(mesh_.comm, periodic);
+    scene_.balanced[c] = balances && !periodic && !scene_.body_force[c].uses_space();
   }
 }
 
@@ -164,6 +182,12 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   scene_.oblique = parallel::max(mesh_.comm, s.placement->obliqueness) > orthogonal ||
                    (!s.points.empty() && !s.placement->shape);
   const Placement<D>& at = *s.placement;
+  Vec<D> moment = Vec<D>::Zero();
+  double volume = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    moment += at.volume[c] * at.centre[c], volume += at.volume[c];
+  for (double& sum : moment) sum = parallel::sum(mesh_.comm, sum);
+  scene_.origin.template head<D>() = moment / parallel::sum(mesh_.comm, volume);
   projected_.phi.assign(mesh_.n_flux_faces(), 0.0);
   step_ = {SubStep<D>{scene_.fluid.rho, s.placement, {}, s.points}, s};  // dt/rho = 1
   mark_level(s);

@@ -85,10 +85,8 @@ class FractionalStep {
   void set_eddy_viscosity(State<D>& state);
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
-  /// nullptr if the frame is at rest.
-  const RotatingFrame<D>* frame() const { return scene_.frame ? &*scene_.frame : nullptr; }
-  /// Discards the pressure matrix after the masses of such walls have changed; it is rebuilt when next
-  /// needed.
+  const Scene<D>& scene() const { return scene_; }
+  /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
   void forget_walls() { projection_.forget_matrix(); }
   /// Pressure of the last project() per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return projected_.boundary; }
@@ -118,6 +116,7 @@ class FractionalStep {
   };
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
+  void set_body_force();
   bool too_fast() const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);

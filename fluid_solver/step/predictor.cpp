@@ -41,10 +41,7 @@ Predictor<D>::Predictor(const Scene<D>& scene, const Step<D>& step, const KnownG
       gradient_(gradient),
       out_(result),
       rate_operator_(scene.mesh, scene.boundary, scene.fluid.nu, scene.is_compressible()),
-      friction_(scene, step, rate_operator_) {
-  if (!scene.parameters.body_force.empty())
-    body_force_ = fv::make_expressions(scene.parameters.body_force, D, "body-force");
-}
+      friction_(scene, step, rate_operator_) {}
 
 template <int D>
 void Predictor<D>::predict(const State<D>& from) {
@@ -57,7 +54,8 @@ void Predictor<D>::predict(const State<D>& from) {
   side_.resize(from.u.size());
   out_.u.resize(from.u.size());
   out_.viscous_flux.resize(out_.w.size());
-  const bool forced = !body_force_.empty() || scene_.frame;
+  const bool forced =
+      scene_.frame || (!scene_.body_force.empty() && !std::ranges::all_of(scene_.balanced, std::identity()));
   if (!moving && !implicit && !given && !forced) {
     explicit_pass<D>(std::span(from.placement->volume).first(mesh_.cells.n_owned()), from.u, dt * e0,
                      out_.rates.rate.data(), dt * e1, ratio > 0 ? from.rates_old.rate.data() : nullptr,
@@ -114,8 +112,9 @@ void Predictor<D>::add_body_force(const State<D>& from, double e0, double e1) {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
   out_.force.assign(places.size(), Vec<D>::Zero());
-  if (!body_force_.empty())
-    for (int c = 0; c < D; ++c) body_force_[c].evaluate(places, step_.middle(), flat<D>(out_.force), D, c);
+  for (std::size_t c = 0; c < scene_.body_force.size(); ++c)
+    if (!scene_.balanced[c])
+      scene_.body_force[c].evaluate(places, step_.middle(), flat<D>(out_.force), D, int(c));
   if (scene_.frame)
     scene_.frame->add_force(step_.begin(), step_.dt, places, from.u, from.u_old, {e0, e1}, out_.force);
   for (std::size_t c = 0; c < places.size(); ++c) side_[c] += step_.dt * step_.to->volume[c] * out_.force[c];

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/fv/expression.hpp"
 #include "fluid_solver/momentum/implicit_friction.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/motion/scene.hpp"
@@ -53,7 +52,6 @@ class Predictor {
   Prediction<D>& out_;
   RateOperator<D> rate_operator_;
   ImplicitFriction<D> friction_;
-  std::vector<fv::Expression> body_force_;
   Vectors<D> side_;          // right-hand side
   Vectors<D> u_boundary_;    // at the boundary, from u^p
   Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}; implicit predictor on a moving mesh only

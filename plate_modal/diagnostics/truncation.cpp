@@ -52,17 +52,13 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   void add_compliance(double t, std::vector<double>& sums) {
     std::vector<double> pressure;
     try {
-      pressure = cell_pressures(*view_.built.plate, view_.parameters, view_.pressure, t);
+      pressure = cell_pressures(*view_.built.plate, view_.parameters, view_.pressure, view_.fluid_force, t);
     } catch (const Error&) {
       return;  // no value there: the scheme need not ask for it
     }
     const PlateModel& plate = *view_.built.plate;
     const Vec3 normal = view_.parameters.placement.normal();
     const std::vector<double> areas = plate.cell_areas();
-    const std::vector<double>& fluid = view_.fluid_force;
-    const std::size_t sides = view_.parameters.wetted == Wetted::both ? 2 : 1;
-    for (std::size_t f = 0; !fluid.empty() && f < sides * areas.size(); ++f)
-      pressure[f % areas.size()] += Vec3(&fluid[3 * f]).dot(normal) / areas[f % areas.size()];
     const std::vector<double> load = plate.load_of(pressure);
     if (std::ranges::all_of(load, [](double f) { return f == 0; })) return;
     if (!solver_) {

@@ -99,11 +99,15 @@ double PressureLoad::value(const fv::Expression& side, const Vec3& x, double t) 
 }
 
 std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,
-                                   const PressureLoad* load, double t) {
+                                   const PressureLoad* load, std::span<const double> fluid, double t) {
   const Midsurface& s = plate.surface();
   const Placement& place = parameters.placement;
   const Vec3 normal = place.normal();
   std::vector<double> pressure(s.cells.size(), 0);
+  const std::vector<double> areas = plate.cell_areas();
+  const std::size_t sides = parameters.wetted == Wetted::both ? 2 : 1;  // behind them the rim
+  for (std::size_t f = 0; !fluid.empty() && f < sides * areas.size(); ++f)
+    pressure[f % areas.size()] += Vec3(&fluid[3 * f]).dot(normal) / areas[f % areas.size()];
   for (Index c = 0; c < s.cells.size(); ++c) {
     Vec2 middle = Vec2::Zero();
     for (const Index p : s.cells[c]) middle += s.points[p] / double(s.cells[c].size());

@@ -45,9 +45,9 @@ class PressureLoad final {
   std::array<std::vector<double>, 2> of_one_pascal_;
 };
 
-/// Pressures on the cells of a plate at t along its normal, including its weight [Pa]. `load` may be nullptr.
-/// On rank 0. Throws Error where a pressure is undefined.
+/// Pressures on the cells of a plate at t, along its normal, its weight included [Pa]. `load` may be nullptr. `fluid`: forces of a
+/// partner on the faces of the surface [N], 3 each; may be empty. On rank 0. Throws Error where a pressure has no value.
 std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,
-                                   const PressureLoad* load, double t);
+                                   const PressureLoad* load, std::span<const double> fluid, double t);
 
 }  // namespace couplet::plate

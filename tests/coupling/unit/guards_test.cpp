@@ -98,6 +98,22 @@ TEST(OscillationGuard, smooth_motion_decaying_swings_rounding_and_steady_swings_
   EXPECT_EQ(spoken_at([](double n) { return n < 3 ? 0. : 1.; }), 0) << "a kick";
 }
 
+/// A body at rest half a millimeter off, whose residual swings grow to a hundredth of the coupling's tolerance.
+TEST(OscillationGuard, swings_below_the_tolerance_of_the_coupling_are_its_noise) {
+  for (const double tolerance : {0., 1e-5}) {
+    OscillationGuard guard(MPI_COMM_SELF, tolerance);
+    bool told = false;
+    for (int n = 0; n < 40; ++n)
+      told = told || guard.accepted({5e-4 * (1 + 1e-10 * std::pow(-1.2, n))}, 0.02, Scheme::semi_implicit);
+    EXPECT_EQ(told, tolerance == 0);
+  }
+  OscillationGuard guard(MPI_COMM_SELF, 1e-5);
+  bool told = false;
+  for (int n = 0; n < 120; ++n)
+    told = told || guard.accepted({5e-4 * (1 + 1e-10 * std::pow(-1.2, n))}, 0.02, Scheme::semi_implicit);
+  EXPECT_TRUE(told) << "beyond the tolerance";
+}
+
 TEST(OscillationGuard, steps_of_another_length_do_not_hide_it) {
   OscillationGuard guard;
   std::string text;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the boundaries promise: profiles, ramps, outlets, periodic pairs, and a body force in balance.
 #include "fluid_case.hpp"
+#include "fluid_solver/participant.hpp"
+#include "tests/support/observed_run.hpp"
 
 namespace couplet::fluid::test::boundaries_test {
 using namespace mesh;
@@ -171,6 +173,34 @@ TEST(BodyForce, is_balanced_by_the_pressure_of_a_fluid_at_rest) {
   c.run(0.5, 20);
   EXPECT_LT(c.largest_velocity_error([](const Vec3&) { return Vec3(0, 0, 0); }), 1e-11);
   EXPECT_LT(c.pressure_error([&](const Vec3& x) { return 1.3 * (3 * x.x() - 9.81 * x.y()); }), 1e-10);
+}
+
+/// Triangles, whose centres of gravity lie beside the lines through their faces, make no flow of still water; the errors are told
+/// by what its weight would do.
+TEST(BodyForce, leaves_still_water_at_rest_on_triangles) {
+  for (const BoundaryType vent : {BoundaryType::outlet, BoundaryType::no_slip}) {
+    FluidParameters p = fluid_of(1000, 0.1, 1e-4, "box");
+    all_sides(p, 2, boundary(BoundaryType::no_slip));
+    p.boundaries["ymax"] = boundary(vent);
+    p.body_force = {{"0"}, {"-9.81"}};
+    RawMesh raw = make_box(BoxCells::triangles, {10, 10, 1}, Vec3::Zero(), Vec3::Ones());
+    perturb_interior(raw, 0.3, 7);
+    FluidParticipant<2> fluid(distribute(MPI_COMM_WORLD, raw), p, FluidContext{}, MotionLink{});
+    const auto run = support::observe(fluid, 50, 0.02);
+    double speed = 0, error = 0;
+    const auto pressure = fluid.fluid().pressure();
+    const double level = vent == BoundaryType::outlet ? 1 : 0.5;
+    for (Index c = 0; c < fluid.fluid().mesh().cells.n_owned(); ++c) {
+      speed = std::max(speed, fluid.fluid().state().u[c].norm());
+      error = std::max(
+          error, std::abs(pressure->p[c] - 9810 * (level - fluid.fluid().state().placement->centre[c].y())));
+    }
+    EXPECT_LT(parallel::max(MPI_COMM_WORLD, speed), 1e-9);
+    EXPECT_LT(parallel::max(MPI_COMM_WORLD, error), 1e-6);
+    const diagnostics::ErrorParts& errors = run.diagnostics().errors();
+    for (const double part : {errors.mesh, errors.step, errors.linear})
+      EXPECT_FALSE(part > 0.02) << errors.text();
+  }
 }
 
 // Walls along which the fluid slides with a slip length, between those without slip and those without friction.

@@ -101,7 +101,7 @@ class FluidCase {
     for (Index c = 0; c < mesh().cells.n_owned(); ++c) {
       Vec3 x = Vec3::Zero();
       x.head<D>() = s.placement->centre[c];
-      difference[c] = s.pressure[0]->p[c] - exact(x);
+      difference[c] = fluid_->pressure()->p[c] - exact(x);
       mean += s.placement->volume[c] * difference[c];
       volume += s.placement->volume[c];
     }

@@ -105,6 +105,52 @@ TEST(PlateStatics, a_plate_of_two_thicknesses_and_its_weight_follow_the_closed_f
   RecordProperty("weight", fmt::format("{:.6f}", -deepest / weight_exact - 1));
 }
 
+/// The same pressure prescribed and given by a partner: deflection of fields and probes, and the rate beside it.
+TEST(PlateStatics, the_load_of_a_partner_deflects_like_a_prescribed_one) {
+  for (const Wetted wetted : {Wetted::upper, Wetted::lower, Wetted::both}) {
+    Parameters p;
+    p.material = {1000, 1e9, 0.3};
+    p.thickness = 0.02;
+    p.number = 3;
+    p.analysis = Parameters::Analysis::static_;
+    p.output.fields = false;
+    p.wetted = wetted;
+    for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch].support = Support::clamped;
+    const RawMesh raw = square(8);
+    std::vector<double> deflections[2];
+    for (const bool by_partner : {false, true}) {
+      Parameters one = p;
+      if (!by_partner && wetted == Wetted::lower)
+        one.load.emplace().lower = config::ExpressionText{"-100"};
+      else if (!by_partner)
+        one.load.emplace().upper = config::ExpressionText{"100"};
+      Structure plate(one, {MPI_COMM_WORLD, "plate", {}, {}, std::numeric_limits<double>::quiet_NaN()}, &raw);
+      const coupling::Interface interface = plate.initialise();
+      coupling::Exchange in;
+      // Pushed down from above, or drawn from below.
+      for (const Vec3& area : interface.face_areas)
+        for (const double f :
+             {0., 0., wetted == Wetted::lower ? 100 * area.z() : -100 * std::max(area.z(), 0.)})
+          in["pressure-force"].push_back(by_partner ? f : 0);
+      plate.begin_step({0, 0.5, coupling::Scheme::implicit, 0});
+      const coupling::Exchange out = plate.solve(in);
+      if (out.contains("velocity")) {  // on rank 0
+        for (std::size_t i = 0; i < out.at("velocity").size(); ++i)
+          EXPECT_NEAR(0.5 * out.at("velocity")[i], out.at("displacement")[i], 1e-12);
+      }
+      plate.accept_step();
+      deflections[by_partner] = plate.displacement();
+    }
+    double largest = 0;
+    ASSERT_EQ(deflections[0].size(), deflections[1].size());
+    for (std::size_t i = 0; i < deflections[0].size(); ++i) {
+      EXPECT_NEAR(deflections[0][i], deflections[1][i], 1e-12);
+      largest = std::max(largest, std::abs(deflections[1][i]));
+    }
+    EXPECT_NEAR(largest / (0.00126532 * 100 / (1e9 * 8e-6 / (12 * 0.91))), 1, 0.03);
+  }
+}
+
 TEST(PlateStatics, deflection_by_modes_tends_to_the_direct_one) {
   const PlateModel plate = make_plate(square(16), all_edges(Support::clamped));
   const std::vector<double> ones(plate.surface().cells.size(), 1), load = plate.load_of(ones);
