@@ -29,8 +29,8 @@ struct DiscreteStress {
 };
 
 /// Stress recovered from patches of cells: each cell gets a quadratic fitted to the cells that share a vertex with it,
-/// of its material, to their boundary faces, and to the tractions known there; a point takes the mean of its cells. At
-/// planes of symmetry the patch goes on as its mirror image.
+/// of its material, to their boundary faces, and to the tractions known there; a point takes the mean of its cells of each
+/// material. At planes of symmetry the patch goes on as its mirror image.
 ///
 /// The stress is fitted, whose means over cells are more exact than what is made of them (Zienkiewicz and Zhu, Int. J.
 /// Numer. Meth. Engng 33 (1992) 1331; with tractions, Blacker and Belytschko, ibid. 37 (1994) 517). Among triangles and
@@ -39,17 +39,19 @@ struct DiscreteStress {
 /// too, where mean stresses are the cells' own (ElasticOperator::volume_by_cells).
 class StressRecovery {
  public:
-  /// Both by reference.
-  StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
+  /// Both by reference. `plane_stress`: there is no stress across the plane.
+  StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, bool plane_stress);
 
-  /// Packed stress [Pa] of all local points, the mean of the cells around. `wanted`: flags of local points, empty: all;
+  /// Stress [Pa], the mean of the cells around on each side of a joint. `wanted`: flags of local points, empty: all;
   /// others may hold anything. Collective.
-  std::vector<double> at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
+  SidedTensors at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
   /// What the fits leave of the stress at the `wanted` points, over its size [1]: the quadratics of the cells one ring on, continued
   /// to the point, differ from the stress there by so much, in the median. NaN: of other points, and where there is no such cell.
-  /// It does not see what is wrong with the displacement as a whole. `stress`: at_points() of them. Collective.
-  std::vector<double> left_at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted,
-                                     std::span<const double> stress) const;
+  /// It does not see what is wrong with the displacement as a whole. `sides`: at_points() of them, for each of which there
+  /// is an entry. Collective.
+  std::vector<std::vector<double>> left_at_points(const DiscreteStress& found,
+                                                  std::span<const std::uint8_t> wanted,
+                                                  const SidedTensors& sides) const;
 
  private:
   struct Local;  // with ghosts
@@ -65,6 +67,7 @@ class StressRecovery {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
+  bool plane_stress_;
   mesh::Csr cells_of_point_, faces_of_cell_;  // boundary faces
   std::vector<Tensor3> moment_;               // of local cells: mean of (x - x_c) (x - x_c)^T [m^2]
 };

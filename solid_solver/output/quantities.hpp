@@ -44,9 +44,6 @@ struct QuantityEstimate {
   double error() const;
 };
 
-/// Owned cells that have the place at a corner, on a side or inside. Collective.
-std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe);
-
 /// Where the case puts it [m]; 0 without a point.
 Vec3 place_of(const SolidQuantity& quantity);
 
