@@ -27,17 +27,12 @@ bool InnerVariation::is_needed(const mesh::Mesh& mesh, const elastic::ElasticOpe
   return mesh.dim == 2 && !rows.volume_by_cells();
 }
 
-void InnerVariation::add_to(Index cell, double volume, const Tensor3& strain) {
-  energy_[std::size_t(cell)] += volume * twice_energy(rows_, cell, strain);
-  strain_[std::size_t(cell)] += volume * strain;
-  volume_[std::size_t(cell)] += volume;
-}
-
 void InnerVariation::add(Index face, const Tensor3& strain) {
-  const auto [here, there] = elastic::pyramids(mesh_, geometry_, face);
-  if (mesh_.owner[face] < mesh_.cells.n_owned()) add_to(mesh_.owner[face], here, strain);
-  if (face < mesh_.n_interior && mesh_.neighbour[face] < mesh_.cells.n_owned())
-    add_to(mesh_.neighbour[face], there, strain);
+  elastic::visit_sides(mesh_, geometry_, face, [&](Index c, double pyramid) {
+    energy_[std::size_t(c)] += pyramid * twice_energy(rows_, c, strain);
+    strain_[std::size_t(c)] += pyramid * strain;
+    volume_[std::size_t(c)] += pyramid;
+  });
 }
 
 double InnerVariation::energy() const {
@@ -59,6 +54,39 @@ double InnerVariation::missed() const {
   }
   missed = parallel::sum(mesh_.comm, missed), whole = parallel::sum(mesh_.comm, whole);
   return whole > 0 ? missed / whole : 0;
+}
+
+StrainGap strain_gap(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known,
+                     Tensor3 (*strain)(const Tensor3&)) {
+  const mesh::Mesh& mesh = body.mesh();
+  const elastic::ElasticOperator& rows = body.elastic();
+  const Index n = mesh.n_flux_faces();
+  StrainGap found{.strain = std::vector<Tensor3>(std::size_t(n))};
+  InnerVariation variation(mesh, rows);
+  double difference = 0, size = 0;
+  const auto add = [&](Index f, const Tensor3& e, double& sum) {
+    elastic::visit_sides(mesh, body.geometry(), f,
+                         [&](Index c, double v) { sum += v * rows.lame(c).mu * e.squaredNorm(); });
+  };
+  body.kernel().face_gradients(
+      unknowns, known,
+      [&](Index f, const Tensor3& h) {
+        found.strain[std::size_t(f)] = strain(h);
+        variation.add(f, found.strain[std::size_t(f)]);
+        add(f, found.strain[std::size_t(f)], size);
+      },
+      0, n);
+  elastic::ElasticKernel(
+      mesh, rows,
+      body.is_corrected() ? elastic::FaceGradientScheme::thesis : elastic::FaceGradientScheme::corrected)
+      .face_gradients(
+          unknowns, known,
+          [&](Index f, const Tensor3& h) { add(f, strain(h) - found.strain[std::size_t(f)], difference); }, 0,
+          n);
+  size = parallel::sum(mesh.comm, size), difference = parallel::sum(mesh.comm, difference);
+  if (size > 0) found.missed = difference / size;
+  if (InnerVariation::is_needed(mesh, rows)) found.variation = variation.missed();
+  return found;
 }
 
 }  // namespace couplet::solid

@@ -5,6 +5,7 @@
 
 #include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
+#include "solid_solver/body/solid_body.hpp"
 
 namespace couplet::solid {
 
@@ -26,8 +27,6 @@ class InnerVariation {
   double energy() const;
 
  private:
-  void add_to(Index cell, double volume, const Tensor3& strain);
-
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
@@ -35,5 +34,15 @@ class InnerVariation {
   std::vector<Tensor3> strain_;  // sum V_fP e
   std::vector<double> volume_;   // sum V_fP
 };
+
+/// The strains of the flux faces that two face gradients make of one displacement.
+struct StrainGap {
+  double missed = 0;              ///< sum V mu |e1 - e2|^2 / sum V mu |e1|^2
+  double variation = 0;           ///< InnerVariation::missed() of e1 where it is needed
+  std::vector<Tensor3> strain{};  ///< e1, of the gradient in use
+};
+/// `strain`: of a displacement gradient. Collective.
+StrainGap strain_gap(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known,
+                     Tensor3 (*strain)(const Tensor3&));
 
 }  // namespace couplet::solid

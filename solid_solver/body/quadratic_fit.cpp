@@ -109,6 +109,12 @@ Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Inde
   return moment * (share_of_vertices(mesh.cell_type[cell]) / double(mesh.cell_points[cell].size()));
 }
 
+void add_mirror(const mesh::Geometry& geometry, Index face, std::vector<MirrorPlane>& mirrors) {
+  const MirrorPlane plane{geometry.face_area[face].normalized(), geometry.face_centre[face]};
+  if (std::ranges::none_of(mirrors, [&](const MirrorPlane& m) { return m.normal.dot(plane.normal) > 0.99; }))
+    mirrors.push_back(plane);
+}
+
 void gather_cells(const mesh::Mesh& mesh, const mesh::Csr& cells_of_point, Index cell,
                   std::vector<Index>& mark, std::vector<Index>& cells) {
   for (const Index v : mesh.cell_points[cell])

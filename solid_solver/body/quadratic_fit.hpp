@@ -49,6 +49,16 @@ class QuadraticFit {
   Eigen::VectorXd right_of_rows_;
 };
 
+/// Plane of symmetry, in which a patch of cells is continued by its mirror image.
+struct MirrorPlane {
+  Vec3 normal, origin;
+  Tensor3 reflection() const { return Tensor3::Identity() - 2 * normal * normal.transpose(); }
+  Vec3 reflect(const Vec3& v) const { return v - 2 * normal.dot(v) * normal; }
+  Vec3 image(const Vec3& place) const { return place - 2 * normal.dot(place - origin) * normal; }
+};
+/// Adds the plane of a boundary face unless one with the same normal is there.
+void add_mirror(const mesh::Geometry& geometry, Index face, std::vector<MirrorPlane>& mirrors);
+
 /// Mean of (x - x_c) (x - x_c)^T over a local cell [m^2], from its vertices: exact for simplices and boxes.
 Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell);
 /// Appends `cell` and the local cells of its material that share a vertex with it. `mark`: per local cell,

@@ -169,23 +169,22 @@ bool recovers_stress(const SolidBody& body) {
   return body.equilibrium().means().recovers_stress && !is_axisymmetric(body.elastic());
 }
 
-std::vector<double> SolidFields::point_stress(std::span<const double> points,
-                                              std::span<const std::uint8_t> wanted,
-                                              std::vector<double>* left) const {
+SidedTensors SolidFields::stress_sides(std::span<const double> points, std::span<const std::uint8_t> wanted,
+                                       std::vector<std::vector<double>>* left) const {
   if (!recovers_stress(body_)) {
     const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
     return point_tensors().interpolate(cell_stress(points), faces);
   }
-  if (!recovery_) recovery_ = std::make_unique<StressRecovery>(mesh_, elastic_);
+  if (!recovery_)
+    recovery_ = std::make_unique<StressRecovery>(
+        mesh_, elastic_, mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress);
   const DiscreteStress found = discrete_stress(points);
-  std::vector<double> stress = recovery_->at_points(found, wanted);
-  if (left) *left = recovery_->left_at_points(found, wanted, stress);
-  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
-    for (std::size_t i = 2; i < stress.size(); i += tensor_size) stress[i] = 0;
-  return stress;
+  SidedTensors sides = recovery_->at_points(found, wanted);
+  if (left) *left = recovery_->left_at_points(found, wanted, sides);
+  return sides;
 }
 
-std::vector<double> SolidFields::point_strain(std::span<const double> points) const {
+SidedTensors SolidFields::strain_sides(std::span<const double> points) const {
   return point_tensors().interpolate(cell_strain(points),
                                      face_strain(mesh_.n_interior, mesh_.boundary.n_owned(), points));
 }
@@ -229,8 +228,7 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
 
 // Tractions of boundary faces: from known loads, else from the stress at the faces' points.
 
-std::vector<double> SolidFields::traction(std::span<const Vec3> places,
-                                          std::span<const double> point_stress) const {
+std::vector<double> SolidFields::traction(std::span<const Vec3> places, const SidedTensors& sides) const {
   const std::size_t n = mesh_.boundary.n_owned(), dim = mesh_.dim;
   const std::span<const Vec3> moved = body_.equilibrium().surface(places);
   const std::vector<SurfaceTraction> known =
@@ -240,7 +238,8 @@ std::vector<double> SolidFields::traction(std::span<const Vec3> places,
     const Index f = mesh_.n_interior + Index(b);
     const Vec3 normal =
         moved.empty() ? geometry_.face_area[f].normalized() : normal_at(mesh_, geometry_, f, moved);
-    const Vec3 here = mean_stress(mesh_.face_points[f], point_stress) * normal;
+    const auto& side = sides[std::size_t(mesh_.material_of(mesh_.owner[f]))];
+    const Vec3 here = mean_stress(mesh_.face_points[f], side) * normal;
     const Vec3 value = known[b].traction + here - known[b].projector * here;
     for (std::size_t a = 0; a < dim; ++a) result[b * dim + a] = value[Index(a)];
   }

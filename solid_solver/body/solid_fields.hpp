@@ -39,16 +39,19 @@ class SolidFields final {
   std::vector<double> point_velocity() const;
   /// Requires wants_acceleration().
   std::vector<double> point_acceleration() const;
-  /// Packed symmetric tensors (see stress.hpp) at all local points. At small strain they are recovered from
-  /// patches of cells (StressRecovery), else interpolated from cells and boundary faces. `wanted`: flags of
-  /// local points (empty: all); other values are undefined. `left`: its left_at_points() if recovered.
-  std::vector<double> point_stress(std::span<const double> points, std::span<const std::uint8_t> wanted = {},
-                                   std::vector<double>* left = nullptr) const;
-  /// Traction on boundary faces of owned cells, `dim` values each, out of the body [Pa]. At small strain it
-  /// equals a known load; else it is sigma n with the mean of `point_stress` over the face's points.
-  /// `places`: local points; at large strain the normal is that of the deformed face.
-  std::vector<double> traction(std::span<const Vec3> places, std::span<const double> point_stress) const;
-  std::vector<double> point_strain(std::span<const double> points) const;
+  /// On each side of the joints of materials: at small strain recovered from patches of cells (StressRecovery), else
+  /// interpolated from the stress in the cells and on the boundary faces. `wanted`: flags of local points, empty: all; others
+  /// may hold anything. `left`, of a body with recovers_stress(): StressRecovery::left_at_points().
+  SidedTensors stress_sides(std::span<const double> points, std::span<const std::uint8_t> wanted = {},
+                            std::vector<std::vector<double>>* left = nullptr) const;
+  std::vector<double> point_stress(std::span<const double> points) const {
+    return worst_side(stress_sides(points));
+  }
+  /// On boundary faces of owned cells, `dim` values each, out of the body [Pa]: as the loads have it where it is known (at
+  /// small strain), else sigma n of the mean of `sides` of its cell's material over the face's points, of which those on a patch
+  /// suffice for its faces. `places`: where the local points are; the normal is that of the deformed face at large strain.
+  std::vector<double> traction(std::span<const Vec3> places, const SidedTensors& sides) const;
+  SidedTensors strain_sides(std::span<const double> points) const;
   /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa].
   std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;
   /// Stress of owned cells [Pa] by cell_gradient(); exact for linear displacements.

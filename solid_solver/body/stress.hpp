@@ -17,27 +17,37 @@ constexpr std::array<const char*, tensor_size> tensor_component{"xx", "yy", "zz"
 PackedTensor pack(const Tensor3& tensor);
 Tensor3 unpack(std::span<const double> packed);
 
-/// Von Mises stress [Pa].
+/// Materials are 0 to one less than this. Collective.
+int number_of_materials(const mesh::Mesh& mesh);
+
+/// von Mises [Pa].
 double equivalent_stress(const Tensor3& stress);
 /// Principal stresses in descending order [Pa].
 std::array<double, 3> principal_stresses(const Tensor3& stress);
 
-/// Interpolates symmetric tensors from cells and boundary faces to points, exact for linear fields. Uses the
-/// vertex interpolation of the displacement with all boundary faces. At symmetry planes it averages in the
-/// mirrored tensor, so that there is no shear. At material interfaces it takes the mean.
+/// Packed tensors of all local points, one entry per material: stress and strain jump where materials meet, and a point of the
+/// joint has the value of each side. NaN where a point has no cell of the material.
+using SidedTensors = std::vector<std::vector<double>>;
+/// One tensor per point: at a joint that of the side with the larger equivalent value.
+std::vector<double> worst_side(SidedTensors sides);
+
+/// Symmetric tensors at points from those in cells and on boundary faces, exact for linear fields (the vertex
+/// interpolation of the displacement, all faces of the boundary taking part). At symmetry planes the mirrored
+/// tensor is averaged in: no shear there.
 class PointTensors {
  public:
   /// `is_symmetry`: one flag per patch. `inside`: any interpolation, kept by reference. Collective.
   PointTensors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const std::vector<bool>& is_symmetry,
                const fv::VertexInterpolation& inside);
-  /// `cells`: per owned cell; `faces`: per boundary face of owned cells. Returns packed values at all local
-  /// points. Collective.
-  std::vector<double> interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
-  /// Interpolates tensors that are not symmetric.
+  /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Collective.
+  SidedTensors interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
+  /// The same for tensors that are not symmetric, the mean of the materials.
   std::vector<Tensor3> interpolate_full(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
 
  private:
-  /// `get(i)`, `set(i, tensor)`: access to the points of symmetry planes.
+  Vec<tensor_size> side_of(Index point, int material, std::span<const double> cells,
+                           std::span<const double> faces) const;
+  /// `get(i)`, `set(i, tensor)` of the points of symmetry planes.
   template <class Get, class Set>
   void mirror(const Get& get, const Set& set) const;
   struct Mirror {

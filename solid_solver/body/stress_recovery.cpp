@@ -38,14 +38,6 @@ QuadraticFit::Row row_of_stress(const QuadraticFit::Terms& phi, const Vec3& e, c
   return phi * factor;
 }
 
-/// Mirror image of a patch at a symmetry plane.
-struct Mirror {
-  Vec3 normal, origin;
-  Tensor3 reflection() const { return Tensor3::Identity() - 2 * normal * normal.transpose(); }
-  double height(const Vec3& place) const { return normal.dot(place - origin); }
-  Vec3 image(const Vec3& place) const { return place - 2 * height(place) * normal; }
-};
-
 }  // namespace
 
 struct StressRecovery::Local {
@@ -57,17 +49,19 @@ struct StressRecovery::Local {
 struct StressRecovery::Patch {
   std::vector<Index> cells, faces;  // faces: of the boundary, not of symmetry planes
   std::vector<Index> loaded;        // those with a known traction, and all of symmetry planes
-  std::vector<Mirror> mirrors;
+  std::vector<MirrorPlane> mirrors;
   bool simplices = true;    // triangles or tetrahedra alone
   bool at_surface = false;  // some face has a known traction and is no symmetry plane's
   double reach = 0;
   std::vector<Index> mark;  // per local cell: for which cell it was last gathered
 };
 
-StressRecovery::StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
+StressRecovery::StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                               bool plane_stress)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
+      plane_stress_(plane_stress),
       cells_of_point_(mesh::transpose(mesh.cell_points, 0, mesh.points.n_local())),
       faces_of_cell_(boundary_faces_of_cells(mesh)),
       moment_(std::size_t(mesh.cells.n_local()), Tensor3::Zero()) {
@@ -113,10 +107,7 @@ void StressRecovery::gather(Index cell, const Local& local, Patch& patch) const 
         patch.at_surface = patch.at_surface || !known.projector.isZero(0);
         continue;
       }
-      const Mirror mirror{g.face_area[f].normalized(), g.face_centre[f]};
-      if (std::ranges::none_of(patch.mirrors,
-                               [&](const Mirror& m) { return m.normal.dot(mirror.normal) > 0.99; }))
-        patch.mirrors.push_back(mirror);
+      add_mirror(g, f, patch.mirrors);
     }
   if (patch.reach == 0) patch.reach = std::pow(g.volume[cell], 1. / mesh_.dim);
 }
@@ -132,7 +123,7 @@ void StressRecovery::fit_tensors(Index cell, const std::vector<Tensor3>& cells,
     const double far = (place - centre).squaredNorm() / (patch.reach * patch.reach);
     const double weight = 1 / (1 + (1 / of_far - 1) * far);
     fit.add_sample(place, moment, pack(value), weight);
-    for (const Mirror& m : patch.mirrors) {
+    for (const MirrorPlane& m : patch.mirrors) {
       const Tensor3 r = m.reflection();
       fit.add_sample(m.image(place), r * moment * r, pack(r * value * r), weight);
     }
@@ -163,8 +154,8 @@ void StressRecovery::fit_displacement(Index cell, const Local& local, Patch& pat
     const double far = (place - centre).squaredNorm() / (patch.reach * patch.reach);
     weight /= 1 + (1 / of_far - 1) * far;
     fit.add_sample(place, Tensor3::Zero(), {value.data(), 3}, weight);
-    for (const Mirror& m : patch.mirrors) {
-      const Vec3 image = m.reflection() * value;
+    for (const MirrorPlane& m : patch.mirrors) {
+      const Vec3 image = m.reflect(value);
       fit.add_sample(m.image(place), Tensor3::Zero(), {image.data(), 3}, weight);
     }
   };
@@ -221,39 +212,44 @@ void StressRecovery::visit(const DiscreteStress& found, const Wants& wants, cons
       gradient.leftCols(mesh_.dim) = fit.slopes(place).transpose() * fit.coefficients();
       Tensor3 stress = rows_.stress(c, gradient);
       if (has_other) stress += tensor_at(other, place);
+      if (plane_stress_) stress(2, 2) = 0;
       return stress;
     });
   }
 }
 
-std::vector<double> StressRecovery::at_points(const DiscreteStress& found,
-                                              std::span<const std::uint8_t> wanted) const {
+SidedTensors StressRecovery::at_points(const DiscreteStress& found,
+                                       std::span<const std::uint8_t> wanted) const {
   constexpr int size = tensor_size + 1;  // and how many cells there are
-  std::vector<double> sums(std::size_t(mesh_.points.n_local()) * size, 0);
+  const std::size_t n = std::size_t(mesh_.points.n_local());
+  SidedTensors sums(std::size_t(number_of_materials(mesh_)), std::vector<double>(n * size, 0)), sides;
   const auto wants = [&](Index c) {
     return wanted.empty() ||
            std::ranges::any_of(mesh_.cell_points[c], [&](Index v) { return wanted[std::size_t(v)] != 0; });
   };
   visit(found, wants, [&](Index c, const auto& stress) {
     for (const Index v : mesh_.cell_points[c]) {
-      double* at = sums.data() + std::size_t(v) * size;
+      double* at = sums[std::size_t(mesh_.material_of(c))].data() + std::size_t(v) * size;
       const PackedTensor here = pack(stress(geometry_.points[v]));
       for (std::size_t k = 0; k < tensor_size; ++k) at[k] += here[k];
       at[tensor_size] += 1;
     }
   });
-  mesh_.points.add_to_owners(sums, size);
-  std::vector<double> values(std::size_t(mesh_.points.n_local()) * tensor_size);
-  for (std::size_t v = 0; v < std::size_t(mesh_.points.n_local()); ++v)
-    for (std::size_t k = 0; k < tensor_size; ++k)
-      values[v * tensor_size + k] = sums[v * size + k] / std::max(1., sums[v * size + tensor_size]);
-  mesh_.points.update_ghosts(values, tensor_size);
-  return values;
+  for (std::vector<double>& sum : sums) {
+    mesh_.points.add_to_owners(sum, size);
+    std::vector<double>& values = sides.emplace_back(n * tensor_size);
+    for (std::size_t v = 0; v < n; ++v)
+      for (std::size_t k = 0; k < tensor_size; ++k)
+        values[v * tensor_size + k] = sum[v * size + k] / sum[v * size + tensor_size];
+    mesh_.points.update_ghosts(values, tensor_size);
+    std::vector<double>().swap(sum);
+  }
+  return sides;
 }
 
-std::vector<double> StressRecovery::left_at_points(const DiscreteStress& found,
-                                                   std::span<const std::uint8_t> wanted,
-                                                   std::span<const double> stress) const {
+std::vector<std::vector<double>> StressRecovery::left_at_points(const DiscreteStress& found,
+                                                                std::span<const std::uint8_t> wanted,
+                                                                const SidedTensors& sides) const {
   const auto has = [&](Index c, std::span<const std::uint8_t> flags) {
     return std::ranges::any_of(mesh_.cell_points[c], [&](Index v) { return flags[std::size_t(v)] != 0; });
   };
@@ -261,11 +257,12 @@ std::vector<double> StressRecovery::left_at_points(const DiscreteStress& found,
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
     if (has(c, wanted))
       for (const Index v : mesh_.cell_points[c]) near[std::size_t(v)] = 1;
-  std::vector<PointShare> shares;
+  std::vector<std::vector<PointShare>> shares(sides.size());
   std::vector<Index> around;
   visit(
       found, [&](Index c) { return has(c, near); },
       [&](Index c, const auto& fit) {
+        const std::size_t material = std::size_t(mesh_.material_of(c));
         around.clear();
         for (const Index v : mesh_.cell_points[c])
           for (const Index d : cells_of_point_[v])
@@ -276,12 +273,16 @@ std::vector<double> StressRecovery::left_at_points(const DiscreteStress& found,
         around.erase(std::unique(around.begin(), around.end()), around.end());
         for (const Index w : around) {
           if (std::ranges::find(mesh_.cell_points[c], w) != mesh_.cell_points[c].end()) continue;
-          const Tensor3 here = unpack(stress.subspan(std::size_t(w) * tensor_size, tensor_size));
+          const Tensor3 here =
+              unpack(std::span(sides[material]).subspan(std::size_t(w) * tensor_size, tensor_size));
           if (const double size = here.norm(); size > 0)
-            shares.push_back({mesh_.point_id[w], (fit(geometry_.points[w]) - here).norm() / size});
+            shares[material].push_back({mesh_.point_id[w], (fit(geometry_.points[w]) - here).norm() / size});
         }
       });
-  return medians(mesh_, shares, wanted);
+  std::vector<std::vector<double>> left;
+  for (const std::vector<PointShare>& of_material : shares)
+    left.push_back(medians(mesh_, of_material, wanted));
+  return left;
 }
 
 }  // namespace couplet::solid

@@ -28,9 +28,9 @@ struct DiscreteStress {
   std::vector<SurfaceTraction> surface;    ///< per boundary face of owned cells
 };
 
-/// Recovers the stress from patches of cells. A quadratic is fitted for each cell to the cells of its
-/// material that share a vertex with it, to their boundary faces, and to known tractions. A point takes the
-/// mean of its cells. At symmetry planes the patch is continued by its mirror image.
+/// Stress recovered from patches of cells: each cell gets a quadratic fitted to the cells that share a vertex with it,
+/// of its material, to their boundary faces, and to the tractions known there; a point takes the mean of its cells of each
+/// material. At planes of symmetry the patch goes on as its mirror image.
 ///
 /// The fit uses the stress, whose cell means are more accurate than derived values (Zienkiewicz and Zhu,
 /// IJNME 33 (1992) 1331; with tractions, Blacker and Belytschko, ibid. 37 (1994) 517). For triangles and
@@ -39,17 +39,19 @@ struct DiscreteStress {
 /// stresses are per cell (ElasticOperator::volume_by_cells).
 class StressRecovery {
  public:
-  /// Keeps references to both.
-  StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
+  /// Both by reference. `plane_stress`: there is no stress across the plane.
+  StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, bool plane_stress);
 
-  /// Packed stress [Pa] at all local points, the mean of the cells around. `wanted`: flags of local points
-  /// (empty: all); other values are undefined. Collective.
-  std::vector<double> at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
-  /// Relative residual of the fits at the `wanted` points [1]: median difference from the stress there of the
-  /// quadratics of the second ring of cells, extrapolated to the point. NaN at other points and if there is
-  /// no such cell. Does not detect global displacement errors. `stress`: result of at_points(). Collective.
-  std::vector<double> left_at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted,
-                                     std::span<const double> stress) const;
+  /// Stress [Pa], the mean of the cells around on each side of a joint. `wanted`: flags of local points, empty: all;
+  /// others may hold anything. Collective.
+  SidedTensors at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
+  /// What the fits leave of the stress at the `wanted` points, over its size [1]: the quadratics of the cells one ring on, continued
+  /// to the point, differ from the stress there by so much, in the median. NaN: of other points, and where there is no such cell.
+  /// It does not see what is wrong with the displacement as a whole. `sides`: at_points() of them, for each of which there
+  /// is an entry. Collective.
+  std::vector<std::vector<double>> left_at_points(const DiscreteStress& found,
+                                                  std::span<const std::uint8_t> wanted,
+                                                  const SidedTensors& sides) const;
 
  private:
   struct Local;  // fields including ghosts
@@ -65,6 +67,7 @@ class StressRecovery {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const elastic::ElasticOperator& rows_;
+  bool plane_stress_;
   mesh::Csr cells_of_point_, faces_of_cell_;  // boundary faces
   std::vector<Tensor3> moment_;               // per local cell: mean of (x - x_c)(x - x_c)^T [m^2]
 };

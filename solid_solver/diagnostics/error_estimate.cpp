@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
@@ -132,36 +131,10 @@ void ErrorEstimate::add_heat(diagnostics::ErrorParts& parts) const {
 /// Half, because each gradient has an error. If larger, the error of quadrilaterals, with the law's moduli at
 /// rest.
 double ErrorEstimate::missed_of_large_strain() const {
-  const mesh::Mesh& mesh = body_.mesh();
-  const elastic::ElasticOperator& rows = body_.elastic();
-  const std::vector<double> unknowns = view_.unknowns(), known = view_.known();
-  const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose() + h.transpose() * h)); };
-  const auto weight = [&](Index f) {
-    if (mesh.owner[f] >= mesh.cells.n_owned()) return 0.0;
-    const auto [here, there] = elastic::pyramids(mesh, body_.geometry(), f);
-    return (here + there) * rows.lame(mesh.owner[f]).mu;
-  };
-  std::optional<InnerVariation> inner;
-  if (InnerVariation::is_needed(mesh, rows)) inner.emplace(mesh, rows);
-  std::vector<Tensor3> used(std::size_t(mesh.n_flux_faces()));
-  double difference = 0, size = 0;
-  body_.kernel().face_gradients(
-      unknowns, known,
-      [&](Index f, const Tensor3& gradient) {
-        const Tensor3 e = used[std::size_t(f)] = strain(gradient);
-        size += weight(f) * e.squaredNorm();
-        if (inner) inner->add(f, e);
-      },
-      0, mesh.n_flux_faces());
-  elastic::ElasticKernel(mesh, rows, elastic::FaceGradientScheme::corrected)
-      .face_gradients(
-          unknowns, known,
-          [&](Index f, const Tensor3& gradient) {
-            difference += weight(f) * (strain(gradient) - used[std::size_t(f)]).squaredNorm();
-          },
-          0, mesh.n_flux_faces());
-  size = parallel::sum(mesh.comm, size), difference = parallel::sum(mesh.comm, difference);
-  return std::max(size > 0 ? 0.5 * difference / size : 0, inner ? inner->missed() : 0);
+  const StrainGap gap = strain_gap(body_, view_.unknowns(), view_.known(), [](const Tensor3& h) {
+    return Tensor3(0.5 * (h + h.transpose() + h.transpose() * h));
+  });
+  return std::max(0.5 * gap.missed, gap.variation);
 }
 
 /// The displacement changes with the sensitivity of the deformed body. NaN if its tangent has no solution.

@@ -34,7 +34,8 @@ class LinearTheory final : public diagnostics::Diagnostic {
 
   void conclude(diagnostics::Report& report) override {
     if (view_.body.is_dynamic()) see_buckling(report);
-    if (const auto factor = view_.output.buckling_factor())
+    const auto factor = view_.output.buckling_factor();
+    if (factor && !view_.body.parameters().seeks_buckling)
       add(report, buckling_finding({.factor = *factor}, ""));
     if (large_strain_) report.sentences.push_back(large_strain_->text() + ".");
   }

@@ -12,7 +12,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/inner_variation.hpp"
-#include "solid_solver/diagnostics/recovered_strain.hpp"
+#include "solid_solver/body/recovered_strain.hpp"
 
 namespace couplet::solid {
 namespace {

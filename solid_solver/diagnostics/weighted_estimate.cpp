@@ -64,24 +64,13 @@ Values sensitivity(const SolidBody& body, std::span<const double> weight) {
   return z;
 }
 
-/// Calls take for both sides of a face with their pyramid volumes, on this rank.
-template <class Take>
-void visit_sides(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Take& take) {
-  const Index n = mesh.cells.n_owned();
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const auto [here, there] = elastic::pyramids(mesh, geometry, f);
-    if (mesh.owner[f] < n) take(mesh.owner[f], f, here);
-    if (f < mesh.n_interior && mesh.neighbour[f] < n) take(mesh.neighbour[f], f, there);
-  }
-}
-
 /// sum_P |sum_f V_fP s_f : E_f - V_P s_P : E_P|
 double variation_in_cells(const SolidBody& body, const Strains& of_u, const Strains& of_z,
                           std::span<const double> pressure) {
   const auto n = std::size_t(body.mesh().cells.n_owned());
   std::vector<Tensor3> stress(n, Tensor3::Zero()), strain(stress);
   Values volume(n, 0), varies(n, 0);
-  visit_sides(body.mesh(), body.geometry(), [&](Index c, Index f, double v) {
+  elastic::visit_pyramids(body.mesh(), body.geometry(), [&](Index c, Index f, double v) {
     const Tensor3 s = body.elastic().stress(c, unpacked(of_u[f])) - pressure[f] * Tensor3::Identity();
     const Tensor3 e = unpacked(of_z[f]);
     stress[c] += v * s, strain[c] += v * e, volume[c] += v, varies[c] += v * contraction(s, e);
@@ -96,7 +85,7 @@ double variation_in_cells(const SolidBody& body, const Strains& of_u, const Stra
 double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 2>& of_u,
                         const std::array<const Strains*, 2>& of_z) {
   double all = 0;
-  visit_sides(body.mesh(), body.geometry(), [&](Index c, Index f, double v) {
+  elastic::visit_pyramids(body.mesh(), body.geometry(), [&](Index c, Index f, double v) {
     const auto gap = [&](const auto& of) { return Tensor3(unpacked((*of[1])[f]) - unpacked((*of[0])[f])); };
     all += v * 2 * body.elastic().lame(c).mu * std::abs(contraction(gap(of_u), gap(of_z)));
   });

@@ -147,6 +147,11 @@ class ContactNewton {
 
 }  // namespace
 
+void clear_stress_across(const SolidParameters& parameters, std::span<Tensor3> stress) {
+  if (parameters.dimension != 2 || parameters.plane != SolidParameters::Plane::stress) return;
+  for (Tensor3& s : stress) s(2, 2) = 0;
+}
+
 linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::span<const double> b,
                                            std::span<double> u) {
   return ContactNewton(problem, b, u).run();
@@ -204,6 +209,7 @@ std::vector<Tensor3> SmallStrain::face_stress(const Displaced& state, Index firs
   std::vector<Tensor3> stress = state.face_gradients(first, count);
   for (Index i = 0; i < count; ++i) stress[i] = rows_.stress(mesh_.owner[first + i], stress[i]);
   if (thermal_) thermal_->add_face_stress(first, stress);
+  clear_stress_across(parameters_, stress);
   return stress;
 }
 
@@ -211,9 +217,7 @@ std::vector<Tensor3> SmallStrain::cell_stress(const Displaced& state) {
   std::vector<Tensor3> stress = state.cell_gradients();
   for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = rows_.stress(Index(c), stress[c]);
   if (thermal_) thermal_->add_cell_stress(stress);
-  // Out-of-plane stress: lambda tr(epsilon) in plane strain (already included), zero in plane stress.
-  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
-    for (Tensor3& s : stress) s(2, 2) = 0;
+  clear_stress_across(parameters_, stress);
   return stress;
 }
 

@@ -32,7 +32,10 @@ struct ContactProblem {
 linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::span<const double> b,
                                            std::span<double> u);
 
-/// A(u) = K u in the reference configuration, with the selected face gradient.
+/// Clears the component out of the plane in plane stress; in plane strain lambda tr(epsilon) stands there.
+void clear_stress_across(const SolidParameters& parameters, std::span<Tensor3> stress);
+
+/// A(u) = K u in the reference configuration, with the face gradient that was chosen.
 class SmallStrain final : public Equilibrium {
  public:
   /// Keeps references.

@@ -292,13 +292,9 @@ std::vector<double> UpdatedLagrangian::forces(std::span<const double> unknowns,
 /// Sum of W per face times the pyramids of owned cells over it.
 double UpdatedLagrangian::energy(std::span<const double> unknowns, std::span<const double> known) {
   look(unknowns, known);
-  const Index n = mesh_.cells.n_owned();
   double here = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const auto [behind, ahead] = elastic::pyramids(mesh_, geometry_, f);
-    if (mesh_.owner[f] < n) here += behind * energy_[f];
-    if (f < mesh_.n_interior && mesh_.neighbour[f] < n) here += ahead * energy_[f];
-  }
+  elastic::visit_pyramids(mesh_, geometry_,
+                          [&](Index, Index f, double pyramid) { here += pyramid * energy_[f]; });
   return parallel::sum(mesh_.comm, here);
 }
 

@@ -75,7 +75,7 @@ BlockCoupled::BlockCoupled(const SolidProblem& problem, const MethodParameters& 
   step_.resize(n);
 }
 
-linalg::SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics BlockCoupled::find(std::span<const double> b, std::span<double> u) {
   try {
     return accelerator_ ? solve_corrected(b, u) : solver_.solve(b, u);
   } catch (const SolveFailure& e) {

@@ -17,9 +17,9 @@ namespace couplet::solid {
 class BlockCoupled final : public SolutionMethod {
  public:
   BlockCoupled(const SolidProblem& problem, const MethodParameters& parameters);
-  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
 
  private:
+  linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) override;
   linalg::SolveStatistics solve_corrected(std::span<const double> b, std::span<double> u);
 
   SolidProblem problem_;

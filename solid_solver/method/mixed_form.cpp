@@ -269,7 +269,7 @@ void MixedForm::add_pressures(std::span<const double> b, std::span<double> x) {
   if (!(remainder(of_volumes) < without)) std::fill(x.begin() + std::ptrdiff_t(n_u_), x.end(), 0.0);
 }
 
-linalg::SolveStatistics MixedForm::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics MixedForm::find(std::span<const double> b, std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<double> x(n_u_ + n_p_, 0), right(x.size(), 0);
   std::ranges::copy(u, x.begin());

@@ -51,13 +51,13 @@ class PressureSchur {
 class MixedForm final : public SolutionMethod {
  public:
   MixedForm(const SolidProblem& problem, const MethodParameters& parameters);
-  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
-  /// Rows of the mixed form and their preconditioner: displacements, then scaled mean stresses. Collective.
+  /// The rows of the mixed form and their preconditioner: displacements, then mean stresses over their scale. Collective.
   void apply(std::span<const double> x, std::span<double> y);
   void precondition(std::span<const double> r, std::span<double> z);
   std::size_t n_unknowns() const { return n_u_ + n_p_; }
 
  private:
+  linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) override;
   void find_scales();
   void add_pressures(std::span<const double> b, std::span<double> x);
 

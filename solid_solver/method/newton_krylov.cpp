@@ -107,13 +107,13 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
   };
   krylov_ = std::make_unique<linalg::KrylovSolver>(
       "displacement", problem.mesh.comm, n, apply,
-      [this](std::span<const double> r, std::span<double> z) { approximate_inverse(r, z); });
+      [this](std::span<const double> r, std::span<double> z) { invert(r, z); });
   if (multigrid_ && !problem.is_static() && parameters.corrections_kept > 0)
     projection_ =
         std::make_unique<linalg::ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
 }
 
-bool NewtonKrylov::approximate_inverse(std::span<const double> r, std::span<double> z) {
+bool NewtonKrylov::invert(std::span<const double> r, std::span<double> z) {
   if (multigrid_)
     multigrid_->apply(r, z);
   else if (tied_)
@@ -216,7 +216,7 @@ void NewtonKrylov::project(std::span<double> unknowns) const {
   if (problem_.rigid) problem_.rigid->project(unknowns);
 }
 
-linalg::SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics NewtonKrylov::find(std::span<const double> b, std::span<double> u) {
   try {
     std::vector<double> rows;
     if (problem_.rigid) {

@@ -21,10 +21,10 @@ namespace couplet::solid {
 class NewtonKrylov final : public SolutionMethod {
  public:
   NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
-  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
-  bool approximate_inverse(std::span<const double> r, std::span<double> z) override;
 
  private:
+  linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) override;
+  bool invert(std::span<const double> r, std::span<double> z) override;
   void choose_multigrid(const MethodParameters& parameters);
   void add_rigid_motions(const std::vector<double>& inertia, double length);
   void choose_factors();

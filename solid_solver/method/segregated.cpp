@@ -143,7 +143,7 @@ double Segregated::find_residual(std::span<const double> b, std::span<const doub
   return norm(problem_.mesh.comm, residual_);
 }
 
-linalg::SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics Segregated::find(std::span<const double> b, std::span<double> u) {
   const auto start = std::chrono::steady_clock::now();
   linalg::SolveStatistics statistics;
   const double wanted = tolerance_ * norm(problem_.mesh.comm, b);

@@ -53,9 +53,9 @@ linalg::Acceleration acceleration_of(const MethodParameters& parameters);
 class Segregated final : public SolutionMethod {
  public:
   Segregated(const SolidProblem& problem, const MethodParameters& parameters);
-  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
 
  private:
+  linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) override;
   double find_residual(std::span<const double> b, std::span<const double> u);
 
   SolidProblem problem_;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/method/block_coupled.hpp"
 #include "solid_solver/method/mixed_form.hpp"
@@ -113,7 +114,33 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   return why;
 }
 
+/// Factors in the place of an iteration that the program chose.
+std::unique_ptr<SolutionMethod> by_factors(const SolidProblem& problem, MethodParameters parameters) {
+  if (!factor_cost(problem.mesh, problem.geometry(), heaviness(problem)).fits()) return {};
+  parameters.preconditioner = Preconditioner::factors;
+  if (problem.is_symmetric()) return std::make_unique<NewtonKrylov>(problem, parameters);
+  parameters.linear_solver = MethodParameters::LinearSolver::direct;
+  return std::make_unique<BlockCoupled>(problem, parameters);
+}
+
 }  // namespace
+
+linalg::SolveStatistics SolutionMethod::solve(std::span<const double> b, std::span<double> u) {
+  if (instead_) return instead_->find(b, u);
+  if (!cure_) return find(b, u);
+  const std::vector<double> guess(u.begin(), u.end());
+  try {
+    return find(b, u);
+  } catch (const SolveFailure& failure) {
+    instead_ = cure_();
+    if (!instead_) throw;
+    log::info("{} Factors of the matrix solve it from here on; 'preconditioner: factors' omits the attempt.",
+              failure.what());
+    projection_.reset();
+    std::ranges::copy(guess, u.begin());
+    return instead_->find(b, u);
+  }
+}
 
 void SolidProblem::apply(std::span<const double> x, std::span<double> y) const {
   if (is_symmetric()) {
@@ -150,6 +177,11 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
     default:
       method = std::make_unique<BlockCoupled>(problem, parameters);
   }
+  const bool is_iteration = parameters.type == MethodType::newton_krylov && !problem.rigid &&
+                            parameters.preconditioner != Preconditioner::factors;
+  const bool was_left = asked.preconditioner == Preconditioner::automatic &&
+                        (problem.is_symmetric() || asked.type == MethodType::automatic);
+  if (is_iteration && was_left) method->cure_ = [=] { return by_factors(problem, parameters); };
   if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
   method->name_ += problem.is_symmetric()   ? ", symmetric face gradient"
                    : problem.is_corrected() ? ", corrected face gradient"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,12 +40,15 @@ struct SolidProblem {
 class SolutionMethod {
  public:
   virtual ~SolutionMethod() = default;
-  /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
+  /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Where an iteration that the
+  /// program chose does not converge, factors take over from then on if they fit into memory, and the log says so. Throws
   /// SolveFailure if the tolerance was not reached.
-  virtual linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
-  /// Applies a symmetric positive approximation of A^-1 to r, if available; else returns false. Collective.
-  virtual bool approximate_inverse(std::span<const double> /*r*/, std::span<double> /*z*/) { return false; }
-  /// Learns first guesses from accepted steps; nullptr if there is none.
+  linalg::SolveStatistics solve(std::span<const double> b, std::span<double> u);
+  /// z near A^-1 r, symmetric and positive, by what the iteration has at hand; false: there is nothing. Collective.
+  bool approximate_inverse(std::span<const double> r, std::span<double> z) {
+    return instead_ ? instead_->invert(r, z) : invert(r, z);
+  }
+  /// What the next first guess learns from accepted steps; none: nothing.
   linalg::ResidualProjection* projection() const { return projection_.get(); }
   /// For the log, such as "block-coupled (direct), thesis's face gradient", with the reason of `automatic`.
   const std::string& name() const { return name_; }
@@ -54,6 +58,12 @@ class SolutionMethod {
   std::unique_ptr<linalg::ResidualProjection> projection_;
 
  private:
+  virtual linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) = 0;
+  virtual bool invert(std::span<const double> /*r*/, std::span<double> /*z*/) { return false; }
+
+  /// Factors of the same problem; nullptr if they do not fit. Empty where the method was asked for.
+  std::function<std::unique_ptr<SolutionMethod>()> cure_;
+  std::unique_ptr<SolutionMethod> instead_;  // the cure, once it was needed
   friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);
 };
 

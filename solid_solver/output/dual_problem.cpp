@@ -39,17 +39,6 @@ Values rows_of_stress(const SolidBody& body, const std::vector<Tensor3>& stress)
   return rows;
 }
 
-/// Calls take(owned cell, face, volume of its pyramid).
-template <class Take>
-void visit_pyramids(const SolidBody& body, const Take& take) {
-  const mesh::Mesh& mesh = body.mesh();
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const auto [here, there] = elastic::pyramids(mesh, body.geometry(), f);
-    if (mesh.owner[f] < mesh.cells.n_owned()) take(mesh.owner[f], f, here);
-    if (f < mesh.n_interior && mesh.neighbour[f] < mesh.cells.n_owned()) take(mesh.neighbour[f], f, there);
-  }
-}
-
 }  // namespace
 
 DualProblem::DualProblem(const SolidBody& body, std::span<const double> unknowns,
@@ -77,7 +66,7 @@ std::vector<double> DualProblem::of_stress(std::span<const Index> cells, const T
   const mesh::Mesh& mesh = body_.mesh();
   double volume = 0;
   std::vector<Tensor3> stress(std::size_t(mesh.n_flux_faces()), Tensor3::Zero());
-  visit_pyramids(body_, [&](Index c, Index f, double v) {
+  elastic::visit_pyramids(body_.mesh(), body_.geometry(), [&](Index c, Index f, double v) {
     if (std::ranges::find(cells, c) == cells.end()) return;
     volume += v;
     stress[std::size_t(f)] += v * body_.elastic().stress(c, weights);  // C is symmetric
@@ -92,7 +81,7 @@ double DualProblem::missed(std::span<const double> j, SolutionMethod& method) co
   method.solve(j, z);
   const std::vector<Tensor3> of_z = gap(z, {});
   double sum = 0;
-  visit_pyramids(body_, [&](Index c, Index f, double v) {
+  elastic::visit_pyramids(body_.mesh(), body_.geometry(), [&](Index c, Index f, double v) {
     sum += v * contraction(body_.elastic().stress(c, gap_[std::size_t(f)]), of_z[std::size_t(f)]);
   });
   return parallel::sum(body_.mesh().comm, sum);

@@ -9,8 +9,11 @@
 #include "common/base/text.hpp"
 #include "common/fv/gradients.hpp"
 #include "common/io/probes/probe.hpp"
+#include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/quadratic_fit.hpp"
 #include "solid_solver/body/stress.hpp"
+#include "solid_solver/output/probes.hpp"
 
 namespace couplet::solid {
 
@@ -33,13 +36,12 @@ struct LocalHeat {
 
 /// Cells around each local point; per local cell its boundary faces with values, and mirrored ones.
 struct CellsAround {
-  std::vector<std::vector<Index>> cells, faces, mirrors;
+  mesh::Csr cells;
+  std::vector<std::vector<Index>> faces, mirrors;
   explicit CellsAround(const Conduction& conduction) {
     const mesh::Mesh& mesh = conduction.mesh();
-    cells.resize(std::size_t(mesh.points.n_local()));
+    cells = mesh::transpose(mesh.cell_points, 0, mesh.points.n_local());
     faces.resize(std::size_t(mesh.cells.n_local())), mirrors.resize(faces.size());
-    for (Index c = 0; c < mesh.cells.n_local(); ++c)
-      for (const Index v : mesh.cell_points[c]) cells[std::size_t(v)].push_back(c);
     for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)
       (conduction.condition(f) == fv::HeatCondition::symmetry ? mirrors : faces)[std::size_t(mesh.owner[f])]
           .push_back(f);
@@ -48,7 +50,7 @@ struct CellsAround {
   std::vector<Index> of(const mesh::Mesh& mesh, Index cell) const {
     std::vector<Index> found;
     for (const Index v : mesh.cell_points[cell])
-      for (const Index c : cells[std::size_t(v)])
+      for (const Index c : cells[v])
         if (mesh.cell_zone[c] == mesh.cell_zone[cell]) found.push_back(c);
     // Sorted by numbers of the mesh file, so that sums do not depend on the ranks.
     std::ranges::sort(found, {}, [&](Index c) { return mesh.cell_id[c]; });
@@ -69,36 +71,24 @@ LocalHeat local_of(const Eigen::VectorXd& c, int dim, double reach) {
   return result;
 }
 
-/// Faces on symmetry planes of these cells, one per plane.
-std::vector<Index> planes_beside(const mesh::Geometry& g, const CellsAround& around,
-                                 std::span<const Index> cells) {
-  std::vector<Index> planes;
-  for (const Index c : cells)
-    for (const Index f : around.mirrors[std::size_t(c)])
-      if (std::ranges::none_of(planes, [&](Index p) {
-            return g.face_area[p].normalized().dot(g.face_area[f].normalized()) > 0.999;
-          }))
-        planes.push_back(f);
-  return planes;
-}
-
 LocalHeat fitted_heat(const Conduction& conduction, const CellsAround& around, Index cell,
                       const HeatState& field) {
   const mesh::Mesh& mesh = conduction.mesh();
   const mesh::Geometry& g = conduction.geometry();
-  const std::vector<Index> cells = around.of(mesh, cell), planes = planes_beside(g, around, cells);
+  const std::vector<Index> cells = around.of(mesh, cell);
   const Vec3 centre = g.cell_centre[cell];
   double reach = std::pow(g.volume[cell], 1. / mesh.dim);
-  for (const Index c : cells) reach = std::max(reach, (g.cell_centre[c] - centre).norm());
+  std::vector<MirrorPlane> planes;
+  for (const Index c : cells) {
+    reach = std::max(reach, (g.cell_centre[c] - centre).norm());
+    for (const Index f : around.mirrors[std::size_t(c)]) add_mirror(g, f, planes);
+  }
   fv::NearQuadratic fit(mesh.dim, centre, reach, 1);
   const double own = field.cells[std::size_t(cell)];  // differences keep the digits
   const auto sample = [&](const Vec3& x, double value) {
     const double above = value - own;
     fit.add(x, {&above, 1});
-    for (const Index p : planes) {
-      const Vec3 normal = g.face_area[p].normalized();
-      fit.add(x - 2 * normal.dot(x - g.face_centre[p]) * normal, {&above, 1});
-    }
+    for (const MirrorPlane& p : planes) fit.add(p.image(x), {&above, 1});
   };
   for (const Index c : cells) {
     sample(g.cell_centre[c], field.cells[std::size_t(c)]);

@@ -11,6 +11,8 @@
 #include "common/log/log.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/inner_variation.hpp"
+#include "solid_solver/body/recovered_strain.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -143,15 +145,36 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
     modes = by_factors ? search_by_factors(problem, cell_mass, n, shift_part * scale)
                        : search(problem, method, cell_mass, n, shift_part * scale);
   } catch (const SolveFailure& e) {
-    if (!chooses) throw;
-    log::info("modes: {} did not succeed: {}", by_factors ? "the factorised search" : "multigrid", e.what());
-    method.preconditioner =
-        by_factors ? MethodParameters::Preconditioner::multigrid : MethodParameters::Preconditioner::factors;
+    if (!chooses || !by_factors) throw;
+    log::info("modes: the factorised search did not succeed: {}", e.what());
+    method.preconditioner = MethodParameters::Preconditioner::multigrid;
     modes = search(problem, method, cell_mass, n, shift_part * scale);
   }
   for (double& value : modes.eigenvalue)
     if (value < rigid_part * scale) value = 0;
   return modes;
+}
+
+double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
+  const mesh::Mesh& mesh = body.mesh();
+  double most = 0;
+  for (std::size_t m = 0; m < modes.shape.size(); ++m) {
+    if (!(modes.eigenvalue[m] > 0)) continue;  // a rigid motion
+    const std::vector<double>& shape = modes.shape[m];
+    const StrainGap gap =
+        strain_gap(body, shape, {}, [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); });
+    RecoveredStrain recovered(mesh, body.elastic());
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.add(f, gap.strain[std::size_t(f)]);
+    recovered.recover();
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.compare(f, gap.strain[std::size_t(f)]);
+    // Of a body under load the stress stiffness has a part of the eigenvalue.
+    const elastic::ElasticField u{shape, {}};
+    const double share =
+        parallel::sum(mesh.comm, body.kernel().product(elastic::ElasticPart::stiffness, u, u)) /
+        modes.eigenvalue[m];
+    most = std::max(most, share * std::max({gap.missed, gap.variation, recovered.missed()}));
+  }
+  return 0.5 * most;
 }
 
 modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenModes& modes) {

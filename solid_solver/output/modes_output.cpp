@@ -7,11 +7,9 @@
 #include <string>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/modal_model.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/inner_variation.hpp"
 #include "solid_solver/output/buckling.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/output.hpp"
@@ -19,50 +17,7 @@
 namespace couplet::solid {
 namespace {
 
-/// Largest relative strain energy error of these shapes with supports at rest, twice that of the frequencies.
-/// Uses the squared difference of two gradients' strains, or InnerVariation if larger. Collective.
-double energy_error(const SolidBody& body, const modes::EigenModes& modes) {
-  const mesh::Mesh& mesh = body.mesh();
-  const elastic::ElasticOperator& rows = body.elastic();
-  const elastic::ElasticKernel other(
-      mesh, rows,
-      body.is_corrected() ? elastic::FaceGradientScheme::thesis : elastic::FaceGradientScheme::corrected);
-  const Index n = mesh.n_flux_faces(), n_owned = mesh.cells.n_owned();
-  const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); };
-  const auto weight = [&](Index f) {
-    const auto [here, there] = elastic::pyramids(mesh, body.geometry(), f);
-    double sum = mesh.owner[f] < n_owned ? here * rows.lame(mesh.owner[f]).mu : 0;
-    if (f < mesh.n_interior && mesh.neighbour[f] < n_owned) sum += there * rows.lame(mesh.neighbour[f]).mu;
-    return sum;
-  };
-  double most = 0;
-  for (std::size_t m = 0; m < modes.shape.size(); ++m) {
-    if (!(modes.eigenvalue[m] > 0)) continue;  // a rigid motion
-    InnerVariation variation(mesh, rows);
-    std::vector<Tensor3> used(static_cast<std::size_t>(n));
-    double gap = 0, size = 0;
-    body.kernel().face_gradients(
-        modes.shape[m], {},
-        [&](Index f, const Tensor3& h) {
-          used[std::size_t(f)] = strain(h);
-          variation.add(f, used[std::size_t(f)]);
-          size += weight(f) * used[std::size_t(f)].squaredNorm();
-        },
-        0, n);
-    other.face_gradients(
-        modes.shape[m], {},
-        [&](Index f, const Tensor3& h) {
-          gap += weight(f) * (strain(h) - used[std::size_t(f)]).squaredNorm();
-        },
-        0, n);
-    gap = parallel::sum(mesh.comm, gap), size = parallel::sum(mesh.comm, size);
-    most = std::max(
-        {most, size > 0 ? gap / size : 0, InnerVariation::is_needed(mesh, rows) ? variation.missed() : 0});
-  }
-  return most;
-}
-
-/// Mass per owned cell [kg].
+/// [kg]
 std::vector<double> cell_masses(const SolidBody& body) {
   std::vector<double> mass;
   for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
@@ -88,20 +43,18 @@ void SolidOutput::write_modes() {
   } catch (const SolveFailure& e) {
     throw Error("output.modes: {}", e.what());  // no shorter step would help
   }
-  const double error = 0.5 * energy_error(body_, found);
-  write_vibrations(
-      *problem, found, "",
-      error > 0 ? fmt::format("; estimated error due to the mesh up to {:.2g} %", 100 * error) : "");
+  write_vibrations(*problem, found, "");
 }
 
-/// `of`: subject for the log. `errs`: mesh error.
+/// `of`: of what, for the log.
 void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::EigenModes& found,
-                                   const char* of, const std::string& errs) {
+                                   const char* of) {
   const mesh::Mesh& mesh = body_.mesh();
   modes::ModalModel model = modal_model(problem, found);
   model.mass = 0;
   for (const double m : cell_masses(body_)) model.mass += m;
   model.mass = parallel::sum(mesh.comm, model.mass);
+  const double error = mode_error(body_, found);
   if (parallel::comm_rank(mesh.comm) != 0) return;
   io::Series series(context_.output_folder / "modes.csv",
                     {"number", "frequency [Hz]", "effective mass x [kg]", "effective mass y [kg]",
@@ -113,10 +66,12 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
     series.row(row);
   }
   if (mesh.dim == 3) couplet::modes::write_modes(context_.output_folder / "modes.h5", model, "");
-  log::info("modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}{}",
-            model.n_modes(), of, model.frequency.front(), model.frequency.back(),
-            mesh.dim == 3 ? ", their surface shapes in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
-            found.worst_residual, errs);
+  log::info(
+      "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}; estimated error due "
+      "to the mesh up to {:.2g} %",
+      model.n_modes(), of, model.frequency.front(), model.frequency.back(),
+      mesh.dim == 3 ? ", their surface shapes in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
+      found.worst_residual, 100 * error);
 }
 
 void SolidOutput::write_preloaded_modes() {
@@ -125,7 +80,7 @@ void SolidOutput::write_preloaded_modes() {
   try {
     const modes::EigenModes found = preloaded_modes(body_, prestress, body_.parameters().output.modes);
     write_vibrations({body_.mesh(), body_.elastic(), {}, body_.kernel(), 0}, found,
-                     " about the loaded equilibrium", "");
+                     " about the loaded equilibrium");
   } catch (const SolveFailure& e) {
     throw Error("output.modes: {}", e.what());
   }

@@ -35,14 +35,16 @@ void SolidSurfaces::write(double time, std::span<const double> points, std::span
     series_.open(context_.output_folder, body_.parameters().output.deformed, context_.restart_time);
   is_open_ = true;
   const int dim = body_.mesh().dim;
-  const std::vector<double> stress = derived_.point_stress(points, wanted_);
+  SidedTensors sides = derived_.stress_sides(points, wanted_);
+  std::vector<double> traction = derived_.traction(places, sides);
+  const std::vector<double> stress = worst_side(std::move(sides));
   std::vector<double> equivalent(wanted_.size(), 0);
   for (std::size_t v = 0; v < wanted_.size(); ++v)
     if (wanted_[v])
       equivalent[v] = equivalent_stress(unpack(std::span(stress).subspan(v * tensor_size, tensor_size)));
   FieldList fields;
   fields.list.push_back({"displacement", "m", Place::points, dim, points});
-  fields.add("traction", "Pa", Place::cells, dim, derived_.traction(places, stress));
+  fields.add("traction", "Pa", Place::cells, dim, std::move(traction));
   fields.add_tensor("stress", "Pa", Place::points, dim, stress);
   fields.add("equivalent-stress", "Pa", Place::points, 1, std::move(equivalent));
   if (ThermalStrain* thermal = body_.thermal()) thermal->add_surface_fields(fields.list);

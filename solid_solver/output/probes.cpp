@@ -30,29 +30,74 @@ io::OutputField effect_field(const SolidBody& body, const std::string& name) {
   throw Error("probes: the field '{}' is requested, but nothing in this scene computes it.", name);
 }
 
+constexpr double least_weight =
+    1e-9;  // of a point in the value at a place; below, the place lies on a side without it
+
 }  // namespace
+
+std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe) {
+  std::vector<GlobalIndex> corners;
+  for (std::size_t i = 0; i < probe.points().size(); ++i)
+    if (probe.weights()[i] > least_weight) corners.push_back(mesh.point_id[probe.points()[i]]);
+  corners = parallel::all_gather(mesh.comm, corners);
+  std::vector<Index> cells;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const auto has = [&](GlobalIndex id) {
+      return std::ranges::any_of(mesh.cell_points[c], [&](Index v) { return mesh.point_id[v] == id; });
+    };
+    if (std::ranges::all_of(corners, has)) cells.push_back(c);
+  }
+  return cells;
+}
+
+std::vector<int> materials_at(const mesh::Mesh& mesh, const io::Probe& probe) {
+  if (number_of_materials(mesh) == 1) return {0};
+  std::vector<int> materials;
+  for (const Index c : cells_at(mesh, probe)) materials.push_back(mesh.material_of(c));
+  materials = parallel::all_gather(mesh.comm, materials);
+  std::ranges::sort(materials);
+  materials.erase(std::unique(materials.begin(), materials.end()), materials.end());
+  return materials;
+}
+
+Side worst_side_at(const io::Probe& probe, const std::vector<int>& materials, const SidedTensors& sides,
+                   MPI_Comm comm) {
+  SidedTensors here;
+  for (const int m : materials) here.push_back(probe.sample(sides[std::size_t(m)], tensor_size));
+  Side worst{materials.front()};
+  if (parallel::comm_rank(comm) == 0) {
+    std::ranges::copy(worst_side(here), worst.tensor.begin());
+    const auto is_worst = [&](const auto& side) { return std::ranges::equal(side, worst.tensor); };
+    worst.material = materials.at(std::size_t(std::ranges::find_if(here, is_worst) - here.begin()));
+  }
+  MPI_Bcast(&worst.material, 1, MPI_INT, 0, comm);
+  MPI_Bcast(worst.tensor.data(), tensor_size, MPI_DOUBLE, 0, comm);
+  return worst;
+}
+
+std::vector<std::uint8_t> flags_of(const mesh::Mesh& mesh, std::span<const Index> points) {
+  std::vector<double> flags(std::size_t(mesh.points.n_local()), 0);
+  for (const Index v : points) flags[std::size_t(v)] = 1;
+  mesh.points.add_to_owners(flags);
+  mesh.points.update_ghosts(flags);
+  return {flags.begin(), flags.end()};
+}
 
 SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : body_(body), derived_(derived) {
   std::vector<Vec3> places;
   for (const auto& [name, chosen] : body.parameters().probes) {
     places.push_back(chosen.point);
-    probes_.push_back(
-        {name, io::Probe(body.mesh(), body.geometry().points, name, chosen.point), chosen.fields});
+    io::Probe probe(body.mesh(), body.geometry().points, name, chosen.point);
+    std::vector<int> materials = materials_at(body.mesh(), probe);
+    probes_.push_back({name, std::move(probe), chosen.fields, std::move(materials)});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
   io::doubt_mesh_scale(body.mesh(), body.geometry().points, places);
-  if (watches_stress()) stressed_ = points_with_stress();
-}
-
-std::vector<std::uint8_t> SolidProbes::points_with_stress() const {
-  const parallel::IndexMap& points = body_.mesh().points;
-  std::vector<double> flags(std::size_t(points.n_local()), 0);
+  std::vector<Index> stressed;
   for (const Watched& watched : probes_)
     if (std::ranges::any_of(watched.fields, is_stress))
-      for (const Index v : watched.probe.points()) flags[std::size_t(v)] = 1;
-  points.add_to_owners(flags);
-  points.update_ghosts(flags);
-  return {flags.begin(), flags.end()};
+      stressed.insert(stressed.end(), watched.probe.points().begin(), watched.probe.points().end());
+  if (watches_stress()) stressed_ = flags_of(body.mesh(), stressed);
 }
 
 void SolidProbes::add_columns(const std::string& probe, const std::string& field) {
@@ -93,11 +138,12 @@ bool SolidProbes::any_watches(std::initializer_list<const char*> fields) const {
 
 std::vector<double> SolidProbes::sample(std::span<const double> points) const {
   const int dim = body_.mesh().dim;
-  std::vector<double> velocity, acceleration, stress, strain, row;
+  std::vector<double> velocity, acceleration, row;
+  SidedTensors stress, strain;
   if (any_watches({"velocity"})) velocity = derived_.point_velocity();
   if (any_watches({"acceleration"})) acceleration = derived_.point_acceleration();
-  if (watches_stress()) stress = derived_.point_stress(points, stressed_);
-  if (any_watches({"strain"})) strain = derived_.point_strain(points);
+  if (watches_stress()) stress = derived_.stress_sides(points, stressed_);
+  if (any_watches({"strain"})) strain = derived_.strain_sides(points);
   for (const Watched& watched : probes_) {
     for (const std::string& field : watched.fields) {
       std::vector<double> values;
@@ -107,14 +153,15 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
         values = watched.probe.sample(velocity, dim);
       } else if (field == "acceleration") {
         values = watched.probe.sample(acceleration, dim);
-      } else if (field == "strain") {
-        values = watched.probe.sample(strain, tensor_size);
-      } else if (is_stress(field)) {
-        values = watched.probe.sample(stress, tensor_size);
-        // Derived from the interpolated tensor; other ranks have no values.
-        if (field == "equivalent-stress" && !values.empty()) values = {equivalent_stress(unpack(values))};
-        if (field == "principal-stress" && !values.empty()) {
-          const auto principal = principal_stresses(unpack(values));
+      } else if (field == "strain" || is_stress(field)) {
+        const PackedTensor tensor = worst_side_at(watched.probe, watched.materials,
+                                                  field == "strain" ? strain : stress, body_.mesh().comm)
+                                        .tensor;
+        if (parallel::comm_rank(body_.mesh().comm) != 0) continue;
+        values.assign(tensor.begin(), tensor.end());
+        if (field == "equivalent-stress") values = {equivalent_stress(unpack(tensor))};
+        if (field == "principal-stress") {
+          const auto principal = principal_stresses(unpack(tensor));
           values.assign(principal.begin(), principal.end());
         }
       } else {
@@ -128,15 +175,16 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
 
 std::vector<SolidProbes::Stress> SolidProbes::stresses(std::span<const double> points) const {
   if (!watches_stress()) return {};
-  std::vector<double> left;
-  const std::vector<double> stress = derived_.point_stress(points, stressed_, &left);
+  std::vector<std::vector<double>> left;
+  const SidedTensors stress = derived_.stress_sides(points, stressed_, &left);
   std::vector<Stress> found;
   for (const Watched& watched : probes_) {
     if (std::ranges::none_of(watched.fields, is_stress)) continue;
-    const std::vector<double> tensor = watched.probe.sample(stress, tensor_size),
-                              share = watched.probe.sample(left, 1);
-    if (!tensor.empty())
-      found.push_back({watched.name, watched.probe.place(), equivalent_stress(unpack(tensor)), share[0]});
+    const Side side = worst_side_at(watched.probe, watched.materials, stress, body_.mesh().comm);
+    const std::vector<double> share = watched.probe.sample(left[std::size_t(side.material)], 1);
+    if (!share.empty())
+      found.push_back(
+          {watched.name, watched.probe.place(), equivalent_stress(unpack(side.tensor)), share[0]});
   }
   return found;
 }
@@ -145,9 +193,8 @@ namespace {
 
 double larger_of(double left, double mesh) { return std::isnan(left) ? left : std::fmax(left, mesh); }
 
-/// Flags of the points of the cell with the largest stress in it or its boundary faces. Collective.
-std::vector<std::uint8_t> points_of_largest(const SolidBody& body, const SolidFields& fields,
-                                            std::span<const double> points) {
+/// The cell with the largest equivalent stress, its own or that of a boundary face; -1 on all ranks but one. Collective.
+Index cell_of_largest(const SolidBody& body, const SolidFields& fields, std::span<const double> points) {
   const mesh::Mesh& mesh = body.mesh();
   double most = -1;
   Index at = -1;
@@ -162,20 +209,19 @@ std::vector<std::uint8_t> points_of_largest(const SolidBody& body, const SolidFi
   // Selects the same cell on any number of ranks.
   const double largest = parallel::max(mesh.comm, most);
   const double id = most == largest && at >= 0 ? double(mesh.cell_id[at]) : 1e300;
-  std::vector<double> flags(std::size_t(mesh.points.n_local()), 0);
-  if (parallel::min(mesh.comm, id) == id && id < 1e300)
-    for (const Index v : mesh.cell_points[at]) flags[std::size_t(v)] = 1;
-  mesh.points.add_to_owners(flags);
-  mesh.points.update_ghosts(flags);
-  return {flags.begin(), flags.end()};
+  return parallel::min(mesh.comm, id) == id && id < 1e300 ? at : -1;
 }
 
 ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::span<const double> points,
                        double mesh_part) {
   const mesh::Mesh& mesh = body.mesh();
-  const std::vector<std::uint8_t> wanted = points_of_largest(body, fields, points);
-  std::vector<double> left;
-  const std::vector<double> stress = fields.point_stress(points, wanted, &left);
+  const Index cell = cell_of_largest(body, fields, points);
+  const auto material = std::size_t(parallel::max(mesh.comm, cell < 0 ? 0 : mesh.material_of(cell)));
+  const std::vector<std::uint8_t> wanted =
+      flags_of(mesh, cell < 0 ? std::span<const Index>() : std::span<const Index>(mesh.cell_points[cell]));
+  std::vector<std::vector<double>> all_left;
+  const SidedTensors sides = fields.stress_sides(points, wanted, &all_left);
+  const std::vector<double>&stress = sides[material], &left = all_left[material];
   struct Seen {
     double value, left;
     Vec3 place;

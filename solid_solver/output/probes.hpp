@@ -12,7 +12,25 @@
 
 namespace couplet::solid {
 
-/// Probes of a solid: their columns and values.
+/// Owned cells that have the place at a corner, on a side or inside. Collective.
+std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe);
+
+/// Materials that meet at a probe, ascending. Collective.
+std::vector<int> materials_at(const mesh::Mesh& mesh, const io::Probe& probe);
+
+/// A tensor at a probe.
+struct Side {
+  int material = 0;
+  PackedTensor tensor{};
+};
+/// The side with the largest equivalent value among these materials, the same on all ranks. Collective.
+Side worst_side_at(const io::Probe& probe, const std::vector<int>& materials, const SidedTensors& sides,
+                   MPI_Comm comm);
+
+/// Flags of these local points of all ranks, on each rank that shares one. Collective.
+std::vector<std::uint8_t> flags_of(const mesh::Mesh& mesh, std::span<const Index> points);
+
+/// The probes of a solid: which columns they fill, and their values.
 class SolidProbes {
  public:
   /// Throws Error if a probe is outside or its field does not exist. Keeps references. Collective.
@@ -39,13 +57,11 @@ class SolidProbes {
     std::string name;
     io::Probe probe;
     std::vector<std::string> fields;
+    std::vector<int> materials;
   };
   void add_columns(const std::string& probe, const std::string& field);
   bool watches_stress() const;
   bool any_watches(std::initializer_list<const char*> fields) const;
-
-  /// Flags of local points needed for stresses, on all ranks that share them. Collective.
-  std::vector<std::uint8_t> points_with_stress() const;
 
   const SolidBody& body_;
   const SolidFields& derived_;

@@ -12,81 +12,49 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/fv/gradients.hpp"
+#include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/quadratic_fit.hpp"
 #include "solid_solver/body/stress.hpp"
 #include "solid_solver/output/dual_problem.hpp"
 #include "solid_solver/output/probes.hpp"
 
 namespace couplet::solid {
 
-namespace {
-
-struct MirrorPlane {
-  Vec3 normal, origin;
-  Vec3 reflect(const Vec3& v) const { return v - 2 * normal.dot(v) * normal; }
-  Vec3 image(const Vec3& place) const { return place - 2 * normal.dot(place - origin) * normal; }
-};
-
-struct Neighbours {
-  std::vector<Index> cells, faces;
-  std::vector<MirrorPlane> mirrors;
-  double reach = 0;
-};
-
-Neighbours around(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index cell) {
-  const mesh::Geometry& g = rows.geometry();
-  Neighbours found;
-  std::vector<bool> is_near(std::size_t(mesh.cells.n_local()), false);
-  const auto own = mesh.cell_points[cell];
-  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
-    const auto points = mesh.cell_points[c];
-    const auto touches = [&](Index v) { return std::ranges::find(own, v) != own.end(); };
-    if (mesh.material_of(c) != mesh.material_of(cell) || std::ranges::none_of(points, touches)) continue;
-    is_near[std::size_t(c)] = true;
-    found.cells.push_back(c);
-    found.reach = std::max(found.reach, (g.cell_centre[c] - g.cell_centre[cell]).norm());
-  }
-  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
-    if (!is_near[std::size_t(mesh.owner[f])]) continue;
-    if (!rows.mirrored(f)) {
-      found.faces.push_back(f);
-      continue;
-    }
-    const MirrorPlane plane{g.face_area[f].normalized(), g.face_centre[f]};
-    const auto is_same = [&](const MirrorPlane& m) { return m.normal.dot(plane.normal) > 0.99; };
-    if (std::ranges::none_of(found.mirrors, is_same)) found.mirrors.push_back(plane);
-  }
-  if (found.reach == 0) found.reach = std::pow(g.volume[cell], 1. / mesh.dim);
-  return found;
-}
-
-}  // namespace
-
 Vec3 quadratic_displacement(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index cell,
                             const Vec3& place, std::span<const double> cell_u,
                             std::span<const double> face_u) {
   const mesh::Geometry& g = rows.geometry();
   const int dim = mesh.dim;
-  const Neighbours patch = around(mesh, rows, cell);
   const Vec3 centre = g.cell_centre[cell];
-  fv::NearQuadratic fit(dim, centre, patch.reach, 3);
+  const mesh::Csr faces_of_cell = boundary_faces_of_cells(mesh);
+  std::vector<Index> cells, mark(std::size_t(mesh.cells.n_local()), -1);
+  gather_cells(mesh, mesh::transpose(mesh.cell_points, 0, mesh.points.n_local()), cell, mark, cells);
+  std::ranges::sort(cells);
+  std::vector<MirrorPlane> mirrors;
+  double reach = 0;
+  for (const Index c : cells) {
+    reach = std::max(reach, (g.cell_centre[c] - centre).norm());
+    for (const Index f : faces_of_cell[c])
+      if (rows.mirrored(f)) add_mirror(g, f, mirrors);
+  }
+  fv::NearQuadratic fit(dim, centre, reach > 0 ? reach : std::pow(g.volume[cell], 1. / dim), 3);
   const auto add = [&](const Vec3& x, const Vec3& value) {
     fit.add(x, {value.data(), 3});
-    for (const MirrorPlane& m : patch.mirrors) {
+    for (const MirrorPlane& m : mirrors) {
       const Vec3 image = m.reflect(value);
       fit.add(m.image(x), {image.data(), 3});
     }
   };
-  for (const Index c : patch.cells) add(g.cell_centre[c], elastic::vector_at(cell_u, c, dim));
-  for (const Index f : patch.faces)
-    add(g.face_centre[f], elastic::vector_at(face_u, f - mesh.n_interior, dim));
+  for (const Index c : cells) {
+    add(g.cell_centre[c], elastic::vector_at(cell_u, c, dim));
+    for (const Index f : faces_of_cell[c])
+      if (!rows.mirrored(f)) add(g.face_centre[f], elastic::vector_at(face_u, f - mesh.n_interior, dim));
+  }
   return fit.solve().transpose() * fit.terms(place);
 }
 
 namespace {
-
-// Smallest weight of a point in a value; below, the place is on a side without it.
-constexpr double least_weight = 1e-9;
 
 std::string method_of(const QuantityEstimate& q) {
   return q.body > 0 && q.error() == q.body ? "as the whole body" : "dual-weighted";
@@ -139,19 +107,15 @@ class Estimates {
   }
 
   void take_stress(const io::Probe& probe, const std::string& component, QuantityEstimate& e) const {
-    std::vector<double> flags(std::size_t(mesh_.points.n_local()), 0), left;
-    for (const Index v : probe.points()) flags[std::size_t(v)] = 1;
-    mesh_.points.add_to_owners(flags);
-    mesh_.points.update_ghosts(flags);
-    const std::vector<std::uint8_t> wanted(flags.begin(), flags.end());
-    const std::vector<double> stress = fields_.point_stress(points_, wanted, &left);
-    const std::vector<double> sampled = probe.sample(stress, tensor_size);
-    PackedTensor packed;
-    for (std::size_t i = 0; i < packed.size(); ++i) packed[i] = shared(mesh_.comm, sampled, i);
-    const Tensor3 tensor = unpack(packed), weights = weights_of(component, tensor);
+    std::vector<std::vector<double>> left;
+    const SidedTensors stress = fields_.stress_sides(points_, flags_of(mesh_, probe.points()), &left);
+    const Side side = worst_side_at(probe, materials_at(mesh_, probe), stress, mesh_.comm);
+    const Tensor3 tensor = unpack(side.tensor), weights = weights_of(component, tensor);
     e.value = component.empty() ? equivalent_stress(tensor) : contraction(weights, tensor);
-    e.local = shared(mesh_.comm, probe.sample(left, 1), 0) * tensor.norm();
-    e.dual = dual_.missed(dual_.of_stress(cells_at(mesh_, probe), weights), method_);
+    e.local = shared(mesh_.comm, probe.sample(left[std::size_t(side.material)], 1), 0) * tensor.norm();
+    std::vector<Index> cells = cells_at(mesh_, probe);
+    std::erase_if(cells, [&](Index c) { return mesh_.material_of(c) != side.material; });
+    e.dual = dual_.missed(dual_.of_stress(cells, weights), method_);
   }
 
   /// d value / d stress: of an equivalent stress 3/2 s / |value|, s the deviator.
@@ -177,21 +141,6 @@ class Estimates {
 };
 
 }  // namespace
-
-std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe) {
-  std::vector<GlobalIndex> corners;
-  for (std::size_t i = 0; i < probe.points().size(); ++i)
-    if (probe.weights()[i] > least_weight) corners.push_back(mesh.point_id[probe.points()[i]]);
-  corners = parallel::all_gather(mesh.comm, corners);
-  std::vector<Index> cells;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const auto has = [&](GlobalIndex id) {
-      return std::ranges::any_of(mesh.cell_points[c], [&](Index v) { return mesh.point_id[v] == id; });
-    };
-    if (std::ranges::all_of(corners, has)) cells.push_back(c);
-  }
-  return cells;
-}
 
 Vec3 place_of(const SolidQuantity& quantity) {
   Vec3 place = Vec3::Zero();

@@ -44,10 +44,7 @@ struct QuantityEstimate {
   double error() const;
 };
 
-/// Owned cells that contain the place or have it on a side or at a corner. Collective.
-std::vector<Index> cells_at(const mesh::Mesh& mesh, const io::Probe& probe);
-
-/// Position given in the case [m]; 0 without a point.
+/// Where the case puts it [m]; 0 without a point.
 Vec3 place_of(const SolidQuantity& quantity);
 
 /// Estimates `quantities`, one solve with `method` each. `unknowns` and `state`: accepted. Equal on all

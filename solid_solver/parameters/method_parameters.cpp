@@ -91,7 +91,8 @@ void declare_linear_solver(config::Section& s, MethodParameters& m) {
           "of one size; mixed: for the symmetric gradient with one volume strain per cell, with the mean "
           "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3; "
           "auto: factors where the run makes so many steps that they pay, for several materials and from "
-          "nu = 0.49 where they are set up in seconds; otherwise mixed from nu = 0.49, otherwise multigrid");
+          "nu = 0.49 where they are set up in seconds; otherwise mixed from nu = 0.49, otherwise multigrid; an "
+          "iteration that auto chose and that does not converge is replaced by factors if they fit into memory");
 }
 
 void declare_iteration(config::Section& s, MethodParameters& m) {

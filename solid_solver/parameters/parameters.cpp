@@ -58,7 +58,8 @@ std::string wrong_quantity(const SolidQuantity& q, int dimension) {
 void declare(config::Section& s, SolidProbe& p) {
   s.value("fields", p.fields)
       .doc(
-          "fields to record: displacement, velocity, acceleration, stress, equivalent-stress, "
+          "fields to record (stress and strain at a joint of materials: of the side where the equivalent value is "
+          "larger): displacement, velocity, acceleration, stress, equivalent-stress, "
           "principal-stress, strain, temperature");
   s.check([&] { return unknown_field(p.fields); }, "fields");
 }
@@ -80,7 +81,10 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("stress", o.stress).doc("write stress components and the equivalent stress");
   s.value("strain", o.strain).doc("write strain components");
   s.value("principal-stress", o.principal_stress).doc("write the principal stresses, largest first");
-  s.value("point-stress", o.point_stress).doc("also write stress components at the points");
+  s.value("point-stress", o.point_stress)
+      .doc(
+          "also write stress components at the points; where materials meet, those of the side with the larger "
+          "equivalent stress");
   s.value("acceleration", o.acceleration).doc("write the acceleration of a dynamic analysis");
   s.value("surfaces", o.surfaces)
       .doc(
@@ -150,9 +154,10 @@ void declare_scene(config::Section& s, SolidParameters& p) {
             {"buckling", Analysis::buckling}})
       .doc(
           "static neglects inertia; thermal conducts heat only; buckling is static with 'output: {buckling: "
-          "4}', or the number given there");
+          "4}', or the number given there, and a factor below 1 is its answer");
   if (p.analysis == Analysis::buckling) {
     p.analysis = Analysis::static_;
+    p.seeks_buckling = true;
     p.output.buckling = 4;
   }
   using Kinematics = SolidParameters::Kinematics;

@@ -63,6 +63,8 @@ struct SolidParameters {
   int dimension = 3;
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;
+  bool seeks_buckling =
+      false;  ///< 'analysis: buckling': a low load factor is its answer and no doubt about it
   Kinematics kinematics = Kinematics::small_strain;
   bool energy_momentum = false;  // finite strain: use the conserving stress within a step
   SolidMaterial material;

@@ -67,16 +67,10 @@ void ThermalStrain::add_face_stress(Index first, std::span<Tensor3> stress) cons
 std::vector<double> ThermalStrain::pyramid_means(const std::vector<double>& of_faces) const {
   const Index n_owned = mesh_->cells.n_owned();
   std::vector<double> total(n_owned, 0), weight(n_owned, 0);
-  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
-    const auto add = [&](Index c, double pyramid) {
-      if (c >= n_owned) return;
-      total[c] += pyramid * of_faces[f];
-      weight[c] += pyramid;
-    };
-    const auto [here, there] = elastic::pyramids(*mesh_, *geometry_, f);
-    add(mesh_->owner[f], here);
-    if (f < mesh_->n_interior) add(mesh_->neighbour[f], there);
-  }
+  elastic::visit_pyramids(*mesh_, *geometry_, [&](Index c, Index f, double pyramid) {
+    total[c] += pyramid * of_faces[f];
+    weight[c] += pyramid;
+  });
   for (Index c = 0; c < n_owned; ++c) total[c] /= weight[c];
   return total;
 }

@@ -328,13 +328,10 @@ void FiniteKernel::set_stretch(std::span<const double> of_faces) {
   if (edges_) of_faces.empty() ? edges_->forget_stretch() : stretch_edges();
   if (of_faces.empty() || cells_.of_nodes.empty()) return;
   cells_.swelling.assign(cells_.volume.size(), 0);
-  const Index n = mesh_.cells.n_owned();
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh_, rows_.geometry(), f);
-    const double theta = of_faces[std::size_t(f)], cube = theta * theta * theta;
-    if (mesh_.owner[f] < n) cells_.swelling[mesh_.owner[f]] += here * cube;
-    if (f < mesh_.n_interior && mesh_.neighbour[f] < n) cells_.swelling[mesh_.neighbour[f]] += there * cube;
-  }
+  visit_pyramids(mesh_, rows_.geometry(), [&](Index c, Index f, double pyramid) {
+    const double theta = of_faces[std::size_t(f)];
+    cells_.swelling[c] += pyramid * (theta * theta * theta);
+  });
   for (std::size_t c = 0; c < cells_.swelling.size(); ++c) cells_.swelling[c] /= cells_.volume[c];
 }
 

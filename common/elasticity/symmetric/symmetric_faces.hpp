@@ -59,6 +59,20 @@ std::array<double, 4> point_shares(const mesh::Mesh& mesh, const mesh::Geometry&
 
 /// V_fP of the two sides [m^3]: pyramids from the cell center over the face. The second is 0 on the boundary.
 std::array<double, 2> pyramids(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f);
+/// take(cell, volume of its pyramid) for the owned cells beside a flux face.
+template <class Take>
+void visit_sides(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f, const Take& take) {
+  const Index n = mesh.cells.n_owned();
+  const auto [here, there] = pyramids(mesh, geometry, f);
+  if (mesh.owner[f] < n) take(mesh.owner[f], here);
+  if (f < mesh.n_interior && mesh.neighbour[f] < n) take(mesh.neighbour[f], there);
+}
+/// take(cell, face, volume of its pyramid) for all of them.
+template <class Take>
+void visit_pyramids(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Take& take) {
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+    visit_sides(mesh, geometry, f, [&](Index c, double volume) { take(c, f, volume); });
+}
 
 /// Global numbers of the blocks of `dim` unknowns, negative for known values.
 struct Numbering {

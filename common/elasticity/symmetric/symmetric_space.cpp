@@ -13,11 +13,7 @@ namespace couplet::elastic {
 
 std::vector<double> pyramid_volumes(const mesh::Mesh& mesh, const mesh::Geometry& geometry) {
   std::vector<double> volume(mesh.cells.n_owned(), 0);
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh, geometry, f);
-    if (mesh.owner[f] < mesh.cells.n_owned()) volume[mesh.owner[f]] += here;
-    if (f < mesh.n_interior && mesh.neighbour[f] < mesh.cells.n_owned()) volume[mesh.neighbour[f]] += there;
-  }
+  visit_pyramids(mesh, geometry, [&](Index c, Index, double pyramid) { volume[c] += pyramid; });
   return volume;
 }
 

@@ -21,7 +21,6 @@ TiedMatrix::TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, cons
   const std::size_t n = (n_nodes_ + 2 * points_.size()) * std::size_t(mesh.dim);
   from_.resize(n);
   to_.resize(n);
-  n_rows_ = parallel::sum(mesh.comm, GlobalIndex(n));
   n_ties_ = parallel::sum(mesh.comm, GlobalIndex(points_.size()) * mesh.dim);
 }
 

@@ -30,8 +30,6 @@ class TiedMatrix {
   void solve(std::span<const double> x, std::span<double> y);
   /// Number of negative eigenvalues of A, by Sylvester's law of inertia.
   GlobalIndex negative() const { return factors_->negative_pivots() - n_ties_; }
-  /// Number of rows over all ranks, including vertices and multipliers.
-  GlobalIndex n_rows() const { return n_rows_; }
 
  private:
   void number_all();
@@ -46,7 +44,7 @@ class TiedMatrix {
   GlobalIndex first_multiplier_ = 0;
   double tie_ = 0;
   linalg::SparseMatrix matrix_;
-  GlobalIndex n_ties_ = 0, n_rows_ = 0;
+  GlobalIndex n_ties_ = 0;
   std::unique_ptr<linalg::SymmetricFactors> factors_;
   std::vector<double> from_, to_;
 };

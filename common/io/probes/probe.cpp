@@ -135,12 +135,17 @@ struct Everything {
 
 }  // namespace
 
-void Probe::take(const Vec3& place, int rank, std::vector<Index>&& points, std::vector<double>&& weights) {
+void Probe::take(const Vec3& place, int rank, const std::vector<Index>& points,
+                 const std::vector<double>& weights) {
   place_ = place;
   MPI_Bcast(place_.data(), 3, MPI_DOUBLE, rank, comm_);
   if (parallel::comm_rank(comm_) != rank) return;
-  points_ = std::move(points);
-  weights_ = std::move(weights);
+  constexpr double rounding = 1e-12;  // of a point across the side of the cell that the place lies on
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::abs(weights[i]) < rounding) continue;
+    points_.push_back(points[i]);
+    weights_.push_back(weights[i]);
+  }
 }
 
 Probe::Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::string& name, const Vec3& place,
@@ -148,8 +153,7 @@ Probe::Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::st
     : comm_(mesh.comm) {
   const double size = mesh_size(mesh, places);
   Chosen chosen = choose(mesh, places, place, size, Everything{mesh});
-  take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),
-       std::move(chosen.candidate.weights));
+  take(chosen.candidate.place, chosen.rank, chosen.candidate.points, chosen.candidate.weights);
   if (chosen.outside && chosen.key > tolerance.value_or(on_boundary * size))
     throw Error(
         "The probe '{}' at ({}, {}, {}) is outside the mesh: the nearest point of the mesh is ({:.6g}, "
@@ -163,8 +167,7 @@ std::optional<Probe> Probe::in(const PlaceSearch& search, const Vec3& place) {
   Chosen chosen = choose(mesh, search.places(), place, size, search);
   if (chosen.outside && !(chosen.key <= on_boundary * size)) return {};
   Probe probe(mesh.comm);
-  probe.take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),
-             std::move(chosen.candidate.weights));
+  probe.take(chosen.candidate.place, chosen.rank, chosen.candidate.points, chosen.candidate.weights);
   return probe;
 }
 

@@ -37,7 +37,8 @@ class Probe {
 
  private:
   explicit Probe(MPI_Comm comm) : comm_(comm) {}
-  void take(const Vec3& place, int rank, std::vector<Index>&& points, std::vector<double>&& weights);
+  void take(const Vec3& place, int rank, const std::vector<Index>& points,
+            const std::vector<double>& weights);
   MPI_Comm comm_;
   Vec3 place_ = Vec3::Zero();
   std::vector<Index> points_;

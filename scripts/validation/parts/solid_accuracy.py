@@ -187,9 +187,8 @@ def body(case, column, text, sizes, finest, places, keys=()):
 
 
 # (case, displacement, meshes, the fine one, where the stress is read: surfaces, none where it is singular; further keys)
-SOFT = ("simulation.accept=[buckling]",)  # Cook's load is near the one that buckles the panel
 BODIES = (
-    *(body("cook", "corner y", f"n: {{r}}, shape: {shape}", (4, 8, 16, 32), 128, ((0.024, 0.022), (0.024, 0.052)), SOFT) for shape in (0, 1)),
+    *(body("cook", "corner y", f"n: {{r}}, shape: {shape}", (4, 8, 16, 32), 128, ((0.024, 0.022), (0.024, 0.052))) for shape in (0, 1)),
     body("le1", "D x", "nr: {r}, nt: {t}", (4, 8, 16, 32), 128, ((2, 0),)),
     *(body("lame-cylinder", "inside x", f"nr: {{r}}, nt: {{t}}, shape: {shape}", (4, 8, 16), 96, ((7, 0),)) for shape in (0, 1)),
     *(body("off-axis-bar", "tip y", f"n: {{r}}, shape: {shape}", (4, 8, 16), 64, ((0.1, 0.01),)) for shape in (0, 1)),

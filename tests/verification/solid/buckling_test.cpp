@@ -4,6 +4,7 @@
 #include "common/diagnostics/finding.hpp"
 #include "solid_solver/diagnostics/buckling_estimate.hpp"
 #include "tests/support/observed_run.hpp"
+#include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::buckling_test {
@@ -143,14 +144,22 @@ TEST(BucklingEstimate, finds_low_factors_and_leaves_others_alone) {
 
 TEST(BucklingFinding, is_told_of_linear_runs_near_and_above_the_load) {
   const double critical = euler(0.05);
-  const auto run = [&](double part) {
-    const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 4, 0.05), column(2, part * critical));
-    support::observe(*solid, 1, 1);
+  const auto run = [&](double part, bool seeks_buckling) {
+    const support::SharedFolder folder;
+    SolidParameters p = column(2, part * critical);
+    p.seeks_buckling = seeks_buckling;
+    p.output.buckling = seeks_buckling ? 2 : 0;
+    const LoadedMesh body = distribute(MPI_COMM_WORLD, bar(BoxCells::quadrilaterals, 40, 4, 0.05));
+    Solid solid(body, p, SolidContext{"solid", folder.path()});
+    support::observe(solid, 1, 1);
+    MPI_Barrier(MPI_COMM_WORLD);
   };
   for (const auto& [part, severity] :
        {std::pair(0.1, -1), {0.5, int(base::Severity::warning)}, {1.2, int(base::Severity::wrong)}}) {
     const std::size_t before = diagnostics::findings().size();
-    run(part);
+    run(part, true);
+    EXPECT_EQ(severity_of("buckling", before), -1) << "the factor is the answer of a buckling analysis";
+    run(part, false);
     EXPECT_EQ(severity_of("buckling", before), severity) << part;
   }
 }

@@ -2,6 +2,7 @@
 // Several materials: displacement and traction go on where they meet.
 #include <Eigen/Dense>
 
+#include "solid_solver/output/probes.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::materials_test {
@@ -110,7 +111,7 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     const Geometry& geometry = solid->body().geometry();
     ASSERT_FALSE(mesh.cell_material.empty());
     step(*solid, 1);
-    double error = 0, size = 0, stress_error = 0, jump = 0;
+    double error = 0, size = 0, stress_error = 0, jump = 0, point_error = 0, strain_error = 0;
     const std::vector<double> points = solid->fields().point_displacement();
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
       Vec3 u = Vec3::Zero();
@@ -125,6 +126,21 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
       stress_error = std::max(stress_error, (stress[c] - exact).topLeftCorner(dim, dim).norm());
       stress_size = std::max(stress_size, exact.norm());
     }
+    // At points each side of the interface has its own stress and strain.
+    const SidedTensors stresses = solid->fields().stress_sides(points),
+                       strains = solid->fields().strain_sides(points);
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      for (const Index v : mesh.cell_points[c]) {
+        const Tensor3 slope = field.on(geometry.cell_centre[c]).slope;
+        const auto gap = [&](const SidedTensors& sides, const Tensor3& exact) {
+          const auto& side = sides[std::size_t(mesh.material_of(c))];
+          return (unpack(std::span(side).subspan(std::size_t(v) * tensor_size, tensor_size)) - exact)
+              .topLeftCorner(dim, dim)
+              .norm();
+        };
+        point_error = std::max(point_error, gap(stresses, solid->body().elastic().stress(c, slope)));
+        strain_error = std::max(strain_error, gap(strains, 0.5 * (slope + slope.transpose())));
+      }
     // Tractions of the two sides of each bonded face.
     std::vector<Tensor3> faces =
         solid->fields().face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
@@ -147,6 +163,8 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     RecordProperty("relative_traction_jump", fmt::format("{:.3e}", ratio(jump, stress_size)));
     EXPECT_LT(ratio(error, size), 1e-10);
     EXPECT_LT(ratio(stress_error, stress_size), 1e-10);
+    EXPECT_LT(ratio(point_error, stress_size), 1e-9);
+    EXPECT_LT(parallel::max(mesh.comm, strain_error), 1e-9 * field.soft.slope.norm());
     EXPECT_LT(ratio(jump, stress_size), 1e-10);
   }
 }
@@ -276,6 +294,50 @@ TEST(SolidMaterials, a_layered_cylinder_converges_to_lame_with_second_order) {
              fine, slope, stress_fine, stress_slope);
   EXPECT_GE(slope, 1.9);
   EXPECT_GE(stress_slope, 1.4);
+}
+
+// Layers of 70 and 210 GPa under the same strain of 1e-3: probes beside the joint, at it, the tractions of what is held and the
+// largest stress have the value of one side, and nothing is told to be in error.
+TEST(SolidMaterials, stress_beside_a_joint_is_that_of_each_side) {
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra}) {
+    const int dim = dimension_of(cells);
+    SolidParameters p = box_parameters(dim);
+    p.plane = SolidParameters::Plane::stress;
+    p.materials["brass"] = {{8000, 70e9, 0, {}}, {"low"}};
+    p.materials["steel"] = {{7800, 210e9, 0, {}}, {"high"}};
+    p.method.preconditioner = MethodParameters::Preconditioner::factors;
+    for (const char* side : {"xmin", "ymin"}) p.boundaries[side] = boundary(Type::symmetry);
+    p.boundaries["xmax"] = boundary(Type::fixed_displacement, {"6e-4", "0"});
+    if (dim == 3) p.boundaries["xmax"].value.push_back({"0"});
+    const std::map<double, double> wanted{{0.03, 70e6},  {0.055, 70e6},   {0.0599, 70e6},
+                                          {0.06, 210e6}, {0.0601, 210e6}, {0.09, 210e6}};
+    for (const auto& [y, stress] : wanted)
+      for (const double x : {0.3, 0.325})
+        p.probes[fmt::format("{} {}", x, y)] = {Vec3(x, y, dim == 3 ? 0.013 : 0), {"stress", "strain"}};
+    RawMesh raw = make_box(cells, {12, 12, 3}, Vec3::Zero(), Vec3(0.6, 0.12, dim == 3 ? 0.03 : 0));
+    raw.zones = {"low", "high"};
+    for (Index c = 0; c < raw.cell_points.size(); ++c) {
+      double y = 0;
+      for (const Index v : raw.cell_points[c]) y += raw.points[v][1] / double(raw.cell_points[c].size());
+      raw.cell_zone[c] = y > 0.06;
+    }
+    const auto solid = stepped(raw, p);
+    const Mesh& mesh = solid->body().mesh();
+    const SolidFields& fields = solid->fields();
+    const std::vector<double> points = fields.point_displacement();
+    for (const ReportedStress& s :
+         reported_stresses(solid->body(), fields, solid->view().output.probes(), 0)) {
+      EXPECT_NEAR(s.value, s.where == "largest" ? 210e6 : wanted.lower_bound(s.place[1] - 1e-9)->second, 10)
+          << name(cells) << " " << s.where;
+      EXPECT_LT(s.error, 1e-6) << name(cells) << " " << s.where;
+    }
+    const std::vector<double> traction =
+        fields.traction(solid->body().geometry().points, fields.stress_sides(points));
+    const Patch& held = *mesh.find_patch("xmin");
+    for (Index f = held.first; f < held.first + held.count; ++f)
+      EXPECT_NEAR(traction[std::size_t((f - mesh.n_interior) * dim)],
+                  solid->body().geometry().cell_centre[mesh.owner[f]][1] < 0.06 ? -70e6 : -210e6, 10);
+  }
 }
 
 TEST(SolidMaterials, each_zone_needs_one_material) {

@@ -197,6 +197,25 @@ TEST(SolidMethods, slender_bodies_bend) {
   EXPECT_NEAR(same, bent, 3e-2 * std::abs(bent));  // the springs give a little
 }
 
+// A thousand times as long as thick: conjugate gradients with multigrid do not converge, and factors, which the program takes
+// then, give F L^3 / (3 E I).
+TEST(SolidMethods, a_foil_is_solved_by_factors_where_the_iteration_that_was_chosen_fails) {
+  constexpr double thickness = 1e-3;
+  SolidParameters p = box_parameters(2);
+  p.plane = SolidParameters::Plane::stress;
+  p.boundaries["xmin"] = clamped(2);
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "10"});
+  const RawMesh foil = make_box(BoxCells::quadrilaterals, {100, 2, 1}, Vec3::Zero(), Vec3(1, thickness, 0));
+  const auto solid = stepped(foil, p);
+  const double bent = 4 * 10 * thickness / (200e9 * std::pow(thickness, 3));
+  EXPECT_NEAR(displacement_at(*solid, Vec3(1, thickness, 0))[1] / bent, 1, 0.15);
+  std::vector<double> again(solid->stepper().last_solve().rhs.size(), 0);
+  EXPECT_LE(solid->stepper().method()->solve(solid->stepper().last_solve().rhs, again).iterations, 5);
+  EXPECT_THAT(solid->stepper().method()->name(), HasSubstr("multigrid"));
+  p.method.preconditioner = Preconditioner::multigrid;
+  EXPECT_THROW(stepped(foil, p), Error);
+}
+
 TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {
   MethodParameters m = method(MethodType::segregated, FaceGradient::thesis);
   m.max_iterations = 3;

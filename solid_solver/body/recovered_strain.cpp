@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/diagnostics/recovered_strain.hpp"
+#include "solid_solver/body/recovered_strain.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -116,7 +116,7 @@ double RecoveredStrain::missed() const {
 
 namespace {
 
-constexpr double of_far = 1. / 9;  // weight of a sample at the patch's rim over one in its center
+constexpr double of_rim = 1. / 9;  // weight of a sample at the patch's rim over one in its centre
 constexpr GlobalIndex cells_looked_at = 20000;  // of all ranks
 
 }  // namespace
@@ -126,7 +126,7 @@ struct SmoothEnergy::Patch {
   mesh::Csr cells_of_point, faces_of_cell;
   std::vector<Index> mark;  // per local cell: for which cell it was last gathered
   std::vector<Index> cells, points;
-  std::vector<std::pair<Vec3, Vec3>> mirrors;  // normal and a place of the planes of symmetry
+  std::vector<MirrorPlane> mirrors;
   double reach = 0;
 };
 
@@ -139,13 +139,9 @@ bool SmoothEnergy::is_of_use(const mesh::Mesh& mesh) {
 }
 
 void SmoothEnergy::add(Index face, const Tensor3& gradient) {
-  const auto [here, there] = elastic::pyramids(mesh_, geometry_, face);
-  const auto add_to = [&](Index cell, double volume) {
-    if (cell < mesh_.cells.n_owned())
-      counted_[std::size_t(cell)] += volume * contraction(rows_.stress(cell, gradient), gradient);
-  };
-  add_to(mesh_.owner[face], here);
-  if (face < mesh_.n_interior) add_to(mesh_.neighbour[face], there);
+  elastic::visit_sides(mesh_, geometry_, face, [&](Index cell, double volume) {
+    counted_[std::size_t(cell)] += volume * contraction(rows_.stress(cell, gradient), gradient);
+  });
 }
 
 void SmoothEnergy::gather(Index cell, Patch& patch) const {
@@ -161,12 +157,8 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
   for (const Index v : patch.points)
     patch.reach = std::max(patch.reach, (geometry_.points[v] - centre).norm());
   for (const Index c : patch.cells)
-    for (const Index f : patch.faces_of_cell[c]) {
-      if (!rows_.mirrored(f)) continue;
-      const Vec3 normal = g.face_area[f].normalized();
-      if (std::ranges::none_of(patch.mirrors, [&](const auto& m) { return m.first.dot(normal) > 0.99; }))
-        patch.mirrors.emplace_back(normal, g.face_centre[f]);
-    }
+    for (const Index f : patch.faces_of_cell[c])
+      if (rows_.mirrored(f)) add_mirror(g, f, patch.mirrors);
 }
 
 /// Twice its energy [J], for a strain that is linear in the cell.
@@ -178,12 +170,11 @@ double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<con
   fit.start(dim, dim, centre, patch.reach);
   const auto add = [&](const Vec3& place, const Vec3& value) {
     const double far = (place - centre).squaredNorm() / (patch.reach * patch.reach);
-    const double weight = 1 / (1 + (1 / of_far - 1) * far);
+    const double weight = 1 / (1 + (1 / of_rim - 1) * far);
     fit.add_sample(place, Tensor3::Zero(), {value.data(), 3}, weight);
-    for (const auto& [normal, origin] : patch.mirrors) {
-      const Vec3 image = value - 2 * normal.dot(value) * normal;
-      fit.add_sample(place - 2 * normal.dot(place - origin) * normal, Tensor3::Zero(), {image.data(), 3},
-                     weight);
+    for (const MirrorPlane& m : patch.mirrors) {
+      const Vec3 image = m.reflect(value);
+      fit.add_sample(m.image(place), Tensor3::Zero(), {image.data(), 3}, weight);
     }
   };
   for (const Index v : patch.points) add(geometry_.points[v], elastic::vector_at(point_u, v, dim));
