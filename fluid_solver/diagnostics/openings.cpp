@@ -72,11 +72,11 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
              .number = head / range,
              .limit = told_head,
              .sentence = fmt::format(
-                 "outlet '{}': where fluid enters, 'pressure' is the total pressure of fluid at rest "
-                 "outside, so that the pressure is lower by rho U^2/2, {:.3g} Pa on average, {:.2g} of "
-                 "its range (limit {:g})",
-                 patch->name, head, head / range, told_head),
-             .advice = "if 'pressure' is that in the moving fluid, set 'backflow-stabilisation: false'",
+                 "outlet '{}': where fluid enters, 'pressure' is the total pressure of fluid at rest outside, so that the "
+                 "pressure is lower by rho U^2/2, {:.3g} Pa on average, {:.2g} of its range; if it is that in the moving "
+                 "fluid, set 'backflow-stabilisation: false'",
+                 patch->name, head, head / range),
+             .effect = "pressure of inflow",
              .subject = patch->name});
       const double wrong = inlet ? sum[net] : -sum[net];
       if (!has_direction || !(wrong > always * sum[gross]) || !(sum[gross] > much * largest)) continue;
