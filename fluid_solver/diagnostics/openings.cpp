@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
@@ -14,9 +15,11 @@ namespace {
 // Minimum share of the volume through an opening in one direction (more than an oscillation), and of the
 // volume through the largest opening (more than a trickle).
 constexpr double always = 0.9, much = 0.1;
+// Head of inflow at a total pressure over the range of the pressure in the run, from which it is told.
+constexpr double told_head = 1e-3;
 
-/// Checks flow directions over the run. Permanent outflow at an inlet or inflow at an outlet suggests a wrong
-/// sign or name.
+/// Which way the fluid went through inlets and outlets over the run. Inlets through which fluid left, and outlets through
+/// which it entered, all the time: a sign or a name is wrong. Outlets that take the total pressure where fluid enters say so.
 template <int D>
 class FlowThroughOpenings final : public diagnostics::Diagnostic {
  public:
@@ -28,29 +31,55 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
       const bool inlet = condition_of(b).passage == Passage::in;
       // A pressure given on purpose may drive the flow.
       const bool outlet = at_rest && gives_pressure(b) && b.pressure.text == "0";
-      if (inlet || outlet) openings_.push_back({&patch, inlet});
+      const bool total = gives_pressure(b) && b.backflow_stabilisation;
+      if (inlet || outlet || total) openings_.push_back({&patch, inlet, inlet || outlet, total});
     }
-    sums_.resize(2 * openings_.size());
+    sums_.resize(n_sums * openings_.size());
   }
   void observe(diagnostics::Report&) override {
-    const std::vector<double>& phi = view_.fluid.state().phi;
+    const State<D>& s = view_.fluid.state();
     for (std::size_t i = 0; i < openings_.size(); ++i) {
       const mesh::Patch& patch = *openings_[i].patch;
+      double* sums = &sums_[n_sums * i];
       for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-        sums_[2 * i] += phi[f] * view_.step.dt;
-        sums_[2 * i + 1] += std::abs(phi[f]) * view_.step.dt;
+        sums[net] += s.phi[f] * view_.step.dt;
+        sums[gross] += std::abs(s.phi[f]) * view_.step.dt;
+        const double in = std::max(0., (s.mesh_flux.empty() ? 0 : s.mesh_flux[f]) - s.phi[f]) * view_.step.dt;
+        const double speed = in / (view_.step.dt * s.placement->area[f].norm());
+        sums[inflow] += in;
+        sums[energy] += 0.5 * view_.parameters().density * speed * speed * in;
       }
     }
+    if (view_.step.number == 0 || std::ranges::none_of(openings_, &Opening::total)) return;
+    const auto pressure = view_.fluid.pressure();
+    for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c)
+      low_ = std::min(low_, pressure->p[c]), high_ = std::max(high_, pressure->p[c]);
   }
   void conclude(diagnostics::Report& report) override {
     std::vector<double> sums = sums_;
     for (double& value : sums) value = parallel::sum(view_.mesh.comm, value);
     double largest = 0;
-    for (std::size_t i = 1; i < sums.size(); i += 2) largest = std::max(largest, sums[i]);
+    for (std::size_t i = gross; i < sums.size(); i += n_sums) largest = std::max(largest, sums[i]);
+    const double range = parallel::max(view_.mesh.comm, high_) - parallel::min(view_.mesh.comm, low_);
     for (std::size_t i = 0; i < openings_.size(); ++i) {
-      const auto& [patch, inlet] = openings_[i];
-      const double wrong = inlet ? sums[2 * i] : -sums[2 * i], gross = sums[2 * i + 1];
-      if (!(wrong > always * gross) || !(gross > much * largest)) continue;
+      const auto& [patch, inlet, has_direction, total] = openings_[i];
+      const double* sum = &sums[n_sums * i];
+      const double head = sum[energy] / sum[inflow];
+      if (total && range > 0 && sum[inflow] > much * largest && head > told_head * range)
+        report.findings.push_back(
+            {.id = "inflow-at-total-pressure",
+             .severity = base::Severity::note,
+             .number = head / range,
+             .limit = told_head,
+             .sentence = fmt::format(
+                 "outlet '{}': where fluid enters, 'pressure' is the total pressure of fluid at rest outside, so that the "
+                 "pressure is lower by rho U^2/2, {:.3g} Pa on average, {:.2g} of its range; if it is that in the moving "
+                 "fluid, set 'backflow-stabilisation: false'",
+                 patch->name, head, head / range),
+             .effect = "pressure of inflow",
+             .subject = patch->name});
+      const double wrong = inlet ? sum[net] : -sum[net];
+      if (!has_direction || !(wrong > always * sum[gross]) || !(sum[gross] > much * largest)) continue;
       report.findings.push_back(
           {.id = "flow-through-openings",
            .sentence =
@@ -66,16 +95,25 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
            .subject = patch->name});
     }
   }
-  void visit(io::Archive& archive) override { archive.sums("volumes", sums_); }
+  void visit(io::Archive& archive) override {
+    archive.sums("volumes", sums_);
+    low_ = parallel::min(view_.mesh.comm, low_), high_ = parallel::max(view_.mesh.comm, high_);
+    archive.common("pressures", low_, high_);
+  }
 
  private:
   struct Opening {
     const mesh::Patch* patch;
-    bool inlet;
+    bool inlet, has_direction, total;  // total: takes the total pressure of inflow
   };
+  // Of each opening, of this rank: volume outward and in either direction, volume that entered through the moving opening [m^3],
+  // its kinetic energy [J].
+  enum { net, gross, inflow, energy, n_sums };
   FluidView<D> view_;
   std::vector<Opening> openings_;
-  std::vector<double> sums_;  // net and gross of each, outward, of this rank [m^3]
+  std::vector<double> sums_;
+  double low_ = std::numeric_limits<double>::max(),
+         high_ = std::numeric_limits<double>::lowest();  // pressures [Pa]
 };
 
 }  // namespace

@@ -104,7 +104,9 @@ void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
 void declare_outlet(config::Section& s, BoundaryParameters& b) {
   s.value("pressure", b.pressure).unit("Pa").plausible(1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
   s.value("backflow-stabilisation", b.backflow_stabilisation)
-      .doc("inflow here carries no kinetic energy; without it strong backflow may grow");
+      .doc(
+          "fluid that enters here comes from rest: 'pressure' is its total pressure, and it enters at a pressure lower by "
+          "rho U^2/2; false: 'pressure' is that in the moving fluid, and strong backflow may grow");
   declare_absorbing(s, b);
 }
 

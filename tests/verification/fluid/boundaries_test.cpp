@@ -203,6 +203,26 @@ TEST(BodyForce, leaves_still_water_at_rest_on_triangles) {
   }
 }
 
+/// What enters through an outlet pays rho U^2/2 unless told otherwise; the run says so.
+TEST(Outlet, that_takes_the_total_pressure_of_inflow_says_so) {
+  for (const bool stabilised : {true, false}) {
+    FluidParameters p = fluid_of(1000, 1e-3, 1e-8, "box");
+    p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::slip);
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"-sin(t)", "0"});
+    p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+    p.boundaries["xmax"].backflow_stabilisation = stabilised;
+    FluidParticipant<2> fluid(distribute(MPI_COMM_WORLD, quads(8, 2, 1)), p, FluidContext{}, MotionLink{});
+    const auto run = support::observe(fluid, 50, 0.02);
+    int told = 0;
+    for (const diagnostics::Finding& f : run.diagnostics().findings())
+      if (f.id == "inflow-at-total-pressure") {
+        ++told;
+        EXPECT_EQ(f.severity, base::Severity::note);
+      }
+    EXPECT_EQ(told, stabilised ? 1 : 0);
+  }
+}
+
 // Walls along which the fluid slides with a slip length, between those without slip and those without friction.
 
 constexpr double length = 0.3, lid = 2, force = 0.8;
