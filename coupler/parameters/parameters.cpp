@@ -101,19 +101,13 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
     if (n != std::round(n) || n < 1 || n > 10000)
       return fmt::format("'{}' needs a whole number of sub-steps from 1 to 10000", name);
     if (n == 1 || !p.fluid) continue;
-    if (p.structure && name == p.structure->participant && !p.structure->foreign() && !p.fluid->foreign())
-      return fmt::format(
-          "the structure '{}' supports no sub-steps: the fluid's added mass acts on the change of its velocity over "
-          "the whole step, which modes that vibrate within the step turn round, so that a light structure diverges; use a "
-          "smaller `simulation.time-step`, the fluid's steps are as long as its own limits allow",
-          name);
     if (name != p.fluid->participant) continue;
     if (p.scheme.is_semi_implicit())
       return "the fluid supports no sub-steps in the semi-implicit scheme, which splits its step in two; "
              "use `scheme: implicit` or `explicit`";
     if (p.mesh)
       return "a fluid with a moving mesh supports no sub-steps: a motion that fails half-way would leave "
-             "the mesh mover waiting; give the sub-steps to the structure";
+             "the mesh mover waiting; use a smaller `simulation.time-step`";
   }
   return "";
 }

@@ -114,8 +114,11 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   return why;
 }
 
-/// Factors in the place of an iteration that the program chose.
-std::unique_ptr<SolutionMethod> by_factors(const SolidProblem& problem, MethodParameters parameters) {
+/// Factors in the place of an iteration that the program chose; nullptr if they do not fit or cannot help. Collective.
+std::unique_ptr<SolutionMethod> by_factors(const SolidProblem& problem, MethodParameters parameters,
+                                           std::span<const double> b) {
+  if (parallel::any(problem.mesh.comm, std::ranges::any_of(b, [](double x) { return !std::isfinite(x); })))
+    return {};
   if (!factor_cost(problem.mesh, problem.geometry(), heaviness(problem)).fits()) return {};
   parameters.preconditioner = Preconditioner::factors;
   if (problem.is_symmetric()) return std::make_unique<NewtonKrylov>(problem, parameters);
@@ -132,7 +135,7 @@ linalg::SolveStatistics SolutionMethod::solve(std::span<const double> b, std::sp
   try {
     return find(b, u);
   } catch (const SolveFailure& failure) {
-    instead_ = cure_();
+    instead_ = cure_(b);
     if (!instead_) throw;
     log::info("{} Factors of the matrix solve it from here on; 'preconditioner: factors' omits the attempt.",
               failure.what());
@@ -181,7 +184,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
                             parameters.preconditioner != Preconditioner::factors;
   const bool was_left = asked.preconditioner == Preconditioner::automatic &&
                         (problem.is_symmetric() || asked.type == MethodType::automatic);
-  if (is_iteration && was_left) method->cure_ = [=] { return by_factors(problem, parameters); };
+  if (is_iteration && was_left) method->cure_ = [=](auto b) { return by_factors(problem, parameters, b); };
   if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
   method->name_ += problem.is_symmetric()   ? ", symmetric face gradient"
                    : problem.is_corrected() ? ", corrected face gradient"

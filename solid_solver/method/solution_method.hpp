@@ -61,8 +61,9 @@ class SolutionMethod {
   virtual linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) = 0;
   virtual bool invert(std::span<const double> /*r*/, std::span<double> /*z*/) { return false; }
 
-  /// Factors of the same problem; nullptr if they do not fit. Empty where the method was asked for.
-  std::function<std::unique_ptr<SolutionMethod>()> cure_;
+  /// Creates factors of the same problem for a right-hand side on which the iteration failed, or gives nullptr. Empty if the
+  /// case names the method.
+  std::function<std::unique_ptr<SolutionMethod>(std::span<const double> b)> cure_;
   std::unique_ptr<SolutionMethod> instead_;  // the cure, once it was needed
   friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);
 };

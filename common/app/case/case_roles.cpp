@@ -27,6 +27,7 @@ class Cast {
     for (const coupling::RoleContract& contract : coupling::role_contracts()) look_at_role(contract);
     look_at_exchange();
     look_at_moved_walls();
+    look_at_sub_steps();
     for (const Expected& e : players_) {
       if (e.program == "coupler")
         say("participants." + e.participant + ".program",
@@ -105,6 +106,20 @@ class Cast {
                 "coupler no data; name it as `mesh` and its fluid as `fluid`",
                 *here, who->program));
     }
+  }
+
+  /// The added mass acts on the change of the velocity over the whole step, but a structure with sub-steps vibrates
+  /// within it: a light one diverges.
+  void look_at_sub_steps() {
+    const auto fluid = config::text_of(document_, "coupling.fluid.participant"),
+               structure = config::text_of(document_, "coupling.structure.participant");
+    const Expected *flow = fluid ? find(*fluid) : nullptr, *body = structure ? find(*structure) : nullptr;
+    if (!flow || !body || !coupling::player_of(flow->program) || !coupling::player_of(body->program)) return;
+    const std::string key = "coupling.sub-steps." + body->participant;
+    if (const auto steps = config::text_of(document_, key); steps && *steps != "1")
+      say(key, fmt::format("{} supports no sub-steps beside {}: the fluid's added mass acts on its change of "
+                           "velocity over the whole step; use a smaller `simulation.time-step`",
+                           body->program, flow->program));
   }
 
   /// Checks that a fluid and its mesh mover name the same patches: a wall moved by the structure must move.

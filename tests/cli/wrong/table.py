@@ -345,8 +345,9 @@ case.yaml:38:3: coupling.exchange: with an exchange give either both `fluid` and
 """, ("  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  exchange: {participants: [fluid, solid, mover]}\n")),
     coupler("sub-steps of nobody", "\ncase.yaml:40:3: coupling.sub-steps: there is no participant 'slid' that supports sub-steps.\n", (
         "  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  sub-steps: {slid: 2}\n")),
-    coupler("sub-steps of a structure", "\ncase.yaml:40:3: coupling.sub-steps: the structure 'solid' supports no sub-steps: the fluid's added mass acts on the "
-        "change of its velocity over the whole step,", ("  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  sub-steps: {solid: 4}\n")),
+    coupler("sub-steps of a structure", "\ncase.yaml:40:15: coupling.sub-steps.solid: solid_solver supports no sub-steps beside fluid_solver: the fluid's added mass acts on "
+        "its change of velocity over the whole step; use a smaller `simulation.time-step`.\n", (
+            "  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  sub-steps: {solid: 4}\n")),
     coupler("unknown scheme", """
 case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: auto, explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
 """, ("scheme: implicit", "scheme: semiimplicit")),
