@@ -66,6 +66,13 @@ def by_hand(folder):
     check("a column of round-off is compared with the others of its table", same.returncode == 0, same.stdout)
     for run in ("by-couplet", "a/out"):
         (folder / run / "solid/round-off.csv").unlink()
+    for tolerance in ("nan", "inf", "-1"):
+        refused = call(bin_, "compare", folder / "by-couplet", folder / "a/out", f"--tolerance={tolerance}")
+        check(f"compare refuses the tolerance {tolerance}", refused.returncode == 2 and "at least 0" in refused.stderr, refused.stderr)
+    for run in ("empty-1", "empty-2"):
+        shutil.copytree(folder / "a/out", folder / run, ignore=shutil.ignore_patterns("*.csv", "*.h5"))
+    nothing = call(bin_, "compare", folder / "empty-1", folder / "empty-2")
+    check("compare refuses runs without results", nothing.returncode not in (0, 1) or "did the runs fail" in nothing.stderr, nothing.stdout + nothing.stderr)
     longer = call(bin_, "run", case, "--set", "participants.solid.material.youngs-modulus=3.9e6", "--set", f"simulation.output.folder={folder / 'other'}", "-q")
     other = call(bin_, "compare", folder / "a/out", folder / "other")
     check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "solid/probes.csv: tip" in other.stdout, other.stdout[-300:])

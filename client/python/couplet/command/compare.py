@@ -1,19 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lists the differences of two runs: values in effect, each column of their tables, each field at each output, findings. Their cost
 (seconds, iterations, logs) is ignored. Exit code 0 if all else is equal bit for bit, or within --tolerance; 1 if not."""
+import argparse
+import math
 import pathlib
 import re
 
 from couplet.runs.case import expect, load
 from couplet.runs.results import Results, read_csv
 
-CLOCK = re.compile(r"seconds|waiting|working|processor|clock|so far")
+COST = re.compile(r"seconds|waiting|working|processor|clock|so far|iterations|residual")
+
+
+def share(text):
+    value = float(text)
+    if not 0 <= value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text}: expected a finite share of at least 0")
+    return value
 
 
 def declare(parser):
     parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
     parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another")
-    parser.add_argument("--tolerance", type=float, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (0)")
+    parser.add_argument("--tolerance", type=share, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (0)")
     parser.add_argument("--all", action="store_true", help="also lists equal values")
 
 
@@ -50,7 +59,7 @@ def arrays(folder):
     for file in sorted(folder.glob("*/*.csv")):
         if file.stat().st_size:
             for head, values in read_csv(file).items():
-                if not CLOCK.search(head):
+                if not COST.search(head):
                     found[f"{file.relative_to(folder)}: {head}"] = values
     for file in sorted(folder.glob("*/*.h5")):
         if file.parent.name == "checkpoints":
@@ -99,8 +108,9 @@ def scales(*runs):
 
 
 def group_of(name):
-    unit = re.fullmatch(r"(.*\.csv): .*(\[.*\])", name)
-    return unit.groups() if unit else None
+    """Table and unit of a column, or dataset of a component such as stress-zz; None for other values."""
+    found = re.fullmatch(r"(.*\.csv): .*(\[.*\])", name) or re.fullmatch(r"(.*\.h5): (.*)-[xyz]{1,2}", name)
+    return found.groups() if found else None
 
 
 def differences(first, second, tolerance):
@@ -128,6 +138,7 @@ def run(arguments):
     findings = of_mappings(*({f"finding {f['participant']} {f['id']}": f.get("severity") for f in Results(folder).findings()} for folder in runs))
     print(*changed, *findings, sep="\n", end="\n" if changed or findings else "")
     found = list(differences(*runs, arguments.tolerance))
+    expect(found, f"{runs[0]} and {runs[1]}: have no tables and fields to compare; did the runs fail?")
     apart_ones = [(name, words) for name, words, _ in found if words != "equal"]
     for name, words in [(n, w) for n, w, _ in found] if arguments.all else apart_ones:
         print(f"{name}: {words}")
