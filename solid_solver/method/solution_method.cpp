@@ -135,14 +135,18 @@ linalg::SolveStatistics SolutionMethod::solve(std::span<const double> b, std::sp
   try {
     return find(b, u);
   } catch (const SolveFailure& failure) {
-    instead_ = cure_(b);
-    if (!instead_) throw;
+    if (!cure(b)) throw;
     log::info("{} Factors of the matrix solve it from here on; 'preconditioner: factors' omits the attempt.",
               failure.what());
-    projection_.reset();
     std::ranges::copy(guess, u.begin());
     return instead_->find(b, u);
   }
+}
+
+bool SolutionMethod::cure(std::span<const double> b) {
+  if (cure_ && !instead_) instead_ = cure_(b);
+  if (instead_) projection_.reset();
+  return is_cured();
 }
 
 void SolidProblem::apply(std::span<const double> x, std::span<double> y) const {

@@ -50,6 +50,11 @@ class SolutionMethod {
   }
   /// What the next first guess learns from accepted steps; none: nothing.
   linalg::ResidualProjection* projection() const { return projection_.get(); }
+  /// True once factors have taken the place of the iteration.
+  bool is_cured() const { return bool(instead_); }
+  /// Puts factors in the place of the iteration, which failed for `b` or, if that is empty, in the run that this one resumes.
+  /// Returns false if it cannot. Collective.
+  bool cure(std::span<const double> b = {});
   /// For the log, such as "block-coupled (direct), thesis's face gradient", with the reason of `automatic`.
   const std::string& name() const { return name_; }
 

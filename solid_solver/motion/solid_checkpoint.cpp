@@ -125,8 +125,13 @@ void SolidStepper::save_guesses(io::CheckpointWriter& file) const {
   std::vector<double> factors;
   for (const auto& system : systems_) {
     const linalg::ResidualProjection* projection = system->projection();
-    if (!projection || projection->is_empty()) continue;  // made for a step that was not accepted
+    const bool is_cured = system->method && system->method->is_cured();
+    if (!is_cured && (!projection || projection->is_empty()))
+      continue;  // made for a step that was not accepted
     const std::string name = fmt::format("projection-{}", factors.size());
+    file.write_scalar(name + "-by-factors", is_cured);
+    factors.push_back(system->mass_factor);
+    if (is_cured) continue;
     file.write_common(name, projection->products());
     for (std::size_t k = 0; k < projection->vectors().size(); ++k) {
       const elastic::NodeFields fields =
@@ -134,7 +139,6 @@ void SolidStepper::save_guesses(io::CheckpointWriter& file) const {
       file.write(Entries::owned_cells, fmt::format("{}-cells-{}", name, k), fields.inner);
       file.write(Entries::owned_boundary, fmt::format("{}-faces-{}", name, k), fields.faces);
     }
-    factors.push_back(system->mass_factor);
   }
   file.write_scalar("projections", double(factors.size()));
   for (std::size_t i = 0; i < factors.size(); ++i)
@@ -147,6 +151,10 @@ void SolidStepper::load_guesses(io::CheckpointReader& file) {
   for (std::size_t i = file.read_count("projections", 1000); i-- > 0;) {
     const std::string name = fmt::format("projection-{}", i);
     SolidSystem& system = system_for(file.read_scalar(name + "-mass-factor"));
+    if (file.read_scalar(name + "-by-factors") != 0) {
+      if (system.method) system.method->cure();
+      continue;
+    }
     linalg::ResidualProjection* projection = system.projection();
     if (!projection) continue;
     const std::vector<double> products = file.read_common(name);

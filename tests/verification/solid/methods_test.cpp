@@ -212,6 +212,7 @@ TEST(SolidMethods, a_foil_is_solved_by_factors_where_the_iteration_that_was_chos
   std::vector<double> again(solid->stepper().last_solve().rhs.size(), 0);
   EXPECT_LE(solid->stepper().method()->solve(solid->stepper().last_solve().rhs, again).iterations, 5);
   EXPECT_THAT(solid->stepper().method()->name(), HasSubstr("multigrid"));
+  expect_same_after_restart(foil, p, 0.5, 0.5);
   p.method.preconditioner = Preconditioner::multigrid;
   EXPECT_THROW(stepped(foil, p), Error);
 }
