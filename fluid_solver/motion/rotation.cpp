@@ -34,11 +34,6 @@ void RotatingFrame<D>::add_force(double t, double dt, std::span<const Vec3> plac
 }
 
 template <int D>
-double RotatingFrame<D>::potential(double t, const Vec3& x) const {
-  return 0.5 * (speed(t) * axis_.cross(x - centre_)).squaredNorm();
-}
-
-template <int D>
 double RotatingFrame<D>::rate(double t, double dt) const {
   return 2 * std::max(std::abs(speed(t)), std::abs(speed(t + dt)));
 }

@@ -28,8 +28,9 @@ class RotatingFrame {
   /// omega/dt is the change over the step, so a frame that jumps to its speed accelerates the fluid.
   void add_force(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
                  const Vectors<D>& u_old, std::array<double, 2> factors, Vectors<D>& force) const;
-  /// |omega x (x - c)|^2 / 2 at time t [m^2/s^2].
-  double potential(double t, const Vec3& x) const;
+  /// Returns the vector of the angular velocity at time t [rad/s].
+  Vec3 omega(double t) const { return speed(t) * axis_; }
+  const Vec3& centre() const { return centre_; }
   /// |2 omega|, the larger rate of the Coriolis force at the two ends of a step [1/s].
   double rate(double t, double dt) const;
 

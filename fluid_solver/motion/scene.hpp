@@ -131,22 +131,28 @@ struct Scene {
   }
   bool is_compressible() const { return fluid.sound > 0; }
   bool has_potential() const { return frame || std::ranges::any_of(balanced, std::identity()); }
-  /// Of all forces per mass that are gradients, at time t [m^2/s^2]. The pressure equation solves for p - rho potential.
-  double potential(double t, const Vec3& x) const {
-    double sum = frame ? frame->potential(t, x) : 0;
+  /// Returns the potential at time t, a function of the place [m^2/s^2]: all forces per mass that are gradients are its
+  /// gradient. The pressure equation solves for p - rho potential.
+  auto potential(double t) const {
+    Vec3 force = Vec3::Zero();
     for (int c = 0; c < D; ++c)
-      if (balanced[c]) sum += body_force[c](Vec3::Zero(), t) * (x[c] - origin[c]);
-    return sum;
+      if (balanced[c]) force[c] = body_force[c](Vec3::Zero(), t);
+    const Vec3 omega = frame ? frame->omega(t) : Vec3(Vec3::Zero()),
+               centre = frame ? frame->centre() : origin;
+    return [force, omega, centre, from = origin](const Vec3& x) {
+      return 0.5 * omega.cross(x - centre).squaredNorm() + force.dot(x - from);
+    };
   }
   /// Adds `factor` times the potential at the level's time, in the cells and at the boundary.
   void add_potential(const Placement<D>& at, double factor, PressureLevel<D>& level) const {
+    const auto psi = potential(level.time);
     Vec3 x = Vec3::Zero();
     for (std::size_t c = 0; c < level.p.size(); ++c) {
       x.template head<D>() = at.centre[c];
-      level.p[c] += factor * potential(level.time, x);
+      level.p[c] += factor * psi(x);
     }
     for (std::size_t b = 0; b < level.boundary.size(); ++b)
-      level.boundary[b] += factor * potential(level.time, at.boundary_centre[b]);
+      level.boundary[b] += factor * psi(at.boundary_centre[b]);
   }
 };
 

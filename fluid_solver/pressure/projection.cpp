@@ -278,9 +278,11 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   set_boundary_flux(w);
   out_.boundary.assign(w.size(), 0.0);
   scene_.boundary.pressure_at(step_.middle(), now.boundary_centre, out_.boundary);
-  if (scene_.has_potential())
+  if (scene_.has_potential()) {
+    const auto potential = scene_.potential(step_.middle());
     for (const Index b : scene_.boundary.rows().of_pressure)
-      out_.boundary[b] -= scene_.fluid.rho * scene_.potential(step_.middle(), now.boundary_centre[b]);
+      out_.boundary[b] -= scene_.fluid.rho * potential(now.boundary_centre[b]);
+  }
   for (const auto& term : terms_) term->foresee(from, out_);
   side_.size = -1;
   side_.b.assign(mesh_.cells.n_local(), 0.0);

@@ -19,6 +19,7 @@ constexpr double most_times_faster = 1e4, most_speed = 1e8;
 // Net part of what the walls of a closed fluid displace that may be an error of discretisation, and the change of volume that is
 // round-off. A chord of a twentieth of a turn misses 1.6 % of what lies between it and the centre.
 constexpr double largest_leftover = 0.02, round_off = 1e-12;
+constexpr double allowed = 1e-10;  // change of volume that remains
 
 }  // namespace
 
@@ -194,12 +195,14 @@ void Fluid<D>::keep_volume(std::vector<Vec3>& points, double time) const {
   volume = parallel::sum(mesh_.comm, volume);
   auto [net, gross] = balance(points);
   if (!(std::abs(net) > round_off * volume)) return;
-  if (std::abs(net) > largest_leftover * gross && std::abs(net) > 1e-10 * volume)
+  const auto refuse = [&] {
     throw Error(
         "The fluid has no outlet, but at t = {:.6g} s its walls have changed its volume by {:.6g} m^3, {:.2g} of what they "
         "displace (limit {:g}): an incompressible fluid keeps its volume. Correct the motion of the walls, add an outlet (a small "
         "one is enough), or set 'compressibility'.",
         time, net, std::abs(net) / gross, largest_leftover);
+  };
+  if (std::abs(net) > largest_leftover * gross && std::abs(net) > allowed * volume) refuse();
   if (!boundary_.interface_patches().empty()) return;
   const std::shared_ptr<const Placement<D>> at = path_.at(points);
   Vectors<D> normal(points.size(), Vec<D>::Zero());
@@ -215,7 +218,7 @@ void Fluid<D>::keep_volume(std::vector<Vec3>& points, double time) const {
   for (Vec<D>& n : normal) n.stableNormalize();
   const std::vector<Vec3> given = points;
   double set_back = 0, slope = area;  // [m], [m^2]
-  for (int pass = 0; pass < 8 && std::abs(net) > round_off * volume; ++pass) {
+  for (int pass = 0; pass < 8 && std::abs(net) > round_off * volume && slope > 0; ++pass) {
     const double before = net, change = -net / slope;
     set_back += change;
     for (std::size_t v = 0; v < points.size(); ++v)
@@ -223,6 +226,7 @@ void Fluid<D>::keep_volume(std::vector<Vec3>& points, double time) const {
     net = balance(points)[0];
     if (std::abs(net) < 0.5 * std::abs(before)) slope = (net - before) / change;
   }
+  if (std::abs(net) > allowed * volume) refuse();
 }
 
 template <int D>

@@ -24,6 +24,8 @@ void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<
   const Placement<D>& to = *step.to;
   pressure.resize(projected.w.size());
   viscous.resize(projected.w.size());
+  const bool has_potential = scene.has_potential();
+  const auto potential = scene.potential(step.middle());
   for (std::size_t b = 0; b < projected.w.size(); ++b) {
     const Index f = scene.mesh.n_interior + static_cast<Index>(b);
     const Vec<D> n = to.area[f].normalized();
@@ -33,7 +35,7 @@ void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<
       flux -= prediction.weight * scene.fluid.mu * to.conductance[f] * (c + 3 * c.dot(n) * n);
     }
     double p = projected.boundary[b];
-    if (scene.has_potential()) p += scene.fluid.rho * scene.potential(step.middle(), to.boundary_centre[b]);
+    if (has_potential) p += scene.fluid.rho * potential(to.boundary_centre[b]);
     const Vec<D> normal = flux.dot(n) * n;
     pressure[b] = 0.5 * p * (from.placement->area[f] + to.area[f]) + normal;
     viscous[b] = flux - normal;
