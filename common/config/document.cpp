@@ -257,7 +257,9 @@ void Document::set(const std::string& assignment) {
     if (last && node.IsMap()) {
       // operator[] does not find a key that YAML reads as a number or boolean.
       if (value.IsNull()) {
-        step_into(node, walked, parts[i], option);  // throws Error if there is nothing to remove
+        if (!find(node, parts[i]).found)
+          throw Error("{}: there is no '{}' to remove. {}", option, join_path(walked, parts[i]),
+                      base::did_you_mean(parts[i], key_names(node), "keys"));
         node.remove(parts[i]);
       } else if (const Entry entry = find(node, parts[i]); entry.found) {
         YAML::Node target = entry.node;

@@ -46,21 +46,22 @@ bool is_a_wish() {
 void report_the_dead() {
   // The launcher may end the survivors one by one: those that have come here are no culprits, even if they
   // are gone. Guests do not come here. The one whose death the launcher has noticed is buried; those that it
-  // ends therefore are not yet.
+  // ends therefore seldom are yet, and where two are, both are named.
   board.slots[board.mine].terminating = 1;
   const char* separator = "couplet: ";
   Line line;
-  bool any = false;
+  bool any = false, any_of_ours = false;
   for (int i = 0; i < board.count; ++i) {
     const Slot& slot = board.slots[i];
     if (slot.ending) return;
     if (i == board.mine || slot.finished || slot.terminating ||
-        (slot.guest ? any || state_of(slot.pid) != 'X' : !gone(slot.pid)))
+        (slot.guest ? any_of_ours || state_of(slot.pid) != 'X' : !gone(slot.pid)))
       continue;
     any = true;
+    if (!slot.guest) any_of_ours = true;
     line << separator;
     describe(line, slot, "was killed or has ended unexpectedly");
-    separator = "; ";
+    separator = slot.guest ? ", or " : "; ";
   }
   if (!any && !board.whole_job) return;
   if (!any) line << "couplet: the job was stopped from outside (signal SIGTERM)";

@@ -105,23 +105,18 @@ std::string_view MshCursor::word() {
   return text_.substr(first, at_ - first);
 }
 
-long MshCursor::text_integer() {
+template <class T>
+T MshCursor::text_number() {
   const std::string_view w = word();
-  long value = 0;
+  T value = 0;
   const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
   if (error != std::errc() || end != w.data() + w.size())
-    fail(fmt::format("Expected a whole number, found '{:.40}'.", w));
+    fail(fmt::format("Expected a {}number, found '{:.40}'.", std::is_integral_v<T> ? "whole " : "", w));
   return value;
 }
 
-double MshCursor::text_real() {
-  const std::string_view w = word();
-  double value = 0;
-  const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
-  if (error != std::errc() || end != w.data() + w.size())
-    fail(fmt::format("Expected a number, found '{:.40}'.", w));
-  return value;
-}
+template long MshCursor::text_number();
+template double MshCursor::text_number();
 
 void MshCursor::skip(std::size_t numbers, std::size_t bytes) {
   if (!binary) {

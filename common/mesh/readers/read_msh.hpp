@@ -49,8 +49,8 @@ class MshCursor {
     return value;
   }
   /// Reads a number that is text in binary files, too.
-  long text_integer();
-  double text_real();
+  long text_integer() { return text_number<long>(); }
+  double text_real() { return text_number<double>(); }
   template <class T>
   T raw() {
     if (text_.size() - at_ < sizeof(T)) fail(incomplete);
@@ -69,6 +69,8 @@ class MshCursor {
  private:
   static constexpr const char* incomplete = "The file ends here in the middle of its data. It is incomplete.";
   std::string_view word();
+  template <class T>
+  T text_number();
   std::size_t checked(std::size_t n) const;
   void give_back_pages();
 

@@ -69,6 +69,9 @@ TEST(Override, a_path_that_leads_nowhere_is_refused) {
     }
     return std::string("no error");
   };
+  EXPECT_THAT(error_of("material.poissons-ratio=null"),
+              testing::StartsWith(
+                  "--set material.poissons-ratio=null: there is no 'material.poissons-ratio' to remove."));
   EXPECT_EQ(error_of("mesh"), "--set mesh: expected key=value, for example --set simulation.end-time='2 s'.");
   EXPECT_EQ(error_of("=3"), "--set =3: expected key=value, for example --set simulation.end-time='2 s'.");
   EXPECT_EQ(error_of("a..b=3"), "--set a..b=3: the path 'a..b' has an empty part.");
