@@ -459,13 +459,16 @@ def ended(folder):
         out, told = process.communicate(timeout=30)
         check(f"{victim} ended by signal {number}: the reason is named, nothing to resume", process.returncode not in (0, 3) and said in told and "couplet resume" not in told, (process.returncode, told[-500:]))
     plain = [*mpirun, "-n", 1, build / "bin/coupler", "case.yaml", *(w for n in ("Left", "Right") for w in (":", "-n", 1, programs["c++"][0], n, "precice-config.xml", 1))]
-    process = subprocess.Popen(list(map(str, plain)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
-    for words in process.stdout:
-        if "step 3 " in words:
+    for attempt in range(3):  # the launcher may end before it has passed a program's last line on
+        process = subprocess.Popen(list(map(str, plain)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        for words in process.stdout:
+            if "step 3 " in words:
+                break
+        victim = next(int(pid) for pid in os.listdir("/proc") if pid.isdigit() and words_of(pid)[:2] == [str(programs["c++"][0]), "Right"] and os.readlink(f"/proc/{pid}/cwd") == str(folder.resolve()))
+        os.kill(victim, signal.SIGKILL)
+        out, told = process.communicate(timeout=30)
+        if "couplet:" in told:
             break
-    victim = next(int(pid) for pid in os.listdir("/proc") if pid.isdigit() and words_of(pid)[:2] == [str(programs["c++"][0]), "Right"] and os.readlink(f"/proc/{pid}/cwd") == str(folder.resolve()))
-    os.kill(victim, signal.SIGKILL)
-    out, told = process.communicate(timeout=30)
     check("a program that is killed is named without couplet run, too", process.returncode != 0 and f"participant 'Right' (pid {victim}) was killed or has ended unexpectedly" in told and
           "MPI_ERR" not in told, (process.returncode, told[-800:]))
     done = subprocess.run(list(map(str, [*line, "--set", "simulation.checkpoint.interval=1"])), cwd=folder, capture_output=True, text=True, env=surroundings, timeout=60)
