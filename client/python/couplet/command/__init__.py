@@ -44,8 +44,11 @@ def parser_of(name):
 
 
 def version():
-    from couplet.places import IN_CHECKOUT, PACKAGE, ROOT
+    from couplet.places import BY_PIP, IN_CHECKOUT, PACKAGE, ROOT
     import re
+    if BY_PIP:
+        from importlib import metadata
+        return metadata.version("couplet")
     if IN_CHECKOUT:
         return re.search(r"project\(couplet VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     return (PACKAGE / "VERSION").read_text().strip()
@@ -78,9 +81,9 @@ def dispatch(name, words):
         return 128 + signal.SIGINT
 
 
-def main(argv):
-    """Runs `argv`, the command line starting with `couplet`."""
-    words = argv[1:]
+def main(argv=None):
+    """Runs `argv`, the command line starting with `couplet` (default: sys.argv)."""
+    words = (argv or sys.argv)[1:]
     if not words or words[0] in ("-h", "--help", "help"):
         print(overview())
         return 0
