@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists what a case computes: the effects of each participant and, with --all, those it neglects; cells, expected memory and time,
-and the launch line. Runs nothing."""
+"""Lists what a case computes (with --all, also what it neglects), its cells, expected memory and time, and the launch line. Runs nothing."""
 import shlex
 
 from couplet.command import check
@@ -11,7 +10,7 @@ from couplet.runs.job import Job
 
 def declare(parser):
     check.declare(parser)
-    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant, for the launch line")
+    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="command of an external participant in the launch line")
     parser.add_argument("--all", action="store_true", help="also lists neglected effects and the keys that enable them")
 
 
