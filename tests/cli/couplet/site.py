@@ -69,7 +69,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
     check("the search leaves out what is for developers", not unwanted, unwanted)
     nav = nav_of(pages())
     sections = re.findall(r"^ {2}- ([^:]+):", nav, flags=re.M)
-    check("the sidebar has four kinds", sections == ["Couplet", "Tutorials", "How-to", "Reference", "Explanation", "Gallery", "For developers"], sections)
+    check("the sidebar has four kinds", sections == ["Couplet", "All pages", "Tutorials", "How-to", "Reference", "Explanation", "Gallery", "For developers"], sections)
     missing = {"index.md" if str(p) == "README.md" else str(p) for p in pages()} ^ set(re.findall(r": (\S+\.md)$", nav, flags=re.M))
     check("every page is in the sidebar", not missing, missing)
 

@@ -23,5 +23,6 @@ def run(arguments):
             if not line.startswith(("whole case:", "  off")) and "] [info]" not in line or arguments.all and line.startswith("  off"):
                 print(line)
     played_by = {name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}
+    print("limitations:     docs/limitations.md lists what no case can compute (couplet docs shows it)")
     print("launch line:     " + Job(Case(arguments.case, build_of(arguments.bin)), sets=arguments.set, played_by=played_by).line())
     return 0

@@ -126,7 +126,7 @@ def label(page):
 
 def for_developers(there):
     """{title of a group: its pages}: what users do not need."""
-    users = {pathlib.Path(p) for p in (*TUTORIALS, *REFERENCE, *EXPLANATION, "README.md")}
+    users = {pathlib.Path(p) for p in (*TUTORIALS, *REFERENCE, *EXPLANATION, "README.md", "docs/README.md")}
     rest = [p for p in there if p not in users and p.parts[0] != "configs" and p.parts[:2] != ("docs", "how-to")]
     groups = {"The project": [], "Validation": [], "Source folders": []}
     for page in rest:
@@ -142,7 +142,7 @@ def nav_of(there):
 
     guides = sorted(p for p in there if p.parts[:2] == ("docs", "how-to"))
     guides.sort(key=lambda p: p.name != "README.md")
-    lines = ["  - Couplet: index.md"]
+    lines = ["  - Couplet: index.md", "  - All pages: docs/README.md"]
     for title, names in (("Tutorials", TUTORIALS), ("How-to", guides), ("Reference", REFERENCE), ("Explanation", EXPLANATION)):
         lines += [f"  - {title}:", *rows(names, 4)]
     lines += ["  - Gallery:", "    - gallery.md", *rows([p for p in there if p.parts[0] == "configs"], 4), "  - For developers:"]
