@@ -16,6 +16,12 @@ import couplet  # noqa: E402
 bin_, page = pathlib.Path(sys.argv[1]), sys.argv[2]
 FEWEST = (2, 1) if page.startswith("tutorials/") else (1, 0)  # blocks of commands, pictures
 PICTURES = {"tutorials/accuracy": 2}
+NUMBERS = {  # page: (file, column, row, value that the page tells)
+    "how-to/modes": ("part/out/part/modes.csv", "frequency [Hz]", 0, 304.4),
+    "how-to/pressure-vessel": ("vessel/out/vessel/probes.csv", "cylinder stress-zz [Pa]", -1, 102.07e6),
+    "how-to/thermal-stress": ("strip/out/strip/probes.csv", "tip temperature [K]", -1, 360.07),
+    "how-to/plate-for-solid": ("panel/out/structure/probes.csv", "tip x [m]", -1, 9.80e-3),
+}
 
 text = (ROOT / f"docs/{page}.md").read_text()
 blocks = re.findall(r"^```sh\n(.*?)^```", text, flags=re.M | re.S)
@@ -31,6 +37,10 @@ with tempfile.TemporaryDirectory(prefix="couplet-tutorial-") as scratch:
     if page == "tutorials/own-mesh":  # what is drawn is the hook: 10 mm of 100 mm and of half a ring
         area = couplet.Results(home / "hook/out").fields("solid").volumes().sum()
         check("the hook is a strip", abs(area / (1e-3 + 0.5 * math.pi * (0.05**2 - 0.04**2)) - 1) < 0.02, area)
+    if page in NUMBERS:
+        file, column, row, told = NUMBERS[page]
+        found = couplet.read_csv(home / file)[column][row]
+        check(f"{column} is what the page tells", abs(found / told - 1) < 1e-3, (found, told))
     pictures = [p for p in home.rglob("*.png") if p.stat().st_size > 3000]
     check(f"{len(blocks)} blocks in {time.monotonic() - start:.0f} s, {len(pictures)} pictures", len(blocks) >= FEWEST[0] and len(pictures) >= PICTURES.get(page, FEWEST[1]), pictures)
 end()
