@@ -98,10 +98,6 @@ void declare(config::Section& s, SolidOutputParameters& o) {
       .plausible(1e-9, 1e4)
       .doc("point about which 'moments' are taken; it rests");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
-  s.value("large-strain-estimate", o.large_strain_estimate)
-      .doc(
-          "for a linear static analysis: change of the displacement that 'kinematics: finite-strain' would "
-          "cause, from two more linear solves per step; reported at the end of the run");
   s.value("spectrum", o.spectrum)
       .doc(
           "write the eigenvalues of M^-1 K of a dynamic analysis to spectrum.csv at the start and report "
@@ -280,7 +276,6 @@ void declare(config::Section& s, SolidParameters& p) {
   check_contact(s, p);
   check_load_stepping(s, p);
   check_buckling(s, p);
-  check_large_strain_estimate(s, p);
   check_quantities(s, p);
 }
 

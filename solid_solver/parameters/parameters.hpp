@@ -40,7 +40,6 @@ struct SolidOutputParameters {
   bool point_stress = false;
   bool acceleration = false;
   bool energies = false;
-  bool large_strain_estimate = false;
   bool spectrum = false;
   bool moments = false;
   Vec3 moment_centre = Vec3::Zero();  // [m]
