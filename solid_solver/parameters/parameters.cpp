@@ -136,6 +136,13 @@ void declare_scene(config::Section& s, SolidParameters& p) {
           "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
           "keys remain in metres");
   s.value("mesh-parameters", p.mesh_parameters)
+  using TouchingFaces = SolidParameters::TouchingFaces;
+  s.choice(
+       "touching-faces", p.touching_faces,
+       {{"refused", TouchingFaces::refused}, {"tie", TouchingFaces::tie}, {"apart", TouchingFaces::apart}})
+      .doc(
+          "parts of the mesh that touch without sharing points: refused unless the faces on both sides are patches of their "
+          "own with a load or support; tie joins faces with the same corners; apart leaves them, as those of a crack");
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
   s.choice("plane", p.plane,
