@@ -190,10 +190,11 @@ elastic::ElasticBoundary SolidBoundaries::elastic() const {
 }
 
 template <class Take>
-void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& take) const {
+void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& take,
+                                      const Vec3& shift) const {
   const double level = c.liquid ? c.liquid->level(t) : 0;
   for (const Index f : c.faces)
-    take(f, c.liquid ? c.liquid->mean(f, level) : c.pressure(geometry_->face_centre[f], t));
+    take(f, c.liquid ? c.liquid->mean(f, level, shift) : c.pressure(geometry_->face_centre[f] + shift, t));
 }
 
 std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
@@ -203,11 +204,12 @@ std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
   return faces;
 }
 
-std::vector<double> SolidBoundaries::pressures(double t) const {
+std::vector<double> SolidBoundaries::pressures(double t, const Vec3& shift) const {
   std::vector<double> pressure(mesh_->boundary.n_owned(), 0);
   for (const Condition& c : conditions_)
     if (c.has_pressure())
-      visit_pressures(c, t, [&](Index f, double p) { pressure[f - mesh_->n_interior] = p; });
+      visit_pressures(
+          c, t, [&](Index f, double p) { pressure[f - mesh_->n_interior] = p; }, shift);
   return pressure;
 }
 

@@ -34,8 +34,8 @@ class SolidBoundaries {
   /// Adds tractions, pressures and total loads at time t as forces [N] on boundary faces of owned cells
   /// (`dim` values per face): thesis (2.64), reference configuration. Collective.
   void add_forces(double t, std::span<double> forces, bool with_pressure = true) const;
-  /// Pressures at time t on the boundary faces of owned cells [Pa].
-  std::vector<double> pressures(double t) const;
+  /// Pressures at time t on the boundary faces of owned cells, moved by `shift` [Pa].
+  std::vector<double> pressures(double t, const Vec3& shift = Vec3::Zero()) const;
 
  private:
   friend class PrescribedDisplacement;
@@ -66,7 +66,8 @@ class SolidBoundaries {
   void make_point_loads(const SolidParameters& parameters);
   /// Calls take(face, pressure [Pa]) for the faces of a condition.
   template <class Take>
-  void visit_pressures(const Condition& condition, double t, const Take& take) const;
+  void visit_pressures(const Condition& condition, double t, const Take& take,
+                       const Vec3& shift = Vec3::Zero()) const;
   elastic::BoundaryRow row_at(const Condition& condition, Index face) const;
   const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
 
