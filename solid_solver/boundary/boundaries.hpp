@@ -92,6 +92,9 @@ class PrescribedDisplacement {
   bool uses_time() const { return uses_time_; }
   /// Evaluates dim values per known column.
   void evaluate(double t, std::span<double> values) const;
+  /// Throws Error if two conditions prescribe different displacements at a common point at time t. `values`:
+  /// those of evaluate(). Collective.
+  void check(double t, std::span<const double> values) const;
   /// Evaluates the time derivative by a central difference over 2e-3 dt.
   void evaluate_rate(double t, double dt, std::span<double> values) const;
 
@@ -102,6 +105,16 @@ class PrescribedDisplacement {
     std::vector<Vec3> places;
     std::vector<Tensor3> shares;  // one per place, after the places without (whose share is I)
   };
+  /// Point with a known displacement that another condition prescribes, too.
+  struct Shared {
+    Index column;
+    Vec3 place;
+    Tensor3 along;  // directions that both prescribe
+    const SolidBoundaries::Condition* condition;
+    Index patch, other;  // of the known value, of `condition`
+  };
+  const mesh::Mesh* mesh_;
+  std::vector<Shared> shared_;
   int dim_;
   std::size_t size_ = 0;
   bool uses_time_ = false;

@@ -316,12 +316,12 @@ Nearest nearest_face(const mesh::Mesh& mesh, const mesh::Geometry& geometry, con
   return best;
 }
 
+}  // namespace
+
 std::string place_of(const Vec3& x, int dim) {
   return dim == 3 ? fmt::format("({:g}, {:g}, {:g})", x[0], x[1], x[2])
                   : fmt::format("({:g}, {:g})", x[0], x[1]);
 }
-
-}  // namespace
 
 std::vector<Index> faces_of_point_load(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                        const PointLoad& load, std::span<const std::uint8_t> open,

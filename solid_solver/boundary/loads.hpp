@@ -46,6 +46,9 @@ class DistributedForce {
   Tensor3 spin_ = Tensor3::Zero(), lost_ = Tensor3::Zero();
 };
 
+/// "(0, 0.5)" in 2-D, "(0, 0.5, 1)" in 3-D.
+std::string place_of(const Vec3& x, int dim);
+
 /// Component-wise sum over the ranks. Collective.
 Vec3 sum_of(MPI_Comm comm, const Vec3& value);
 Tensor3 sum_of(MPI_Comm comm, const Tensor3& value);
