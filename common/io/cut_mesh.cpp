@@ -300,9 +300,9 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
                            const mesh::MeshParameters& parameters,
                            const std::vector<std::array<std::string, 2>>& periodic,
                            const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
-                           double scale) {
+                           double scale, bool tie) {
   if (!is_cut_mesh(file))
-    return mesh::load_mesh(comm, file, dim, parameters, periodic, materials, find_wide_points, scale);
+    return mesh::load_mesh(comm, file, dim, parameters, periodic, materials, find_wide_points, scale, tie);
   if (!parameters.empty())
     throw Error(
         "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the .geo it "
@@ -315,6 +315,7 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
   block.periodic = periodic;
   block.materials = materials;
   block.find_wide_points = find_wide_points;
+  block.tie = tie;
   return mesh::load_block(comm, std::move(block), file, scale);
 }
 

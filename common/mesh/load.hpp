@@ -60,13 +60,13 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
 LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw);
 
 /// Loads and distributes a mesh file (.msh, .inp, .geo, or as for convert_mesh()), with lengths multiplied by
-/// `scale`. `periodic`, `materials` and `find_wide_points` are as in RawMesh. Collective; an error on rank 0
-/// is thrown on every rank.
+/// `scale`. `periodic`, `materials` and `find_wide_points` are as in RawMesh. `tie` joins parts that touch
+/// without sharing points. Collective; an error on rank 0 is thrown on every rank.
 LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters = {},
                      const std::vector<std::array<std::string, 2>>& periodic = {},
                      const std::vector<std::vector<std::string>>& materials = {},
-                     bool find_wide_points = false, double scale = 1);
+                     bool find_wide_points = false, double scale = 1, bool tie = false);
 
 /// Boxes for tests: n cells per side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin"
 /// "zmax" in 3-D).

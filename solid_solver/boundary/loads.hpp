@@ -46,6 +46,9 @@ class DistributedForce {
   Tensor3 spin_ = Tensor3::Zero(), lost_ = Tensor3::Zero();
 };
 
+/// "(0, 0.5)" in 2-D, "(0, 0.5, 1)" in 3-D.
+std::string place_of(const Vec3& x, int dim);
+
 /// Component-wise sum over the ranks. Collective.
 Vec3 sum_of(MPI_Comm comm, const Vec3& value);
 Tensor3 sum_of(MPI_Comm comm, const Tensor3& value);
@@ -93,8 +96,8 @@ class HydrostaticPressure {
 
   /// Height of the free surface at time t [m].
   double level(double t) const { return level_(Vec3::Zero(), t); }
-  /// Mean over a face below this free surface [Pa].
-  double mean(Index face, double level) const;
+  /// Mean over a face, moved by `shift`, below this free surface [Pa].
+  double mean(Index face, double level, const Vec3& shift) const;
 
  private:
   const mesh::Mesh* mesh_;

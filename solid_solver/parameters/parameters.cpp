@@ -107,14 +107,15 @@ void declare(config::Section& s, SolidOutputParameters& o) {
       .doc(
           "number of lowest free vibrations to compute (face-gradient: symmetric): for a dynamic analysis "
           "at the start and unloaded, for a linear static one at the end, about the loaded equilibrium "
-          "whose stress stiffens or softens the body; modes.csv, and in 3-D modes.h5, which plate_modal "
+          "whose stress and loads (as for buckling) stiffen or soften the body; modes.csv, and in 3-D modes.h5, which plate_modal "
           "reads; 0: none");
   s.value("buckling", o.buckling)
       .range(0, 1000)
       .doc(
           "number of lowest load factors at which the equilibrium of a linear static analysis buckles "
           "(face-gradient: symmetric), computed at the end: buckling.csv and the shapes in buckling.xdmf; "
-          "pressures follow the surface, other loads keep their direction; 0: none; with 'analysis: "
+          "pressures follow the surface; they and body forces are those of the place to which the body moves; other "
+          "loads keep their direction; 0: none; with 'analysis: "
           "buckling' 4");
 }
 
@@ -131,6 +132,13 @@ void declare_scene(config::Section& s, SolidParameters& p) {
       .doc(
           "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
           "keys remain in metres");
+  using TouchingFaces = SolidParameters::TouchingFaces;
+  s.choice(
+       "touching-faces", p.touching_faces,
+       {{"refused", TouchingFaces::refused}, {"tie", TouchingFaces::tie}, {"apart", TouchingFaces::apart}})
+      .doc(
+          "parts of the mesh that touch without sharing points: refused unless the faces on both sides are patches of their "
+          "own with a load or support; tie joins faces with the same corners; apart leaves them, as those of a crack");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");

@@ -133,6 +133,7 @@ struct MeshBlock {
   std::vector<std::array<std::string, 2>> periodic;
   std::vector<std::vector<std::string>> materials;
   bool find_wide_points = true;
+  bool tie = false;  ///< for load_block(): see tie_touching_faces()
 
   Index n_elements() const { return static_cast<Index>(element_patch.size()); }
   std::span<const GlobalIndex> element(Index e) const {

@@ -107,11 +107,12 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters,
                      const std::vector<std::array<std::string, 2>>& periodic,
                      const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
-                     double scale) {
+                     double scale, bool tie) {
   MeshBlock block = read_mesh(comm, file, dim, parameters);
   block.periodic = periodic;
   block.materials = materials;
   block.find_wide_points = find_wide_points;
+  block.tie = tie;
   return load_block(comm, std::move(block), file, scale);
 }
 

@@ -115,6 +115,10 @@ TEST(Quantities, lists_tables_and_vectors_of_expressions_are_judged_expressions_
   EXPECT_THAT(judge("load: {of: t, at: [0, 1], values: [0, 3e12]}").doubts,
               ElementsAre(HasSubstr("3e+12 Pa")));
   EXPECT_THAT(judge("load: {of: t, at: [1e12, 2e12], values: [0, 3]}").doubts, IsEmpty());
+  EXPECT_THAT(judge("load: 'table(t, 1e12, 0, 2e12, 3)'").doubts, IsEmpty());
+  EXPECT_THAT(judge("load: 'table(t, error, 1e12, 0, 2e12, 3)'").doubts, IsEmpty());
+  EXPECT_THAT(judge("load: 'table(t, 1, 0, 2, 3e12)'").doubts, ElementsAre(HasSubstr("3e+12 Pa")));
+  EXPECT_THAT(judge("load: 'table(max(t, 1e12), 1, 0, 2, 3)'").doubts, IsEmpty());
   EXPECT_THAT(judge("traction: [1e12, 0]").doubts, ElementsAre(HasSubstr("1e+12 Pa")));
   EXPECT_THAT(judge("traction: [1e3, 1e-9]").doubts, IsEmpty());
   EXPECT_THAT(judge("load: 1e12*sin(t)").doubts, IsEmpty());

@@ -366,6 +366,37 @@ TEST(SolidSupports, a_moving_support_carries_a_free_body_along) {
   EXPECT_LT(parallel::max(MPI_COMM_WORLD, error), 1e-10);
 }
 
+TEST(SolidBoundaries, that_contradict_each_other_at_common_points_are_refused) {
+  const RawMesh square = make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  const auto refusal = [&](const std::function<void(SolidParameters&)>& change) {
+    SolidParameters p = box_parameters(2);
+    p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"1e-3*y", "0"});
+    change(p);
+    return support::error_of([&] { stepped(square, p); });
+  };
+  const auto with = [](const char* patch, const SolidBoundary& b) {
+    return [patch, b](SolidParameters& p) { p.boundaries[patch] = b; };
+  };
+  SolidBoundary along_y, roller;
+  along_y.type = Type::fixed_displacement, along_y.components[1] = {"2e-3"};
+  roller.type = Type::roller, roller.normal = Vec3::UnitX(), roller.along = {"1e-3"};
+  EXPECT_THAT(refusal(with("ymax", boundary(Type::fixed_displacement, {"1e-3*t", "1e-4*x"}))), "");
+  EXPECT_THAT(refusal(with("ymax", roller)), "");
+  EXPECT_THAT(refusal(with("ymin", boundary(Type::symmetry))), "");
+  EXPECT_THAT(refusal(with("ymax", boundary(Type::frictionless))), "");
+  EXPECT_EQ(
+      refusal(with("ymax", boundary(Type::fixed_displacement, {"0", "0"}))),
+      "boundaries: 'xmin' and 'ymax' prescribe different displacements at (0, 1), a common point: (0.001, 0) m "
+      "and (0, 0) m at t = 1 s. Prescribe the same there, or leave the component free on one of the patches.");
+  EXPECT_THAT(refusal(with("ymax", along_y)), HasSubstr("(0, 0) m and (0, 0.002) m"));
+  EXPECT_THAT(refusal(with("ymin", roller)), HasSubstr("'xmin' and 'ymin'"));
+  EXPECT_THAT(refusal([&](SolidParameters& p) {
+                p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "1e-3"});
+                p.boundaries["ymin"] = boundary(Type::symmetry);
+              }),
+              HasSubstr("(0, 0.001) m and (0, 0) m"));
+}
+
 TEST(SolidBoundaries, a_part_without_faces_is_refused) {
   SolidParameters p = box_parameters(2);
   p.boundaries["xmin"] = clamped(2);
