@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 
+#include <sched.h>
+
 #include <fstream>
 
 #include "common/app/job.hpp"
@@ -41,6 +43,23 @@ void write_effective(const Job& job, const Program& program) {
   file << config::effective(program.declare);
 }
 
+/// Warns where ranks share cores: they poll while they wait for each other. Collective.
+void warn_of_shared_cores(const Job& job) {
+  MPI_Comm here;
+  MPI_Comm_split_type(job.comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  ::sched_getaffinity(0, sizeof(cores), &cores);
+  MPI_Allreduce(MPI_IN_PLACE, &cores, sizeof(cores), MPI_BYTE, MPI_BOR, here);
+  const int ranks = parallel::comm_size(here), most = CPU_COUNT(&cores);
+  MPI_Comm_free(&here);
+  if (job.rank == 0 && most > 0 && ranks > most)
+    log::warn(
+        "'{}' has {} ranks on {} core{}: ranks poll while they wait for each other, so that the run takes several "
+        "times as long as with {}.",
+        job.name, ranks, most, most == 1 ? "" : "s", most);
+}
+
 int run(const Job& job, const Program& program) {
   const std::shared_ptr<void> environment = program.environment ? program.environment(job.comm) : nullptr;
   Watch::install();
@@ -61,6 +80,7 @@ int run(const Job& job, const Program& program) {
   write_effective(job, program);
   log::info("{} runs '{}' with {} rank{}", program.name, job.name, parallel::comm_size(job.comm),
             parallel::comm_size(job.comm) == 1 ? "" : "s");
+  warn_of_shared_cores(job);
   for (const diagnostics::EffectChoice& choice : job.choices) log::info("{}", diagnostics::text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();

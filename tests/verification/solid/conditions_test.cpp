@@ -3,6 +3,7 @@
 // mesh.
 #include <Eigen/Geometry>
 
+#include "tests/support/apart.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::conditions_test {
@@ -474,22 +475,8 @@ TEST_F(FreeMotions, springs_hold_however_soft) {
 }
 
 TEST_F(FreeMotions, of_bodies_that_do_not_hang_together_are_told_apart) {
-  RawMesh raw = box(2), other = make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3(5, 0, 0), Vec3(6, 1, 0));
-  const auto shift = static_cast<Index>(raw.points.size());
-  raw.points.insert(raw.points.end(), other.points.begin(), other.points.end());
-  const auto append = [shift](Csr& to, const Csr& from) {
-    for (Index i = 0; i < from.size(); ++i) {
-      std::vector<Index> row(from[i].begin(), from[i].end());
-      for (Index& p : row) p += shift;
-      to.push_row(row);
-    }
-  };
-  append(raw.cell_points, other.cell_points);
-  append(raw.boundary_points, other.boundary_points);
-  raw.cell_type.insert(raw.cell_type.end(), other.cell_type.begin(), other.cell_type.end());
-  raw.cell_zone.insert(raw.cell_zone.end(), other.cell_zone.begin(), other.cell_zone.end());
-  raw.boundary_patch.insert(raw.boundary_patch.end(), other.boundary_patch.begin(),
-                            other.boundary_patch.end());
+  RawMesh raw = box(2);
+  support::add_apart(raw, make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3(5, 0, 0), Vec3(6, 1, 0)));
   SolidParameters p = with(2, {{"xmin", clamped(2)}});
   EXPECT_EQ(message(p, raw), "held");
   SolidBoundary left;
