@@ -16,6 +16,15 @@
 namespace couplet::mesh {
 namespace {
 
+constexpr std::size_t most_words = 20;  // in a message
+
+/// At most the first words, with the number of the others.
+std::string beginning_of(std::vector<std::string> words) {
+  const std::size_t n = words.size();
+  if (n > most_words) words.resize(most_words), words.push_back(fmt::format("{} more", n - most_words));
+  return base::join(words);
+}
+
 /// Mesh under construction from a deck.
 struct InpBody {
   InpLines& lines;
@@ -115,7 +124,7 @@ class InpPatches {
     const int patch = number_of(surface.name);
     std::vector<Index> points;
     for (const InpSurface::Part& part : surface.parts)
-      body_.visit(part.elements, body_.cell_of_element, [&](Index cell) {
+      body_.visit(part.elements.members, body_.cell_of_element, [&](Index cell) {
         const CellShape& shape = shape_of(raw_.cell_type[std::size_t(cell)]);
         if (part.face >= shape.n_faces)
           throw Error("{}: surface '{}': element {} has faces S1 to S{} only.",
@@ -130,7 +139,7 @@ class InpPatches {
         else
           assign(face, patch);
       });
-    if (!surface.nodes.empty()) take_nodes(surface.nodes, patch, true);
+    if (!surface.nodes.members.empty()) take_nodes(surface.nodes.members, patch, true);
   }
 
   /// Uses lower-dimensional elements, as meshers write them for groups of surfaces: by their smallest *ELSET,
@@ -207,13 +216,17 @@ class InpPatches {
       if (patch_of_face_[std::size_t(f)] == none) patch_of_face_[std::size_t(f)] = number_of(rest);
     std::vector<int> renumbered(raw_.patches.size(), none);
     for (const int patch : patch_of_face_) renumbered[std::size_t(patch)] = 0;
-    std::vector<std::string> kept;
+    std::vector<std::string> kept, lost;
     for (std::size_t p = 0; p < renumbered.size(); ++p) {
+      if (renumbered[p] == none) lost.push_back(raw_.patches[p]);
       if (renumbered[p] == none) continue;
       renumbered[p] = static_cast<int>(kept.size());
       kept.push_back(raw_.patches[p]);
     }
     raw_.patches = std::move(kept);
+    if (!lost.empty())
+      log::info("'{}': these name no patch, since no boundary face is left for them: {}.", body_.lines.name(),
+                beginning_of(lost));
     for (int& patch : patch_of_face_) patch = renumbered[std::size_t(patch)];
     raw_.boundary_points = std::move(outer_);
     raw_.boundary_patch = std::move(patch_of_face_);
@@ -231,8 +244,6 @@ class InpPatches {
   std::size_t inner_ = 0;
 };
 
-constexpr std::size_t most_words = 20;  // in a message
-
 /// Converts a deck to cells, zones and patches.
 class InpMesh {
  public:
@@ -246,6 +257,7 @@ class InpMesh {
     make_cells();
     if (raw_.cell_type.empty())
       throw Error("{}: the deck has no solid elements (C3D4, C3D8, CPS4, ...).", lines_.name());
+    name_missing();
     drop_unused();
     find_zones();
     report(InpPatches(body_).name());
@@ -268,6 +280,7 @@ class InpMesh {
   void make_cells() {
     std::vector<Index> points;
     for (const auto& e : deck_.elements.all) {
+      if (!is_cell(e)) deck_.other_elements.emplace(e.id, 0);
       if (!is_cell(e)) continue;
       points.clear();
       for (int i = 0; i < e.type.shape().n_points; ++i)
@@ -278,6 +291,32 @@ class InpMesh {
       raw_.cell_points.push_row(points);
       body_.elements.push_back(&e);
     }
+  }
+
+  /// Names sets with listed members that the deck does not define.
+  void name_missing() {
+    std::vector<std::string> all;
+    const auto check = [&](const char* kind, const InpSets& sets, const auto&... indices) {
+      for (const InpSet& set : sets.all) {
+        std::int64_t n = 0, missing = 0, first = 0;
+        for (const InpRange& r : set.members) {
+          if (!set.is_given || r.is_generated) continue;
+          const std::int64_t count = (r.last - r.first) / r.step + 1;
+          std::int64_t found = 0;
+          (body_.visit({r}, indices, [&](Index) { ++found; }), ...);
+          n += count, missing += count - found;
+          for (std::int64_t id = r.first; first == 0 && found < count; id += r.step)
+            if (!(indices.contains(id) || ...)) first = id;
+        }
+        if (missing > 0)
+          all.push_back(
+              fmt::format("{} of {} of {} '{}' (the first is {})", missing, n, kind, set.name, first));
+      }
+    };
+    check("NSET", deck_.node_sets, deck_.point_of_node);
+    check("ELSET", deck_.element_sets, body_.cell_of_element, deck_.other_elements);
+    if (!all.empty())
+      log::warn("'{}': members of sets are not defined in the deck: {}.", lines_.name(), beginning_of(all));
   }
 
   /// Removes midside and reference nodes. The others keep their order.
@@ -299,9 +338,10 @@ class InpMesh {
   /// Sets zones by *SOLID SECTION, else by the ELSET of the *ELEMENT.
   void find_zones() {
     raw_.cell_zone.assign(raw_.cell_type.size(), -1);
-    for (const auto& [name, members] : deck_.sections) {
+    for (const InpSet& section : deck_.sections) {
+      const std::string& name = section.name;
       const int zone = number_in(raw_.zones, zones_, name);
-      body_.visit(members, body_.cell_of_element, [&](Index cell) {
+      body_.visit(section.members, body_.cell_of_element, [&](Index cell) {
         int& of_cell = raw_.cell_zone[std::size_t(cell)];
         if (of_cell >= 0 && of_cell != zone)
           throw Error("{}: element {} has two sections, '{}' and '{}'.",
@@ -326,11 +366,14 @@ class InpMesh {
     if (inner > 0)
       log::info("'{}': {} faces of surfaces lie between two cells and belong to no patch.", lines_.name(),
                 inner);
-    std::vector<std::string> words;
-    for (const auto& [word, n] : deck_.passed_over)
-      if (words.size() < most_words) words.push_back(word);
-    if (!words.empty())
-      log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), base::join(words));
+    const auto words = [](const std::set<std::string>& all) {
+      return beginning_of({all.begin(), all.end()});
+    };
+    if (!deck_.passed_over.empty())
+      log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), words(deck_.passed_over));
+    if (!deck_.connections.empty())
+      log::warn("'{}': parts of the mesh are connected by {}, which is not read.", lines_.name(),
+                words(deck_.connections));
   }
 
   InpLines& lines_;
