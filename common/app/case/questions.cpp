@@ -64,7 +64,7 @@ class FileCheck {
       } else if (io::is_cut_mesh(file)) {
         check_patches(io::read_cut_mesh_facts(file).patches);
       } else if (const std::string kind = file.extension().string();
-                 kind != ".unv" && kind != ".cgns" && !mesh::is_read_by_meshio(kind)) {
+                 kind != ".cgns" && !mesh::is_foreign(kind)) {
         report("mesh",
                fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo, .cgns or .h5 file.", name));
       }

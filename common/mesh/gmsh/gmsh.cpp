@@ -155,28 +155,26 @@ void run_gmsh(const std::vector<std::string>& options, const fs::path& source, b
   put(mesh, result, source);
 }
 
-// gmsh would treat unknown options as scripts.
-bool gmsh_has(const std::string& library) {
+namespace {
+
+/// Returns true if gmsh was built with CGNS. One that was not would take the file for a script.
+bool reads_cgns() {
   const OwnFolder folder;
-  try {
-    run_in_sandbox({"gmsh", "-info"}, folder.path(), folder.path() / "info.log");
-  } catch (const Error&) {
-    return false;  // not installed
-  }
+  run_in_sandbox({"gmsh", "-info"}, folder.path(), folder.path() / "info.log");
   std::istringstream words(read_log(folder.path() / "info.log"));
   for (std::string word; words >> word;)
-    if (word == library || word.starts_with(library + "[")) return true;
+    if (word == "Cgns" || word.starts_with("Cgns[")) return true;
   return false;
 }
 
+}  // namespace
+
 fs::path convert_mesh(const fs::path& file) {
-  const std::string kind = file.extension().string();
-  const std::string library = kind == ".med" ? "Med" : kind == ".cgns" ? "Cgns" : "";
-  if (!library.empty() && !gmsh_has(library))
+  if (file.extension() == ".cgns" && !reads_cgns())
     throw Error(
-        "Cannot read the mesh '{}': the gmsh on the PATH was built without {}. Convert it elsewhere, for "
+        "Cannot read the mesh '{}': the gmsh on the PATH was built without CGNS. Convert it elsewhere, for "
         "example with meshio, to .msh 4.1 with its groups as physical names.",
-        file.string(), kind == ".med" ? "MED" : "CGNS");
+        file.string());
   if (!std::ifstream(file))
     throw Error("Cannot open the file '{}'. Check the path and the permissions.", file.string());
   const std::string hash = fmt::format("{:016x}", base::stable_hash(text_of(file)));

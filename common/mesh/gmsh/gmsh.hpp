@@ -19,12 +19,9 @@ void run_gmsh(const std::vector<std::string>& options, const std::filesystem::pa
 /// regenerated.
 bool is_sound_cache(const std::filesystem::path& file);
 
-/// Converts a mesh of another program (.unv; .med and .cgns if gmsh supports them) to <stem>.<hash>.cache.msh
-/// beside it. Groups become patches and zones. Throws Error for a format that gmsh does not read.
+/// Converts a .cgns, if gmsh supports it, or a .msh of another version to <stem>.<hash>.cache.msh beside it.
+/// Groups become patches and zones. Throws Error for a format that gmsh does not read.
 std::filesystem::path convert_mesh(const std::filesystem::path& file);
-/// Returns true if gmsh is available and was built with this library, "Med" or "Cgns".
-bool gmsh_has(const std::string& library);
-
 /// Block of this rank for a mesh in a .msh, .inp, .geo (meshed with these parameters) or foreign file. Throws
 /// Error if it does not have `dim` dimensions. Collective.
 MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
@@ -34,12 +31,12 @@ MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
 /// three-dimensional if it names a physical volume. Throws Error.
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
 
-/// Returns true for formats read by the Python module meshio: .med, .exo, .e, .ex2.
-bool is_read_by_meshio(const std::string& extension);
+/// Returns true for the formats of read_foreign(): universal files (.unv), MED and Exodus (.exo, .e, ...).
+bool is_foreign(const std::string& extension);
 
-/// Reads a mesh by running meshio in a sandbox, which passes it on as an input deck (read_inp). Groups of
-/// cells become zones, groups of faces and sets of nodes patches. Throws Error with what to install if
-/// python3 or meshio is missing, or with meshio's message.
-RawMesh read_by_meshio(const std::filesystem::path& file);
+/// Reads a mesh of another program by a Python script in a sandbox, which passes it on as an input deck
+/// (read_inp). Groups of cells become zones, groups of faces, sets of sides and sets of nodes patches. What
+/// the script leaves out is logged. Throws Error with what is wrong, or what to install.
+RawMesh read_foreign(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

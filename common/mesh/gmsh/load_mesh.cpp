@@ -26,11 +26,11 @@ constexpr std::uintmax_t bytes_of_large_msh = std::uintmax_t(64) << 20;
 /// Returns true if the mesh is read as an input deck. Others are .msh files or converted by gmsh.
 bool is_deck(const std::filesystem::path& file) {
   const std::string kind = file.extension().string();
-  return kind == ".inp" || (is_read_by_meshio(kind) && !(kind == ".med" && gmsh_has("Med")));
+  return kind == ".inp" || is_foreign(kind);
 }
 
 RawMesh read_deck(const std::filesystem::path& file) {
-  return file.extension() == ".inp" ? read_inp(file) : read_by_meshio(file);
+  return file.extension() == ".inp" ? read_inp(file) : read_foreign(file);
 }
 
 std::filesystem::path finished_msh(const std::filesystem::path& file) {
@@ -63,7 +63,7 @@ void check_file(const std::filesystem::path& file, const MeshParameters& paramet
     throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
   const std::string kind = file.extension().string();
-  const bool foreign = kind == ".unv" || kind == ".cgns" || is_read_by_meshio(kind);
+  const bool foreign = kind == ".cgns" || is_foreign(kind);
   if (kind == ".vtk")
     throw Error(
         "Cannot read the mesh file '{}': this format does not name its parts. Convert it with meshio to "

@@ -155,20 +155,21 @@ class InpPatches {
         const auto found = deck_.point_of_node.find(deck_.elements.nodes[e.first_node + std::size_t(i)]);
         if (found != deck_.point_of_node.end()) points.push_back(found->second);
       }
-      const Index face = std::ssize(points) == corners ? outer_face(points) : none;
-      if (face != none) face_of_element.emplace(e.id, face);
+      if (std::ssize(points) < corners) continue;
+      inner_ += face_of_element.emplace(e.id, outer_face(points)).first->second == none;
     }
     if (face_of_element.empty()) return;
     std::vector<std::pair<std::size_t, const InpSet*>> by_size;
     for (const InpSet& set : deck_.element_sets.all) {
-      std::size_t n = set.is_given ? 0 : face_of_element.size();
-      body_.visit(set.members, face_of_element, [&](Index) { ++n; });
-      if (n > 0) by_size.emplace_back(n, &set);
+      std::size_t n = 0, inner = 0;
+      body_.visit(set.members, face_of_element, [&](Index face) { ++(face == none ? inner : n); });
+      if (n > 0) by_size.emplace_back(set.is_given ? n : n + face_of_element.size(), &set);
+      if (n == 0 && inner > 0) lost_.push_back(set.name);
     }
     std::ranges::stable_sort(by_size, {}, &std::pair<std::size_t, const InpSet*>::first);
     for (const auto& [n, set] : by_size)
       body_.visit(set->members, face_of_element, [&](Index face) {
-        if (patch_of_face_[std::size_t(face)] == none) assign(face, number_of(set->name));
+        if (face != none && patch_of_face_[std::size_t(face)] == none) assign(face, number_of(set->name));
       });
   }
 
@@ -216,17 +217,17 @@ class InpPatches {
       if (patch_of_face_[std::size_t(f)] == none) patch_of_face_[std::size_t(f)] = number_of(rest);
     std::vector<int> renumbered(raw_.patches.size(), none);
     for (const int patch : patch_of_face_) renumbered[std::size_t(patch)] = 0;
-    std::vector<std::string> kept, lost;
+    std::vector<std::string> kept;
     for (std::size_t p = 0; p < renumbered.size(); ++p) {
-      if (renumbered[p] == none) lost.push_back(raw_.patches[p]);
+      if (renumbered[p] == none) lost_.push_back(raw_.patches[p]);
       if (renumbered[p] == none) continue;
       renumbered[p] = static_cast<int>(kept.size());
       kept.push_back(raw_.patches[p]);
     }
     raw_.patches = std::move(kept);
-    if (!lost.empty())
+    if (!lost_.empty())
       log::info("'{}': these name no patch, since no boundary face is left for them: {}.", body_.lines.name(),
-                beginning_of(lost));
+                beginning_of(lost_));
     for (int& patch : patch_of_face_) patch = renumbered[std::size_t(patch)];
     raw_.boundary_points = std::move(outer_);
     raw_.boundary_patch = std::move(patch_of_face_);
@@ -242,6 +243,7 @@ class InpPatches {
   Csr faces_of_point_;
   std::vector<int> marked_;  // per point: the last patch that marked it
   std::size_t inner_ = 0;
+  std::vector<std::string> lost_;  // names without a face of their own
 };
 
 /// Converts a deck to cells, zones and patches.

@@ -186,7 +186,7 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
               HasSubstr("bad.msh:1: Expected a section such as $Nodes here"));
 }
 
-TEST_F(LoadMesh, reads_unv_by_gmsh_with_its_groups_as_patches_and_scales_lengths) {
+TEST_F(LoadMesh, reads_unv_with_its_groups_as_patches_and_scales_lengths) {
   const std::filesystem::path copy = folder / "millimetres.unv";
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::copy(test::data / "millimetres.unv", copy);
   MPI_Barrier(MPI_COMM_WORLD);
@@ -205,7 +205,7 @@ TEST_F(LoadMesh, reads_unv_by_gmsh_with_its_groups_as_patches_and_scales_lengths
 }
 
 TEST_F(LoadMesh, a_format_that_this_gmsh_was_built_without_is_refused_before_gmsh_takes_it_for_a_script) {
-  const std::string text = error(write("mesh.med", "SystemCall \"touch intruder\";"), 2);
+  const std::string text = error(write("mesh.cgns", "SystemCall \"touch intruder\";"), 2);
   EXPECT_FALSE(text.empty());
   EXPECT_FALSE(std::filesystem::exists("intruder"));
 }
