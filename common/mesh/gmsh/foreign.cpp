@@ -21,9 +21,12 @@ constexpr const char* script =
 #include "to_deck.inc"
     ;
 
+bool is_note(const std::string& line) { return line.starts_with("info: ") || line.starts_with("warning: "); }
+
 /// Last lines printed by Python, which contain its error.
 std::string complaint(std::vector<std::string> lines) {
   std::string text;
+  std::erase_if(lines, is_note);
   if (lines.size() > most_complaints) lines.erase(lines.begin(), lines.end() - most_complaints);
   for (const std::string& line : lines) text += (text.empty() ? "" : "\n  ") + line;
   return text;
@@ -40,8 +43,14 @@ RawMesh read_foreign(const fs::path& file) {
   const OwnFolder folder;
   const fs::path deck = folder.path() / "mesh.inp", log = folder.path() / "python.log";
   log::info("reading {} with Python", file.string());
-  const ProgramEnd end = run_in_sandbox({"python3", "-c", script, fs::absolute(file).string(), deck.string()},
-                                        folder.path(), log, {fs::canonical(file)});
+  const auto run = [&](const std::string& python) {
+    return run_in_sandbox({python, "-c", script, fs::absolute(file).string(), deck.string()}, folder.path(),
+                          log, {fs::canonical(file)});
+  };
+  ProgramEnd end = run("python3");
+  // A python3 of the user's own may lack what that of the system has.
+  const char* system_python = "/usr/bin/python3";
+  if (end.code == no_module && fs::exists(system_python)) end = run(system_python);
   const std::vector<std::string> lines = csv::read_lines(log, "output of python3", {.text_only = false});
   if (end.code == no_module)
     throw Error(
@@ -54,9 +63,9 @@ RawMesh read_foreign(const fs::path& file) {
         "Cannot read the mesh '{}': {}.", file.string(),
         end.signal != 0 ? fmt::format("python3 was ended by signal {}", end.signal) : complaint(lines));
   for (const std::string& line : lines)
-    if (const std::size_t colon = line.find(": "); colon != std::string::npos)
-      line.starts_with("warning") ? log::warn("'{}': {}.", file.string(), line.substr(colon + 2))
-                                  : log::info("'{}': {}.", file.string(), line.substr(colon + 2));
+    if (is_note(line))
+      line.starts_with("warning") ? log::warn("'{}': {}.", file.string(), line.substr(line.find(' ') + 1))
+                                  : log::info("'{}': {}.", file.string(), line.substr(line.find(' ') + 1));
   return read_inp(deck);
 }
 

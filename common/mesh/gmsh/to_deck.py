@@ -241,7 +241,7 @@ def read_exodus(name):
         axes = [file.read('coord' + a)[0] for a in 'xyz' if 'coord' + a in file]
     for i, x in enumerate(zip(*axes)):
         NODES[i + 1] = list(x)
-    def names(what, prefix, word):
+    def names(prefix, word):
         ids = file.read(prefix + '_prop1')[0] if prefix + '_prop1' in file else []
         given = []
         if prefix + '_names' in file:
@@ -251,8 +251,8 @@ def read_exodus(name):
         return [(given[i] if i < len(given) and given[i] else '%s_%d' % (word, ids[i] if i < len(ids) else i + 1)) for i in range(n)]
     FAMILIES = (('TET', 'C3D4'), ('HEX', 'C3D8'), ('WED', 'C3D6'), ('PRI', 'C3D6'), ('PEN', 'C3D6'), ('PYR', 'C3D5'), ('TRI', 'CPS3'), ('QUA', 'CPS4'),
                 ('SHE', 'SHELL'), ('BAR', 'T2D2'), ('BEA', 'T2D2'), ('TRU', 'T2D2'), ('ROD', 'T2D2'), ('EDG', 'T2D2'), ('LIN', 'T2D2'))
-    where, bounds = [], set()
-    for b, title in enumerate(names('blocks', 'eb', 'block'), 1):
+    where = []
+    for b, title in enumerate(names('eb', 'block'), 1):
         if 'connect%d' % b not in file:
             continue
         kind = text(file.kind('connect%d' % b)).upper()
@@ -268,19 +268,21 @@ def read_exodus(name):
             continue
         for e in range(n):
             where.append((cell(family, nodes[e * width:(e + 1) * width], [title]), is_shell))
-    for s, title in enumerate(names('sets of nodes', 'ns', 'nodes'), 1):
+    for s, title in enumerate(names('ns', 'nodes'), 1):
         if 'node_ns%d' % s in file:
             SETS[title] = list(file.read('node_ns%d' % s)[0])
-    for s, title in enumerate(names('sets of sides', 'ss', 'sides'), 1):
+    is_solid = any(SHAPES[family][0] == 3 for family, _, _ in CELLS)
+    for s, title in enumerate(names('ss', 'sides'), 1):
         if 'elem_ss%d' % s not in file:
             continue
         for e, side in zip(file.read('elem_ss%d' % s)[0], file.read('side_ss%d' % s)[0]):
             at = where[e - 1] if 1 <= e <= len(where) else None
             family, corners, groups = CELLS[at[0]] if at else (None, (), ())
-            if at and at[1] and side <= 2:
-                groups.append(title)  # face of a shell
+            if at and at[1] and side <= 2 and is_solid:
+                groups.append(title)  # the face itself; edges follow
                 continue
-            faces = SHAPES[family][3] if at and not (at[1] and len(axes) == 3) else ()
+            side -= 2 if at and at[1] else 0
+            faces = SHAPES[family][3] if at else ()
             if not 1 <= side <= len(faces):
                 leave("sides of the set '%s' are not read: the element has no such face, or is not read" % title)
                 continue
@@ -333,6 +335,6 @@ try:
 except Problem as problem:
     print(problem)
     sys.exit(1)
-except (OSError, KeyError, IndexError, ValueError, TypeError, StopIteration, struct.error, MemoryError) as fault:
+except Exception as fault:
     print('it is damaged or written in an unknown way (%s: %s)' % (type(fault).__name__, fault))
     sys.exit(1)

@@ -12,7 +12,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-bool has_h5py() { return std::system("python3 -c 'import h5py' 2>/dev/null") == 0; }
+bool has_h5py() {
+  return std::system("(python3 -c 'import h5py' || /usr/bin/python3 -c 'import h5py') 2>/dev/null") == 0;
+}
 
 std::string error_of(const std::filesystem::path& file) {
   return support::error_of([&] { read_mesh(MPI_COMM_SELF, file, 3); });
