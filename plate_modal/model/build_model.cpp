@@ -121,10 +121,11 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
         "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
         ".geo it was made from.",
         file.string());
-  if (kind == ".cgns") return mesh::convert_mesh(file);
-  if (kind != ".msh" && kind != ".geo" && !mesh::is_foreign(kind))
+  if (kind == ".geo") return mesh::mesh_geo(file, 2, p.mesh_parameters);
+  if (kind == ".msh" || kind == ".cgns") return mesh::convert_mesh(file);
+  if (!mesh::is_foreign(kind))
     throw Error("The mesh file '{}' is not a .msh, .geo, .unv, .med, .exo or .cgns file.", file.string());
-  return kind == ".geo" ? mesh::mesh_geo(file, 2, p.mesh_parameters) : file;
+  return file;
 }
 
 /// Mid-surface of the mesh in the parameters, with scaled lengths.
@@ -138,8 +139,9 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
         "in a physical group.",
         (folder / *p.mesh).string());
   for (Vec3& x : raw.points) x *= p.mesh_scale;
-  std::vector<int> entities(raw.boundary_patch.size(), 0);
+  std::vector<int> entities;
   if (!is_foreign) entities = mesh::read_boundary_entities(file);
+  entities.resize(raw.boundary_patch.size(), 0);  // none of the patch 'rest'
   Midsurface surface = midsurface_of(raw, entities);
   for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane
   const mesh::LoadedMesh flat = mesh::distribute(MPI_COMM_SELF, raw);

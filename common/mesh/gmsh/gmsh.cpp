@@ -13,6 +13,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
+#include "common/mesh/readers/read_msh.hpp"
 
 namespace couplet::mesh {
 
@@ -170,6 +171,7 @@ bool reads_cgns() {
 }  // namespace
 
 fs::path convert_mesh(const fs::path& file) {
+  if (file.extension() == ".msh" && !is_converted(file)) return file;
   if (file.extension() == ".cgns" && !reads_cgns())
     throw Error(
         "Cannot read the mesh '{}': the gmsh on the PATH was built without CGNS. Convert it elsewhere, for "
@@ -181,7 +183,7 @@ fs::path convert_mesh(const fs::path& file) {
   const fs::path result = file.parent_path() / (file.stem().string() + "." + hash + ".cache.msh");
   if (is_sound_cache(result)) return result;
   log::info("reading {} with gmsh", file.string());
-  run_gmsh({"-0"}, file, false, result, "read");
+  run_gmsh({"-0", "-save_all"}, file, false, result, "read");
   return result;
 }
 

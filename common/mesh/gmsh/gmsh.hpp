@@ -19,8 +19,8 @@ void run_gmsh(const std::vector<std::string>& options, const std::filesystem::pa
 /// regenerated.
 bool is_sound_cache(const std::filesystem::path& file);
 
-/// Converts a .cgns, if gmsh supports it, or a .msh of another version to <stem>.<hash>.cache.msh beside it.
-/// Groups become patches and zones. Throws Error for a format that gmsh does not read.
+/// Returns the .msh to read: the file itself, or what gmsh makes of a .msh of another version or of a .cgns,
+/// if it supports that, as <stem>.<hash>.cache.msh beside it. Throws Error for a format that gmsh does not read.
 std::filesystem::path convert_mesh(const std::filesystem::path& file);
 /// Block of this rank for a mesh in a .msh, .inp, .geo (meshed with these parameters) or foreign file. Throws
 /// Error if it does not have `dim` dimensions. Collective.

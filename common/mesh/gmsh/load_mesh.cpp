@@ -33,10 +33,6 @@ RawMesh read_deck(const std::filesystem::path& file) {
   return file.extension() == ".inp" ? read_inp(file) : read_foreign(file);
 }
 
-std::filesystem::path finished_msh(const std::filesystem::path& file) {
-  return file.extension() == ".msh" ? file : convert_mesh(file);
-}
-
 /// Reads this rank's block of a mesh. A .geo is meshed in `dim` dimensions. Collective.
 MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters) {
@@ -49,13 +45,19 @@ MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
     else if (is_deck(file))
       deck = read_deck(file);
     else
-      msh = finished_msh(file);
+      msh = convert_mesh(file);
     if (!msh.empty() && std::filesystem::file_size(msh) >= bytes_of_large_msh)
       holders = parallel::comm_size(comm);
   });
   parallel::broadcast(comm, msh);
   MPI_Bcast(&holders, 1, MPI_INT, 0, comm);
-  return msh.empty() ? block_of(comm, deck) : read_msh_block(comm, msh, holders);
+  if (msh.empty()) return block_of(comm, deck);
+  try {
+    return read_msh_block(comm, msh, holders);
+  } catch (const Error& e) {
+    if (msh == file) throw;
+    throw Error("Cannot use the mesh of '{}', as gmsh saved it. {}", file.string(), e.what());
+  }
 }
 
 void check_file(const std::filesystem::path& file, const MeshParameters& parameters) {
@@ -140,7 +142,7 @@ MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters&
     if (volumes && volumes->empty()) dim = 2;  // not set if some name is computed
   }
   const auto msh = [&] {
-    return file.extension() == ".geo" ? mesh_geo(file, dim, parameters) : finished_msh(file);
+    return file.extension() == ".geo" ? mesh_geo(file, dim, parameters) : convert_mesh(file);
   };
   MeshFacts facts = facts_of(is_deck(file) ? read_deck(file) : read_msh(msh()));
   facts.scale(scale);

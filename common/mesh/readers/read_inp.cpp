@@ -62,8 +62,6 @@ int number_in(std::vector<std::string>& names, std::map<std::string, int>& numbe
 
 using Corners = std::array<Index, 4>;
 constexpr Index none = -1;
-/// Patch name of the boundary without a surface or set.
-constexpr const char* rest = "rest";
 
 Corners key_of(std::span<const Index> points) {
   Corners key{none, none, none, none};
@@ -167,10 +165,15 @@ class InpPatches {
       if (n == 0 && inner > 0) lost_.push_back(set.name);
     }
     std::ranges::stable_sort(by_size, {}, &std::pair<std::size_t, const InpSet*>::first);
-    for (const auto& [n, set] : by_size)
+    for (const auto& [n, set] : by_size) {
+      bool is_used = false;
       body_.visit(set->members, face_of_element, [&](Index face) {
-        if (face != none && patch_of_face_[std::size_t(face)] == none) assign(face, number_of(set->name));
+        if (face == none || patch_of_face_[std::size_t(face)] != none) return;
+        assign(face, number_of(set->name));
+        is_used = true;
       });
+      if (!is_used) lost_.push_back(set->name);
+    }
   }
 
   /// Uses node sets, smaller ones first ("tip" within "top"). Skips a set of all points and one with the name
@@ -214,7 +217,7 @@ class InpPatches {
   /// Names the remaining faces and removes patches without faces.
   void name_rest() {
     for (Index f = 0; f < outer_.size(); ++f)
-      if (patch_of_face_[std::size_t(f)] == none) patch_of_face_[std::size_t(f)] = number_of(rest);
+      if (patch_of_face_[std::size_t(f)] == none) patch_of_face_[std::size_t(f)] = rest_of(raw_.patches);
     std::vector<int> renumbered(raw_.patches.size(), none);
     for (const int patch : patch_of_face_) renumbered[std::size_t(patch)] = 0;
     std::vector<std::string> kept;

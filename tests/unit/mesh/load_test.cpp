@@ -204,6 +204,44 @@ TEST_F(LoadMesh, reads_unv_with_its_groups_as_patches_and_scales_lengths) {
               HasSubstr("'mesh-parameters' cannot change it"));
 }
 
+TEST_F(LoadMesh, a_msh_of_another_version_is_converted_by_gmsh) {
+  std::ifstream in(test::data / "plane_22_ascii.msh");
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  text.replace(text.find("2.2 0 8"), 7, "2 0 8");
+  for (const char* name : {"1 11 \"", "1 12 \"", "1 13 \"", "2 14 \"", "2 15 \""})
+    text.erase(text.find(name), 2);  // the dimension
+  const std::string oldest =
+      "$NOD\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$ENDNOD\n"
+      "$ELM\n3\n1 3 1 1 4 1 2 5 4\n2 3 1 1 4 2 3 6 5\n3 1 7 7 2 4 1\n$ENDELM\n";
+  const auto of_file = [&](const std::string& name, const std::string& content) {
+    const auto [mesh, geometry] = load_mesh(MPI_COMM_SELF, write(name, content), 2);
+    std::map<std::string, double> lengths;
+    for (const Patch& patch : mesh.patches)
+      for (Index f = patch.first; f < patch.first + patch.count; ++f)
+        lengths[patch.name] += geometry.face_area[f].norm();
+    return std::pair(mesh.cells.n_global(), lengths);
+  };
+  const auto [cells, lengths] = of_file("version-2.msh", text);
+  EXPECT_EQ(cells, 18);
+  EXPECT_EQ(lengths.size(), 3u);
+  EXPECT_DOUBLE_EQ(lengths.at("inlet"), 1);
+  const auto [two, sides] = of_file("version-1.msh", oldest);
+  EXPECT_EQ(two, 2);
+  EXPECT_EQ(sides, (std::map<std::string, double>{{"physical_7", 1}, {"rest", 5}}));
+}
+
+TEST_F(LoadMesh, elements_of_second_order_are_reduced_to_their_corners) {
+  const auto geo = write("second.geo", "h = 0.3;\n" + square + "Mesh.ElementOrder = 2;\n");
+  const auto [mesh, geometry] = load_mesh(MPI_COMM_SELF, geo, 2);
+  const auto first = load_mesh(MPI_COMM_SELF, write("first.geo", "h = 0.3;\n" + square), 2);
+  EXPECT_EQ(mesh.cells.n_global(), first.mesh.cells.n_global());
+  EXPECT_EQ(mesh.points.n_global(), first.mesh.points.n_global());
+  double area = 0;
+  for (const double v : geometry.volume) area += v;
+  EXPECT_NEAR(area, 1, 1e-12);
+  EXPECT_EQ(mesh.find_patch("around")->count, first.mesh.find_patch("around")->count);
+}
+
 TEST_F(LoadMesh, a_format_that_this_gmsh_was_built_without_is_refused_before_gmsh_takes_it_for_a_script) {
   const std::string text = error(write("mesh.cgns", "SystemCall \"touch intruder\";"), 2);
   EXPECT_FALSE(text.empty());
