@@ -162,7 +162,7 @@ class InpPatches {
       std::size_t n = 0, inner = 0;
       body_.visit(set.members, face_of_element, [&](Index face) { ++(face == none ? inner : n); });
       if (n > 0) by_size.emplace_back(set.is_given ? n : n + face_of_element.size(), &set);
-      if (n == 0 && inner > 0) lost_.push_back(set.name);
+      if (n == 0 && inner > 0) lose(set);
     }
     std::ranges::stable_sort(by_size, {}, &std::pair<std::size_t, const InpSet*>::first);
     for (const auto& [n, set] : by_size) {
@@ -172,8 +172,14 @@ class InpPatches {
         assign(face, number_of(set->name));
         is_used = true;
       });
-      if (!is_used) lost_.push_back(set->name);
+      if (!is_used) lose(*set);
     }
+  }
+
+  /// Sets beside elements are named where there are no others, for gmsh writes one for each surface.
+  void lose(const InpSet& set) {
+    if (set.is_given || std::ranges::none_of(deck_.element_sets.all, &InpSet::is_given))
+      lost_.push_back(set.name);
   }
 
   /// Uses node sets, smaller ones first ("tip" within "top"). Skips a set of all points and one with the name
