@@ -51,8 +51,8 @@ RawMesh read_msh(const std::filesystem::path& file);
 /// ELSET zones. The remaining boundary is the patch "rest". Throws Error with file and line.
 RawMesh read_inp(const std::filesystem::path& file);
 
-/// Runs gmsh on a .geo unless a cached result <stem>.<hash>.cache.msh exists beside it, and returns the path
-/// of the .msh. The hash covers the .geo, the files it includes, `dim` and the parameters. Several programs
+/// Runs gmsh on a .geo unless its mesh is cached, and returns the path of the .msh. It depends on the .geo,
+/// the files it includes, `dim` and the parameters. Several programs
 /// may request the same file at once. `parameters` replace values in DefineConstant; an unknown name throws
 /// Error.
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,

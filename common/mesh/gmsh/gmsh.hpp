@@ -9,18 +9,22 @@
 
 namespace couplet::mesh {
 
-/// Runs gmsh on `source` with these options and renames its complete .msh 4.1 to `result`. Several programs
-/// may do so at the same time. `verb` is for messages: "mesh" or "read". In the sandbox gmsh reads only the
+/// Runs gmsh on `source` with these options and renames its complete .msh 4.1 to `result`, a cached mesh.
+/// Several programs may do so at the same time. Meshes used long ago are removed if all exceed 4 GB. `verb` is for messages: "mesh" or "read". In the sandbox gmsh reads only the
 /// folder of the source; a trusted source has the user's rights. Throws Error with gmsh's messages.
 void run_gmsh(const std::vector<std::string>& options, const std::filesystem::path& source, bool trusted,
               const std::filesystem::path& result, const std::string& verb);
 
-/// Returns true if a cached mesh matches its seal. A damaged or foreign one is logged and must be
-/// regenerated.
+/// Path of the mesh made of `source`, <stem>.<hash>.cache.msh in $XDG_CACHE_HOME/couplet/meshes, or below
+/// ~/.cache. The hash covers the path of the source and `key`, all that the mesh depends on.
+std::filesystem::path cache_of(const std::filesystem::path& source, const std::string& key);
+
+/// Returns true if a cached mesh matches its seal, and marks it as used. A damaged or foreign one is logged
+/// and must be regenerated.
 bool is_sound_cache(const std::filesystem::path& file);
 
 /// Returns the .msh to read: the file itself, or what gmsh makes of a .msh of another version or of a .cgns,
-/// if it supports that, as <stem>.<hash>.cache.msh beside it. Throws Error for a format that gmsh does not read.
+/// if it supports that, as a cached mesh. Throws Error for a format that gmsh does not read.
 std::filesystem::path convert_mesh(const std::filesystem::path& file);
 /// Block of this rank for a mesh in a .msh, .inp, .geo (meshed with these parameters) or foreign file. Throws
 /// Error if it does not have `dim` dimensions. Collective.

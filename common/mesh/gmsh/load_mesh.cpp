@@ -214,10 +214,8 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   std::vector<std::string> numbers;
   for (const auto& [name, value] : parameters)
     numbers.insert(numbers.end(), {"-setnumber", name, fmt::format("{}", value)});
-  const std::string hash = fmt::format(
-      "{:016x}", base::stable_hash(fmt::format("{}\n{}\n{}", dim, base::join(numbers, " "), script.text)));
-  const std::string stem = geo.stem().string() + "." + hash;
-  const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
+  const std::filesystem::path result =
+      cache_of(geo, fmt::format("{}\n{}\n{}", dim, base::join(numbers, " "), script.text));
   if (is_sound_cache(result)) return result;
 
   std::vector<std::string> options{fmt::format("-{}", dim)};

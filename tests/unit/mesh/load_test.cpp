@@ -15,6 +15,8 @@ class LoadMesh : public ::testing::Test {
     std::string name = own_.path.string();
     broadcast(MPI_COMM_WORLD, name);
     folder = name;
+    caches = folder / "cache";
+    setenv("XDG_CACHE_HOME", caches.c_str(), 1);
   }
   ~LoadMesh() override { MPI_Barrier(MPI_COMM_WORLD); }
   std::filesystem::path write(const std::string& name, const std::string& text) {
@@ -22,17 +24,16 @@ class LoadMesh : public ::testing::Test {
     MPI_Barrier(MPI_COMM_WORLD);
     return folder / name;
   }
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      names.push_back(entry.path().filename());
-    return names;
+  static std::size_t files_in(const std::filesystem::path& of) {
+    const std::filesystem::directory_iterator all(of);
+    return std::size_t(
+        std::count_if(begin(all), end(all), [](const auto& e) { return e.is_regular_file(); }));
   }
   static std::string error(const std::filesystem::path& file, int dim) {
     return support::error_of([&] { load_mesh(MPI_COMM_WORLD, file, dim); });
   }
 
-  std::filesystem::path folder;
+  std::filesystem::path folder, caches;
 
  private:
   test::TemporaryFolder own_;
@@ -56,13 +57,37 @@ TEST_F(LoadMesh, meshes_a_geo_once_even_if_all_ask_at_the_same_time) {
   const auto geo = write("square.geo", "h = 0.3;\n" + square);
   const auto first = mesh_geo(geo, 2);
   MPI_Barrier(MPI_COMM_WORLD);
-  const auto time = std::filesystem::last_write_time(first);
-  EXPECT_EQ(files().size(), 2u) << "the .geo and one mesh, nothing temporary";
+  EXPECT_EQ(files_in(folder), 1u) << "only the .geo";
+  EXPECT_EQ(files_in(caches / "couplet/meshes"), 1u) << "nothing temporary";
+  ::testing::internal::CaptureStdout();
   EXPECT_EQ(mesh_geo(geo, 2), first);
-  EXPECT_EQ(std::filesystem::last_write_time(first), time) << "not meshed again";
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "") << "not meshed again";
   EXPECT_THAT(first.filename().string(), ::testing::MatchesRegex("square\\.[0-9a-f]+\\.cache\\.msh"));
   const auto [mesh, geometry] = load_mesh(MPI_COMM_WORLD, geo, 2);
   EXPECT_NE(mesh.find_patch("around"), nullptr);
+}
+
+TEST_F(LoadMesh, meshes_used_long_ago_are_removed_beyond_4_gigabytes) {
+  const auto kept = caches / "couplet/meshes";
+  if (comm_rank(MPI_COMM_WORLD) == 0) {
+    std::filesystem::create_directories(kept);
+    int days = 3;
+    for (const char* name : {"oldest.msh", "newer.msh", "other.txt"}) {
+      std::ofstream(kept / name) << "x";
+      std::filesystem::resize_file(kept / name, std::uintmax_t(3) << 30);  // sparse
+      std::filesystem::last_write_time(
+          kept / name, std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * days--));
+    }
+  }
+  const auto mesh = [&](const char* name) {
+    load_mesh(MPI_COMM_WORLD, write(name, "h = 0.5;\n" + square), 2);
+    MPI_Barrier(MPI_COMM_WORLD);
+  };
+  mesh("one.geo");
+  EXPECT_FALSE(std::filesystem::exists(kept / "oldest.msh"));
+  EXPECT_TRUE(std::filesystem::exists(kept / "newer.msh"));
+  EXPECT_TRUE(std::filesystem::exists(kept / "other.txt"));
+  EXPECT_EQ(files_in(kept), 3u);
 }
 
 /// A machine that went down while it wrote: no fault of the user's, who has nothing to mend.
@@ -256,7 +281,7 @@ TEST_F(LoadMesh, tells_what_gmsh_did_not_understand) {
       << "the user's name of it, not that of the copy";
   EXPECT_THAT(text, HasSubstr("line 2"));
   MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_EQ(files().size(), 1u) << "nothing temporary is left";
+  EXPECT_EQ(files_in(folder) + files_in(caches / "couplet/meshes"), 1u) << "nothing temporary is left";
 }
 
 TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
