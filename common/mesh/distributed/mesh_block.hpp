@@ -180,8 +180,8 @@ void drop_unused_points(MPI_Comm comm, MeshBlock& block);
 
 /// Distributes a mesh: matches faces, partitions the cells by PT-Scotch and sends them with their
 /// surroundings to their ranks. No rank holds more than its block and its part with surroundings. `part`
-/// replaces PT-Scotch with a rank per cell of the block. Every boundary face must belong to exactly one
-/// patch; errors state the location. Collective.
+/// replaces PT-Scotch with a rank per cell of the block. Every boundary face belongs to one patch, "rest" if
+/// none is given; errors state the location. Collective.
 LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part = {});
 
 /// Scales, distributes, checks and reports a block of this file. Throws Error with the name of the file.
