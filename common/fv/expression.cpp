@@ -4,11 +4,13 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/units.hpp"
 #include "common/fv/table.hpp"
 
 namespace couplet::fv {
@@ -16,11 +18,46 @@ namespace {
 
 double value_in_table(void* table, double at) { return (*static_cast<const Table*>(table))(at); }
 
+/// Rejects what muParser reads in another way than a reader of the docs: a comma outside the arguments of a
+/// function (1,5 is 5), an assignment, and comparisons in a row (0 < x < 1 compares 0 or 1 with 1).
+void refuse_other_meanings(const std::string& text) {
+  struct Level {
+    bool takes_commas = false, compares = false;
+  };
+  std::vector<Level> levels(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto is = [&](std::size_t at, std::string_view set) {
+      return at < text.size() && set.find(text[at]) != std::string_view::npos;
+    };
+    const std::size_t before = i == 0 ? std::string::npos : text.find_last_not_of(' ', i - 1);
+    if (text[i] == '(') {
+      levels.push_back({before != std::string::npos &&
+                        (std::isalnum(static_cast<unsigned char>(text[before])) || text[before] == '_')});
+    } else if (text[i] == ')' && levels.size() > 1) {
+      levels.pop_back();
+    } else if (text[i] == ',' && !levels.back().takes_commas) {
+      throw TextProblem{i, "a comma separates the arguments of a function only; write a decimal point"};
+    } else if (is(i, ",?:") || (is(i, "&|") && is(i + 1, "&|"))) {
+      levels.back().compares = false;
+    } else if (is(i, "<>=!")) {
+      const bool two = is(i + 1, "=");
+      if (text[i] == '=' && !two)
+        throw TextProblem{
+            i,
+            "'=' does not compare, and nothing can be assigned; write '==', or a range such as abs(y - 0.1) < 1e-6"};
+      if (std::exchange(levels.back().compares, true))
+        throw TextProblem{i, "comparisons in a row; join them by '&&', as in '0 < x && x < 1'"};
+      i += two;
+    }
+  }
+}
+
 }  // namespace
 
 // muParser binds variables by address, so they are in one block with the parser that never moves.
 struct Expression::State {
   std::string text = "0", where;
+  config::KeyFacts key;
   std::deque<Table> tables;
   mu::Parser parser;
   std::array<double, 4> xyzt{};
@@ -28,12 +65,15 @@ struct Expression::State {
   double constant = 0;
 
   State() = default;
-  State(std::string source, std::string place) : text(std::move(source)), where(std::move(place)) {
+  State(const config::ExpressionText& source, std::string place)
+      : text(source.text), where(std::move(place)), key(source.key) {
     static constexpr std::array<const char*, 4> names{"x", "y", "z", "t"};
     try {
       for (std::size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &xyzt[i]);
       parser.DefineConst("pi", std::numbers::pi);
-      parser.SetExpr(take_tables(text, tables));
+      const std::string calls = take_tables(text, tables, key.unit);
+      refuse_other_meanings(calls);
+      parser.SetExpr(calls);
       for (std::size_t i = 0; i < tables.size(); ++i)
         parser.DefineFunUserData(fmt::format("tab{:02}", i), value_in_table, &tables[i]);
       const auto used = parser.GetUsedVar();
@@ -48,7 +88,7 @@ struct Expression::State {
       if (problem.is_sentence) throw Error("{}{}", where.empty() ? "" : where + ": ", problem.what);
       fail(problem.at + 1, problem.what);
     }
-    if (!uses_time && !uses_space) require_finite(constant);
+    if (!uses_time && !uses_space) require_possible(constant);
   }
 
   std::size_t column_of(const mu::Parser::exception_type& e) const {
@@ -75,24 +115,25 @@ struct Expression::State {
     fail(found == std::string::npos ? 1 : found + 1, "unknown name '" + name + "'");
   }
 
-  void require_finite(double value) const {
-    if (std::isfinite(value)) return;
-    throw Error(
-        "{}the expression '{}' yields {} at x = {:g}, y = {:g}, z = {:g}, t = {:g}; it must be finite.",
-        where.empty() ? "" : where + ": ", text, value, xyzt[0], xyzt[1], xyzt[2], xyzt[3]);
+  /// Throws Error if the value is not finite or outside the range of its key.
+  void require_possible(double value) const {
+    if (std::isfinite(value) && key.contain(value)) return;
+    throw Error("{}the expression '{}' yields {} at x = {:g}, y = {:g}, z = {:g}, t = {:g}; it must be {}.",
+                where.empty() ? "" : where + ": ", text, base::format_quantity(value, key.unit), xyzt[0],
+                xyzt[1], xyzt[2], xyzt[3], std::isfinite(value) ? config::describe_range(key) : "finite");
   }
 
   double at(const Vec3& x, double t) {
     xyzt = {x[0], x[1], x[2], t};
     const double value = parser.Eval();
-    require_finite(value);
+    require_possible(value);
     return value;
   }
 };
 
 Expression::Expression() : state_(std::make_unique<State>()) {}
 Expression::Expression(const config::ExpressionText& text, std::string where)
-    : state_(std::make_unique<State>(text.text, std::move(where))) {}
+    : state_(std::make_unique<State>(text, std::move(where))) {}
 Expression::Expression(double constant) : state_(std::make_unique<State>()) {
   state_->text = fmt::format("{}", constant);
   state_->constant = constant;

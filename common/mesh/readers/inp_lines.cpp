@@ -60,7 +60,11 @@ void InpLines::include(const std::string& name) {
         fmt::format("*INCLUDE '{}' is outside the folder of the mesh '{}'. Move it there, or insert its "
                     "content into the file.",
                     name, folder_.string()));
-  if (!fs::is_regular_file(file)) fail(fmt::format("*INCLUDE: the file '{}' does not exist.", file.string()));
+  if (!fs::is_regular_file(file))
+    fail(fmt::format("*INCLUDE: {}'{}' {}.", fs::exists(file) ? "" : "the file ", file.string(),
+                     fs::is_directory(file) ? "is a folder; name the file in it"
+                     : fs::exists(file)     ? "is not a regular file"
+                                            : "does not exist"));
   open(file);
 }
 
