@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 
-#include <fstream>
-
 #include "common/app/job.hpp"
 #include "common/app/run_participant.hpp"
 #include "common/base/error.hpp"
@@ -36,9 +34,8 @@ MPI_Comm connect_mesh_peer(const Job& job) {
 
 /// Writes the effective parameters, defaults included, beside the results.
 void write_effective(const Job& job, const Program& program) {
-  if (job.rank != 0) return;
-  std::ofstream file(base::own_file(job.output_folder / "effective.yaml"));
-  file << config::effective(program.declare);
+  if (job.rank == 0)
+    base::write_file(job.output_folder / "effective.yaml", config::effective(program.declare));
 }
 
 int run(const Job& job, const Program& program) {

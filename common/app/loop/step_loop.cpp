@@ -5,7 +5,6 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <random>
 #include <tuple>
@@ -13,6 +12,7 @@
 
 #include "common/app/watch/watch.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/log/log.hpp"
@@ -178,10 +178,7 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
   actions.save(folder);
   write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state()});
   on_first_rank(comm_, [&] {
-    std::ofstream keys(folder / "keys.txt", std::ios::binary);
-    keys << simulation_.keys;
-    keys.close();
-    if (!keys) throw Error("Cannot write the checkpoint in {}. Is the disk full?", folder.string());
+    base::write_file(folder / "keys.txt", simulation_.keys, true);
     io::finish_checkpoint_set(folder, stamp, continues_);
     log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
     // Keeps sets of other runs.
