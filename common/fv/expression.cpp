@@ -6,17 +6,42 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/units.hpp"
 #include "common/fv/table.hpp"
+#include "common/fv/use.hpp"
 
 namespace couplet::fv {
 namespace {
 
-double value_in_table(void* table, double at) { return (*static_cast<const Table*>(table))(at); }
+/// Table of an expression, and its use in the run; nullptr while the text is only checked.
+struct TableInUse {
+  const Table* table;
+  Use* use = nullptr;
+};
+
+double value_in_table(void* data, double at) {
+  const auto& [table, use] = *static_cast<const TableInUse*>(data);
+  if (use) use->note(at);
+  return (*table)(at);
+}
+
+/// Plain numbers in a text, such as the ends of a pulse in "t > 0.1021 && t < 0.1023".
+std::vector<double> numbers_in(std::string_view text) {
+  std::vector<double> numbers;
+  const auto in_number = [&](std::size_t i) {
+    return std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '.' || text[i] == '_';
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!in_number(i) || (i > 0 && in_number(i - 1))) continue;
+    if (const auto quantity = base::split_quantity(text.substr(i))) numbers.push_back(quantity->number);
+  }
+  return numbers;
+}
 
 /// Rejects what muParser reads in another way than a reader of the docs: a comma outside the arguments of a
 /// function (1,5 is 5), an assignment, and comparisons in a row (0 < x < 1 compares 0 or 1 with 1).
@@ -59,10 +84,16 @@ struct Expression::State {
   std::string text = "0", where;
   config::KeyFacts key;
   std::deque<Table> tables;
+  std::deque<TableInUse> tables_in_use;
   mu::Parser parser;
   std::array<double, 4> xyzt{};
   bool uses_time = false, uses_space = false;
   double constant = 0;
+  // In the run: null while the text is only checked.
+  Use* use = nullptr;
+  double last_time = std::numeric_limits<double>::quiet_NaN();
+  Vec3 place = Vec3::Zero();     // of the largest value
+  std::vector<double> instants;  // at which it may jump
 
   State() = default;
   State(const config::ExpressionText& source, std::string place)
@@ -75,7 +106,8 @@ struct Expression::State {
       refuse_other_meanings(calls);
       parser.SetExpr(calls);
       for (std::size_t i = 0; i < tables.size(); ++i)
-        parser.DefineFunUserData(fmt::format("tab{:02}", i), value_in_table, &tables[i]);
+        parser.DefineFunUserData(fmt::format("tab{:02}", i), value_in_table,
+                                 &tables_in_use.emplace_back(&tables[i]));
       const auto used = parser.GetUsedVar();
       uses_time = used.contains("t");
       uses_space = used.contains("x") || used.contains("y") || used.contains("z");
@@ -89,6 +121,41 @@ struct Expression::State {
       fail(problem.at + 1, problem.what);
     }
     if (!uses_time && !uses_space) require_possible(constant);
+    if (where.empty() || !(uses_time || uses_space)) return;
+    use = &uses()[where];
+    use->given = fmt::format("'{}'", text);
+    use->key = key;
+    if (uses_time) instants = numbers_in(text);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      Use& of_table = *(tables_in_use[i].use = &uses()[fmt::format("{}, table {}", where, i + 1)]);
+      of_table.kind = Use::Kind::table;
+      of_table.from = tables[i].at().front();
+      of_table.to = tables[i].at().back();
+    }
+  }
+
+  /// Looks for values between the last time and `t` that no step sees: a pulse, or a period near the step. They
+  /// are looked for at the place of the largest value.
+  void look_between(double t) {
+    const double before = std::exchange(last_time, t);
+    if (!(t > before)) return;
+    const auto value_at = [&](double time) {
+      xyzt = {place[0], place[1], place[2], time};
+      return parser.Eval();
+    };
+    constexpr int n = 7;
+    std::vector<double> times{before};
+    for (int i = 1; i < n; ++i) times.push_back(before + (t - before) * (i + 0.3) / n);
+    for (const double instant : instants)
+      if (instant > before && instant < t) times.push_back(instant);
+    times.push_back(t);
+    std::ranges::sort(times);
+    const auto [low, high] = std::minmax({value_at(before), value_at(t)});
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      const double middle = 0.5 * (times[i - 1] + times[i]), value = value_at(middle),
+                   unseen = std::max(value - high, low - value);
+      if (unseen > use->unseen) use->unseen = unseen, use->unseen_at = middle;
+    }
   }
 
   std::size_t column_of(const mu::Parser::exception_type& e) const {
@@ -124,12 +191,22 @@ struct Expression::State {
   }
 
   double at(const Vec3& x, double t) {
+    if (use && uses_time && t != last_time) look_between(t);
     xyzt = {x[0], x[1], x[2], t};
     const double value = parser.Eval();
     require_possible(value);
+    if (use) {
+      if (!use->is_used() || std::abs(value) > use->largest()) place = x;
+      use->note(value);
+    }
     return value;
   }
 };
+
+std::map<std::string, Use>& uses() {
+  static std::map<std::string, Use> all;
+  return all;
+}
 
 Expression::Expression() : state_(std::make_unique<State>()) {}
 Expression::Expression(const config::ExpressionText& text, std::string where)

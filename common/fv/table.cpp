@@ -172,6 +172,10 @@ Property::Property(const config::ExpressionText& text, const std::string& where)
       throw Error("{}{} is out of range in a table; expected a value {}.", place,
                   base::format_quantity(value, text.key.unit), config::describe_range(text.key));
   table_.push_back(std::move(tables.front()));
+  use_ = &uses()[fmt::format("{} {}", where, text.text)];
+  use_->kind = Use::Kind::property;
+  use_->from = table_[0].at().front();
+  use_->to = table_[0].at().back();
 }
 
 std::string problem_of_property(const config::ExpressionText& text) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/fv/use.hpp"
 
 namespace couplet::fv {
 
@@ -72,9 +73,16 @@ class Property final {
   Property(const config::ExpressionText& text, const std::string& where);
 
   bool is_constant() const { return table_.empty(); }
-  double operator()(double temperature) const { return is_constant() ? constant_ : table_[0](temperature); }
+  double operator()(double temperature) const {
+    if (is_constant()) return constant_;
+    use_->note(temperature);
+    return table_[0](temperature);
+  }
   double integral(double from, double to) const {
-    return is_constant() ? constant_ * (to - from) : table_[0].integral(from, to);
+    if (is_constant()) return constant_ * (to - from);
+    use_->note(from);
+    use_->note(to);
+    return table_[0].integral(from, to);
   }
   /// Integral from an arbitrary fixed temperature; only differences are meaningful.
   double antiderivative(double temperature) const {
@@ -84,6 +92,7 @@ class Property final {
  private:
   double constant_ = 0;
   std::vector<Table> table_;  // empty if constant
+  Use* use_ = nullptr;        // of the table in this run
 };
 
 /// Problem of the text of a property, such as a value outside the range of its key. Empty if it is valid.
