@@ -3,8 +3,6 @@
 
 #include <sched.h>
 
-#include <fstream>
-
 #include "common/app/job.hpp"
 #include "common/app/run_participant.hpp"
 #include "common/base/error.hpp"
@@ -38,9 +36,8 @@ MPI_Comm connect_mesh_peer(const Job& job) {
 
 /// Writes the effective parameters, defaults included, beside the results.
 void write_effective(const Job& job, const Program& program) {
-  if (job.rank != 0) return;
-  std::ofstream file(base::own_file(job.output_folder / "effective.yaml"));
-  file << config::effective(program.declare);
+  if (job.rank == 0)
+    base::write_file(job.output_folder / "effective.yaml", config::effective(program.declare));
 }
 
 /// Warns where ranks share cores: they poll while they wait for each other. Collective.

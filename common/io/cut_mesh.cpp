@@ -260,7 +260,7 @@ void write_cut_mesh(MPI_Comm comm, const mesh::MeshBlock& block, const std::file
                    {block.points.empty() ? nullptr : block.points[0].data(), 3 * block.points.size()}, 3);
   write_cells(comm, to, block.cells);
   write_boundary(to, block);
-  hdf5::close_file(out);
+  hdf5::close_file(comm, out, part);
   parallel::on_root(comm, [&] { std::filesystem::rename(part, file); });
 }
 

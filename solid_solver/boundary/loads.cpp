@@ -232,7 +232,8 @@ void BearingLoad::add_forces(double t, std::span<double> forces) const {
 
 HydrostaticPressure::HydrostaticPressure(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                          const TotalLoad& load, const std::string& where)
-    : mesh_(&mesh), geometry_(&geometry), level_(load.level, where + ".level") {
+    : mesh_(&mesh), geometry_(&geometry), level_(load.level, where + ".level"), use_(&fv::uses()[where]) {
+  use_->given = "the hydrostatic pressure";
   Vec3 gravity = Vec3::Zero();
   for (std::size_t a = 0; a < load.gravity.size(); ++a) gravity[Index(a)] = load.gravity[a];
   up_ = -gravity.normalized();
@@ -259,6 +260,12 @@ double mean_positive(double d0, double d1, double d2) {
 }
 
 double HydrostaticPressure::mean(Index face, double level, const Vec3& shift) const {
+  const double pressure = below(face, level, shift);
+  use_->note(pressure);
+  return pressure;
+}
+
+double HydrostaticPressure::below(Index face, double level, const Vec3& shift) const {
   const auto points = mesh_->face_points[face];
   const auto place = [&](std::size_t i) -> const Vec3& { return geometry_->points[points[i]]; };
   const auto depth = [&](const Vec3& x) { return level - up_.dot(x + shift); };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/fv/expression.hpp"
+#include "common/fv/use.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters/boundary_parameters.hpp"
 
@@ -100,11 +101,14 @@ class HydrostaticPressure {
   double mean(Index face, double level, const Vec3& shift) const;
 
  private:
+  double below(Index face, double level, const Vec3& shift) const;
+
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   fv::Expression level_;
   Vec3 up_ = Vec3::Zero();
   double weight_ = 0;  // rho |g| [N/m^3]
+  fv::Use* use_;
 };
 
 /// Mean of max(0, d) with d linear between the ends of an edge.

@@ -4,8 +4,10 @@
 #include <optional>
 
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
+#include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/diagnostics/buckling_estimate.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"
 #include "solid_solver/diagnostics/view.hpp"
@@ -69,6 +71,11 @@ class LinearTheory final : public diagnostics::Diagnostic {
     if (!method || !body.kernel().is_symmetric() || is_axisymmetric(body.elastic()) ||
         body.parameters().output.buckling > 0)
       return;
+    for (const FreeMotion& free : free_motions(body.mesh(), body.elastic()))
+      if (!free.modes.empty())
+        return report.sentences.push_back(
+            fmt::format("nothing holds the solid: {}; a body that can move freely has no buckling load.",
+                        base::join(free.modes)));
     const BucklingEstimate found =
         estimate_buckling(body, view_.fields, view_.now(), *method, compression_seen_);
     if (!found.matters()) return;

@@ -200,6 +200,8 @@ void run_gmsh(const std::vector<std::string>& options, const fs::path& source, b
             ? ""
             : "\nHere a geometry may neither run commands nor use files outside its folder. If it must and you "
               "trust the case, start with --allow-commands.");
+  if (text_of(mesh).find("$Nodes") == std::string::npos)
+    throw Error("gmsh could not {} '{}': it found no nodes in it.", verb, source.string());
   seal_cache(mesh, result.filename().string());
   put(mesh, result, source);
 }

@@ -61,8 +61,10 @@ void InpLines::include(const std::string& name) {
                     "content into the file.",
                     name, folder_.string()));
   if (!fs::is_regular_file(file))
-    fail(fmt::format("*INCLUDE: '{}' {}.", file.string(),
-                     fs::exists(file) ? "is a folder" : "does not exist"));
+    fail(fmt::format("*INCLUDE: {}'{}' {}.", fs::exists(file) ? "" : "the file ", file.string(),
+                     fs::is_directory(file) ? "is a folder; name the file in it"
+                     : fs::exists(file)     ? "is not a regular file"
+                                            : "does not exist"));
   open(file);
 }
 

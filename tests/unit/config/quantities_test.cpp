@@ -10,7 +10,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 struct Quantities {
-  double temperature = 290, difference = 10, angle = 0, speed = 0, density = 1000, modulus = 1e9;
+  double temperature = 290, difference = 10, angle = 0, speed = 0, rate = 0, density = 1000, modulus = 1e9;
   Vec3 gravity = Vec3::Zero();
   std::vector<double> lengths;
   config::ExpressionText load, hot;
@@ -22,6 +22,7 @@ void declare(config::Section& s, Quantities& q) {
   s.value("difference", q.difference).unit("K difference").plausible(0.1, 500);
   s.value("angle", q.angle).unit("rad").any_magnitude("it turns for ever");
   s.value("speed", q.speed).unit("rad/s");
+  s.value("rate", q.rate).unit("1/s");
   s.value("density", q.density).unit("kg/m^3").plausible(1, 25000).positive();
   s.value("modulus", q.modulus).unit("Pa").plausible(1e3, 2e12).positive();
   s.value("gravity", q.gravity).unit("m/s^2").plausible(1e-3, 2000);
@@ -86,7 +87,10 @@ TEST(Quantities, nothing_is_colder_than_absolute_zero) {
 }
 
 TEST(Quantities, a_frequency_is_no_speed_of_rotation) {
-  EXPECT_THAT(judge("speed: 10 Hz").errors, ElementsAre(HasSubstr("1 Hz is 6.2832 rad/s")));
+  for (const std::string text :
+       {"speed: 10 Hz", "speed: 60 1/min", "speed: 2 1/s", "speed: 50 %", "angle: 50 %"})
+    EXPECT_THAT(judge(text).errors, ElementsAre(HasSubstr("(a turn is 6.2832 rad or 360 deg)"))) << text;
+  EXPECT_THAT(judge("rate: 3 rad/s").errors, ElementsAre(HasSubstr("'rad/s' is not convertible to 1/s")));
   EXPECT_NEAR(judge("speed: 60 deg/s").values.speed, 1.0471975511966, 1e-12);
 }
 
