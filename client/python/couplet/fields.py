@@ -178,7 +178,7 @@ def draw_mode(folder, number, picture=None, dpi=110):
     expect(file, f"{folder}: there is no modes.h5 in it")
     with h5py.File(file) as modes:
         frequency = modes["frequency"][...]
-        expect(1 <= number <= len(frequency), f"--mode {number}: there are {len(frequency)}")
+        expect(1 <= number <= len(frequency), f"mode {number} does not exist; the file has {len(frequency)} modes")
         points, ends, corners = (modes[f"surface/{name}"][...] for name in ("vertices", "face-offset", "face-vertex"))
         shape = modes["shape/vertices"][...][:, number - 1].reshape(-1, 3)
     length = np.linalg.norm(shape, axis=1)

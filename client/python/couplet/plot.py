@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of what a run wrote: monitors, lines and planes, residuals; of a case the picture that its section `plot` declares. Columns of one
-unit share a diagram. A line is drawn over the way along it, a plane as a map of each column, residuals over all coupling
-iterations. Prints the name of each picture."""
+"""Draws what a run wrote: monitors, lines and planes, residuals, fields, or the picture that a case declares in its section `plot`. Columns of the same
+unit share a diagram. A line is drawn over its length, a plane as a map of each column, and residuals over all coupling iterations. The name of
+each picture is printed."""
 import os
 import pathlib
 import shlex
@@ -160,20 +160,20 @@ def of_case(file, options):
 
 
 def declare(parser):
-    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a monitor, a sample-*.csv or residuals.csv, a folder with such files below it, or CASE.yaml or its folder: its section plot (docs/plots.md), else the plot.py beside it, else all files of its run")
-    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="of CASE.yaml: the output folder of the run (the one that the case names)")
-    parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="only the columns whose name holds one of the words")
-    parser.add_argument("--from", dest="low", type=float, metavar="T", help="only from this time on [s]")
-    parser.add_argument("--to", dest="high", type=float, metavar="T", help="only up to this time [s]")
-    parser.add_argument("--at", type=float, metavar="T", help="of lines and planes: the output nearest to this time (the last one)")
-    parser.add_argument("--log", action="store_true", help="logarithmic values; residuals always have them")
-    parser.add_argument("--field", metavar="NAME", help="draws this field of the run in FOLDER (or FOLDER/PARTICIPANT): its two-dimensional cells, or in three dimensions the outer faces")
-    parser.add_argument("--surface", metavar="PATCH", help="of --field: on this patch (output.surfaces of the case), in 2-D over the arc length")
-    parser.add_argument("--mode", type=int, metavar="N", help="draws this mode of modes.h5 in FOLDER")
-    parser.add_argument("--component", choices=("x", "y", "z"), help="of --field: a component in place of the magnitude")
-    parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="of --field: a body is drawn with its displacement times F (1)")
-    parser.add_argument("--film", action="store_true", help="of CASE.yaml: the maps of its section plot at each output, between --from and --to, as frames film/frame-*.png, and film.mp4 where ffmpeg is installed")
-    parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="by default FILE.png beside FILE.csv; for one file only")
+    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a CSV file of a run, a folder of such files, or a case: then its section plot (docs/plots.md), its plot.py, or all files of its run")
+    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="output folder of the run, with a case (default: the one that the case names)")
+    parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="only columns whose name contains one of these words")
+    parser.add_argument("--from", dest="low", type=float, metavar="T", help="starts at this time [s]")
+    parser.add_argument("--to", dest="high", type=float, metavar="T", help="ends at this time [s]")
+    parser.add_argument("--at", type=float, metavar="T", help="draws lines and planes of the output nearest to this time [s] (default: the last)")
+    parser.add_argument("--log", action="store_true", help="logarithmic scale; residuals always have it")
+    parser.add_argument("--field", metavar="NAME", help="draws this field of the run in FOLDER or FOLDER/PARTICIPANT: cells in two dimensions, outer faces in three")
+    parser.add_argument("--surface", metavar="PATCH", help="draws --field on this patch (output.surfaces of the case), in two dimensions over the arc length")
+    parser.add_argument("--mode", type=int, metavar="N", help="draws this mode from modes.h5 in FOLDER")
+    parser.add_argument("--component", choices=("x", "y", "z"), help="draws a component of --field instead of its magnitude")
+    parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="draws --field on the body displaced by F times its displacement (default: 1)")
+    parser.add_argument("--film", action="store_true", help="draws the maps of a case's section plot at each output between --from and --to: film/frame-*.png, and film.mp4 if ffmpeg is installed")
+    parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="name of the picture, for a single file (default: FILE.png beside FILE.csv)")
 
 
 def run(options):

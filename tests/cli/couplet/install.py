@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is installed works by itself. Usage: install.py BUILD [prefix | empty | deb]: from a prefix that is moved, with an empty HOME; a
-build in which nothing was built; the unpacked .deb."""
+"""What is installed works by itself. Usage: install.py BUILD [prefix | empty | deb | pip]: from a prefix that is moved, with an empty HOME; a
+build in which nothing was built; the unpacked .deb; the Python package by pip, beside the programs of BUILD."""
 
 import gzip
 import pathlib
@@ -100,7 +100,31 @@ def deb(folder, home):
     pages(root, home)
 
 
+def pip(folder, home):
+    """pip install client/python, without the network: the package reads results and finds the programs, cases and its version."""
+    if subprocess.run(["/usr/bin/python3", "-c", "import ensurepip, wheel, setuptools"], capture_output=True).returncode:
+        print("skipped: no pip here (Debian: python3-venv, python3-setuptools, python3-wheel)")
+        sys.exit(77)
+    shutil.copytree(ROOT / "client/python", folder / "python", ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))
+    subprocess.run(["/usr/bin/python3", "-m", "venv", "--system-site-packages", folder / "venv"], check=True, capture_output=True)
+    said = subprocess.run([folder / "venv/bin/pip", "install", "--no-index", "--no-build-isolation", folder / "python"], capture_output=True, text=True)
+    check("pip install client/python", said.returncode == 0, said.stdout + said.stderr)
+
+    def run_here(*words):
+        env = {"HOME": str(home), "PATH": f"{folder / 'venv/bin'}:{build / 'bin'}:/usr/bin:/bin", "LANG": "C.UTF-8"}
+        return subprocess.run([folder / "venv/bin" / words[0], *words[1:]], capture_output=True, text=True, env=env, cwd=home)
+
+    there = re.search(r"project\(couplet VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    said = run_here("couplet", "--version")
+    check("the version of the project", said.stdout == f"couplet {there}\n", said.stdout + said.stderr)
+    for words in (["new", "mine", "--from", "cavity", "--end-time", "0.05 s"], ["check", "mine"], ["run", "mine", "-q"]):
+        said = run_here("couplet", *words)
+        check("couplet " + " ".join(words), said.returncode == 0, said.stdout + said.stderr)
+    read = run_here("python3", "-c", "import couplet; print(couplet.__file__, couplet.Results('mine/out').fields('fluid').field(-1, 'velocity').shape)")
+    check("import couplet reads it", read.stdout.startswith(str(folder / "venv")) and read.stdout.endswith(", 3)\n"), read.stdout + read.stderr)
+
+
 with tempfile.TemporaryDirectory(prefix="couplet-install-") as scratch:
     (pathlib.Path(scratch) / "home").mkdir()
-    {"prefix": prefix, "empty": empty, "deb": deb}[what](pathlib.Path(scratch), pathlib.Path(scratch) / "home")
+    {"prefix": prefix, "empty": empty, "deb": deb, "pip": pip}[what](pathlib.Path(scratch), pathlib.Path(scratch) / "home")
 end()

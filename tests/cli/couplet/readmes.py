@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command of the READMEs of configs/, in its order, in a copy of the cases with an empty HOME: each ends well. What takes longer than
-SECONDS and has made a step is stopped: programs by SIGTERM, after which they end with exit code 3 and a checkpoint (or 0 where the last step was
-done); studies by SIGINT, after which they end at once. What looks at the results of a run that was stopped may miss something there. Usage: readmes.py BIN [I/N | CASE ...] [--seconds SECONDS]"""
+"""Runs every command of the READMEs of configs/ in order, in a copy of the cases with an empty HOME. Each must succeed. A run that takes longer than
+SECONDS and has made a step is stopped by SIGTERM, after which it ends with exit code 3 and a checkpoint (or 0 if the last step was done). A study is
+stopped by SIGINT, after which it ends at once. Commands that read the results of a stopped run may fail with exit code 1 or 2.
+Usage: readmes.py BIN [I/N | CASE ...] [--seconds SECONDS]"""
 import argparse
 import os
 import pathlib
@@ -38,19 +39,6 @@ def commands(readme):
     return found
 
 
-def at_work(leader):
-    """{process: program} of ours in a session."""
-    found = {}
-    for pid in session(leader):
-        try:
-            name = pathlib.Path(os.readlink(f"/proc/{pid}/exe")).name
-        except OSError:
-            continue
-        if name in PROGRAMS:
-            found[pid] = name
-    return found
-
-
 def in_copy(root):
     """{process: command line} of programs that work on the copy of the cases, in whatever session."""
     found = {}
@@ -64,23 +52,34 @@ def in_copy(root):
     return found
 
 
-def may_stop(command, leader, said):
-    """It is a study, or a program of ours has made a step; scripts that draw pictures come to their end."""
-    return command.startswith("scripts/") and not command.startswith("scripts/couplet plot") or at_work(leader) and re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
+def at_work(root):
+    """Solvers that work on the copy of the cases, without their launchers."""
+    found = []
+    for pid in in_copy(root):
+        try:
+            found += [pid] if pathlib.Path(os.readlink(f"/proc/{pid}/exe")).name in PROGRAMS else []
+        except OSError:
+            continue
+    return found
+
+
+def may_stop(command, root, said):
+    """Returns true for a study, and for a run that has made a step. Scripts that draw pictures come to their end."""
+    return command.startswith("couplet study") or at_work(root) and re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
 
 
 def run(settings, command, root, home):
     """(exit code, words, how it was stopped: "", "SIGTERM" or "SIGINT")."""
-    env = {"HOME": str(home), "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    env = {"HOME": str(home), "PATH": f"{root / 'scripts'}:/usr/bin:/bin", "LANG": "C.UTF-8", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1", "MPLBACKEND": "agg"}
     with open(home / "said", "w+") as said:
         job = subprocess.Popen(["bash", "-c", f"{settings}{command}"], stdin=subprocess.DEVNULL, stdout=said, stderr=said, env=env, cwd=root, start_new_session=True)
         how, limit = "", time.monotonic() + options.seconds
-        while job.poll() is None and (time.monotonic() < limit or not may_stop(command, job.pid, home / "said")):
+        while job.poll() is None and (time.monotonic() < limit or not may_stop(command, root, home / "said")):
             time.sleep(0.1)
         if job.poll() is None:
-            ours = at_work(job.pid)
-            how = "SIGINT" if command.startswith("scripts/") else "SIGTERM"
+            ours = at_work(root)
+            how = "SIGINT" if command.startswith("couplet study") else "SIGTERM"
             if how == "SIGINT":
                 os.killpg(job.pid, signal.SIGINT)  # as a terminal does
             for pid in ours if how == "SIGTERM" else ():
@@ -89,7 +88,7 @@ def run(settings, command, root, home):
                 job.wait(900)
             except subprocess.TimeoutExpired:
                 how += ", to no effect"
-        left = at_work(job.pid) | in_copy(root)
+        left = in_copy(root)
         for pid in session(job.pid):
             os.kill(pid, signal.SIGKILL)
         said.seek(0)

@@ -185,7 +185,7 @@ def stop(folder):
     other = call(bin_, "resume", folder / "a/out")
     check("but are no state of this one", other.returncode == 2 and "no complete checkpoint to continue from" in other.stderr, other.stdout[-300:] + other.stderr)
     nobody = call(bin_, "stop", folder / "a/out")
-    check("where nobody is at work, stop says so", nobody.returncode == 2 and "no job is at work" in nobody.stderr, nobody.stderr)
+    check("without a running job, stop says so", nobody.returncode == 2 and "no running job found" in nobody.stderr, nobody.stderr)
     (folder / "empty").mkdir()
     lost = call(bin_, "resume", folder / "empty")
     check("resume names what is missing", lost.returncode == 2 and "was not started by couplet run" in lost.stderr, lost.stderr)
@@ -210,7 +210,7 @@ def wrong(folder):
     for words, said in ((("run", folder / "none.yaml"), "does not exist"), (("run", case, "-n", "fluid=0"), "whole numbers"), (("run", case, "-n", "air=1"), "there is no participant 'air'"),
                         (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "-n", "fluid=100000"), "would hardly advance"), (("run", case, "--print", "-n", "1" + 20 * "0"), "at most 1000000"),
                         (("run", case, "-n", "fluid=2,fluid=3"), "a participant twice"), (("run", case, "-n", "1e3"), "one whole number"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
-                        (("new", folder / "a"), "is there already"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
+                        (("new", folder / "a"), "exists and is not empty"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
         result = ask(bin_, *words)
         check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
     for name, content, said in (("binary", b"\x85\xff" * 99, "binary.yaml:1:1: the byte 0x85 is not text in UTF-8"), ("three", b"{simulation: 3, participants: {a: {program: fluid_solver}}}", "simulation"), ("nobody", b"{participants: {a: }}", "participants.a: expected a mapping")):

@@ -2,6 +2,7 @@
 """The site: no dead link, nothing from elsewhere, all cases in the gallery, served on the loopback address alone, and searched in a headless
 browser without an error. Usage: site.py BIN"""
 import html.parser
+import json
 import pathlib
 import re
 import shutil
@@ -14,6 +15,7 @@ import urllib.request
 from browser import browser, errors, hosts, listening
 from scene import ROOT, call, environment, start
 from checks import check, end  # noqa: E402
+from couplet.documents.site import nav_of, pages  # noqa: E402
 
 bin_ = pathlib.Path(sys.argv[1])
 if not shutil.which("mkdocs"):
@@ -59,14 +61,24 @@ with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
     text = (site / "gallery.html").read_text()
     missing = [f.parent.name for f in ROOT.glob("configs/*/case.yaml") if f"couplet run configs/{f.parent.name}<" not in text]
     check("the gallery has all cases", not missing, missing)
-    check("the search knows the keys", "hang-timeout" in (site / "search/search_index.json").read_text())
+    found = {entry["location"].partition("#")[0] for entry in json.loads((site / "search/search_index.json").read_text())["docs"]}
+    check("the search knows the keys", {"docs/config.html", "docs/keys/fluid_solver.html"} <= found, sorted(found)[:3])
+    wanted = {"docs/limitations.html", "docs/how-to/restart.html", "docs/how-to/index.html", "configs/cavity/index.html", "gallery.html"}
+    check("the search knows what users read", wanted <= found, wanted - found)
+    unwanted = [name for name in found if name.startswith(("common/", "tests/", "docs/validation/", "CONTRIBUTING"))]
+    check("the search leaves out what is for developers", not unwanted, unwanted)
+    nav = nav_of(pages())
+    sections = re.findall(r"^ {2}- ([^:]+):", nav, flags=re.M)
+    check("the sidebar has four kinds", sections == ["Couplet", "All pages", "Tutorials", "How-to", "Reference", "Explanation", "Gallery", "For developers"], sections)
+    missing = {"index.md" if str(p) == "README.md" else str(p) for p in pages()} ^ set(re.findall(r": (\S+\.md)$", nav, flags=re.M))
+    check("every page is in the sidebar", not missing, missing)
 
     server = start(bin_, "docs", "--port", "0", env={**environment(bin_), "XDG_CACHE_HOME": scratch, "PYTHONUNBUFFERED": "1"})
     address = None
     while not address and (line := server.stdout.readline()):
         address = (re.search(r"http://127.0.0.1:\d+/", line) or [None])[0]
     try:
-        check("couplet docs serves it", b"couplet run configs/perpendicular-flap" in urllib.request.urlopen(address).read(), address)
+        check("couplet docs serves it", b"scripts/demo" in urllib.request.urlopen(address).read(), address)
         check("on the loopback address alone", set(listening(server.pid)) == {"0100007F"}, listening(server.pid))
         with browser() as driver:
             if driver:

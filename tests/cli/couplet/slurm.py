@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""couplet run --slurm and the lines of the README on a Slurm of one node, set up in a scratch folder on the loopback address (Debian: slurm-wlm,
+"""couplet run --slurm and the lines of docs/how-to/cluster.md on a Slurm of one node, set up in a scratch folder on the loopback address (Debian: slurm-wlm,
 munge; as root): a coupled job, the same by mpirun and by srun, an end by scancel and going on. Usage: slurm.py BIN"""
 import os
 import pathlib
@@ -117,19 +117,19 @@ def a_job(slurm, folder, case):
 
 
 def by_hand(slurm, folder, case):
-    """The lines of the README."""
+    """Runs the lines of docs/how-to/cluster.md."""
     programs = ["coupler", "fluid_solver", "solid_solver", "mesh_mover"]
     shutil.rmtree(folder / "a/out")
     script = "#!/bin/bash\n#SBATCH --job-name=flap --ntasks=4 --time=00:05:00\nexport OMP_NUM_THREADS=1\ncase=$SLURM_SUBMIT_DIR/case.yaml\n"
     script += "mpirun --oversubscribe " + " : ".join(f"-n 1 {p} $case" for p in programs) + "\n"
     said = slurm.run("sbatch", f"--output={folder}/hand", input=script, cwd=case.parent)
     state = slurm.ended(slurm.number(said))
-    check("the README's batch script", state and state[1] == "COMPLETED", ((folder / "hand").read_text() if (folder / "hand").exists() else said.stderr)[-400:])
+    check("the batch script of the page", state and state[1] == "COMPLETED", ((folder / "hand").read_text() if (folder / "hand").exists() else said.stderr)[-400:])
     same(folder, "mpirun in a batch job")
     shutil.rmtree(folder / "a/out")
     (case.parent / "programs.conf").write_text("".join(f"{i} {bin_ / p} case.yaml\n" for i, p in enumerate(programs)))
     said = slurm.run("srun", "--mpi=pmix", "--ntasks=4", "--multi-prog", "programs.conf", cwd=case.parent, timeout=120)
-    check("the README's srun --multi-prog", said.returncode == 0, said.stdout[-300:] + said.stderr[-500:])
+    check("the srun --multi-prog of the page", said.returncode == 0, said.stdout[-300:] + said.stderr[-500:])
     if said.returncode == 0:
         same(folder, "srun")
 

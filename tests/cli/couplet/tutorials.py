@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command of a tutorial, in its order, in an empty folder with an empty HOME: each ends well, and pictures are there. Usage: tutorials.py BIN NAME"""
+"""Runs every command of a tutorial or how-to page in order, in an empty folder with an empty HOME. Each must succeed, and a tutorial must draw pictures.
+Usage: tutorials.py BIN PAGE, such as tutorials/first-solid or how-to/modes"""
 import math
 import pathlib
 import re
@@ -12,10 +13,11 @@ from scene import ROOT, environment
 from checks import check, end  # noqa: E402
 import couplet  # noqa: E402
 
-bin_, name = pathlib.Path(sys.argv[1]), sys.argv[2]
-PICTURES = {"accuracy": 2}  # at least; one in the others
+bin_, page = pathlib.Path(sys.argv[1]), sys.argv[2]
+FEWEST = (2, 1) if page.startswith("tutorials/") else (1, 0)  # blocks of commands, pictures
+PICTURES = {"tutorials/accuracy": 2}
 
-text = (ROOT / f"docs/tutorials/{name}.md").read_text()
+text = (ROOT / f"docs/{page}.md").read_text()
 blocks = re.findall(r"^```sh\n(.*?)^```", text, flags=re.M | re.S)
 with tempfile.TemporaryDirectory(prefix="couplet-tutorial-") as scratch:
     home = pathlib.Path(scratch) / "home"
@@ -26,9 +28,9 @@ with tempfile.TemporaryDirectory(prefix="couplet-tutorial-") as scratch:
         said = subprocess.run(["bash", "-ec", block], capture_output=True, text=True, env=env, cwd=home, timeout=600)
         first = block.strip().splitlines()[0]
         check(first, said.returncode == 0 and "Traceback" not in said.stderr, (said.stdout[-1500:] + said.stderr[-1500:]) if said.returncode else "")
-    if name == "own-mesh":  # what is drawn is the hook: 10 mm of 100 mm and of half a ring
+    if page == "tutorials/own-mesh":  # what is drawn is the hook: 10 mm of 100 mm and of half a ring
         area = couplet.Results(home / "hook/out").fields("solid").volumes().sum()
         check("the hook is a strip", abs(area / (1e-3 + 0.5 * math.pi * (0.05**2 - 0.04**2)) - 1) < 0.02, area)
     pictures = [p for p in home.rglob("*.png") if p.stat().st_size > 3000]
-    check(f"{len(blocks)} blocks in {time.monotonic() - start:.0f} s, {len(pictures)} pictures", len(blocks) >= 2 and len(pictures) >= PICTURES.get(name, 1), pictures)
+    check(f"{len(blocks)} blocks in {time.monotonic() - start:.0f} s, {len(pictures)} pictures", len(blocks) >= FEWEST[0] and len(pictures) >= PICTURES.get(page, FEWEST[1]), pictures)
 end()

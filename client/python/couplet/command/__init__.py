@@ -9,26 +9,26 @@ import sys
 
 # name: (module, one line)
 SUBCOMMANDS = {
-    "run": ("command.run", "runs a case: all its programs, to the end"),
+    "run": ("command.run", "runs all programs of a case"),
     "resume": ("command.resume", "continues a stopped run"),
-    "stop": ("command.stop", "stops a run after the current step, with a checkpoint"),
+    "stop": ("command.stop", "stops a run after the current step and writes a checkpoint"),
     "watch": ("command.watch", "shows the progress of a run"),
-    "check": ("command.check", "finds all mistakes of a case without running it"),
+    "check": ("command.check", "reports all errors of a case without running it"),
     "explain": ("command.explain", "lists what a case computes and neglects, and its expected cost"),
-    "new": ("command.new", "creates your own case from one of the gallery"),
+    "new": ("command.new", "creates a case of your own from an example"),
     "import": ("command.import_precice", "creates a case from a configuration of preCICE"),
-    "gallery": ("command.gallery", "lists the cases of the gallery"),
-    "docs": ("command.docs", "shows the documentation, searchable, with a gallery of all cases"),
+    "gallery": ("command.gallery", "lists the example cases"),
+    "docs": ("command.docs", "shows the documentation with search and a gallery of all cases"),
     "plot": ("plot", "plots the results of a run"),
     "compare": ("command.compare", "lists the differences of two runs"),
-    "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
-    "mesh": ("command.mesh", "makes meshes that no rank has to hold, and opens them"),
+    "study": ("study.main", "runs the study of a case: variants, error against time, optimization"),
+    "mesh": ("command.mesh", "writes and checks partitionable meshes for very large cases"),
     "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
     "weather": ("command.weather", "converts a weather file to the CSV that a tank reads"),
-    "validate": ("command.validate", "measures the project's bars (in a checkout)"),
+    "validate": ("command.validate", "measures the acceptance tests of the project (in a checkout)"),
     "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
 }
-GUIDE = "couplet COMMAND --help describes each command. Exit codes, as of the programs: 0 done, 1 failed, 2 invalid case or command, 3 stopped with a checkpoint, 4 done, but useless."
+GUIDE = "couplet COMMAND --help describes each command. Exit codes, the same as those of the programs: 0 finished, 1 failed, 2 invalid case or command, 3 stopped with a checkpoint, 4 finished, but the result is not usable."
 
 
 def module_of(name):
@@ -44,8 +44,11 @@ def parser_of(name):
 
 
 def version():
-    from couplet.places import IN_CHECKOUT, PACKAGE, ROOT
+    from couplet.places import BY_PIP, IN_CHECKOUT, PACKAGE, ROOT
     import re
+    if BY_PIP:
+        from importlib import metadata
+        return metadata.version("couplet")
     if IN_CHECKOUT:
         return re.search(r"project\(couplet VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     return (PACKAGE / "VERSION").read_text().strip()
@@ -78,9 +81,9 @@ def dispatch(name, words):
         return 128 + signal.SIGINT
 
 
-def main(argv):
-    """Runs `argv`, the command line starting with `couplet`."""
-    words = argv[1:]
+def main(argv=None):
+    """Runs `argv`, the command line starting with `couplet` (default: sys.argv)."""
+    words = (argv or sys.argv)[1:]
     if not words or words[0] in ("-h", "--help", "help"):
         print(overview())
         return 0

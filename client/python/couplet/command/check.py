@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds all mistakes of a case at once, with file, line and what is allowed, and runs nothing: asks every program that takes part.
-Exit code 0, or 2 if there are any."""
+"""Reports every error in a case with file and line, without running it. All programs of the case check their part. The exit code is 0 if there are no
+errors, and 2 otherwise."""
 import pathlib
 import subprocess
 import sys
@@ -12,8 +12,8 @@ from couplet.runs.job import surroundings
 
 def declare(parser):
     parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
-    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
-    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets a value; repeatable")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
 
 
 def ask(arguments, question):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the differences of two runs: values in effect, each column of their tables, each field at each output, findings. Their cost
-(seconds, iterations, logs) is ignored. Exit code 0 if all else is equal bit for bit, or within --tolerance; 1 if not."""
+"""Lists the differences between two runs: effective values, columns of tables, fields at each output, and findings. Their cost (seconds, iterations,
+logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within --tolerance, and 1 otherwise."""
 import argparse
 import math
 import pathlib
@@ -21,8 +21,8 @@ def share(text):
 
 def declare(parser):
     parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
-    parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another")
-    parser.add_argument("--tolerance", type=share, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (0)")
+    parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another run")
+    parser.add_argument("--tolerance", type=share, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (default: 0)")
     parser.add_argument("--all", action="store_true", help="also lists equal values")
 
 

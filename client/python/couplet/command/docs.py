@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the documentation as a site with search and a gallery of all cases: builds it once, then serves it on the loopback address."""
+"""Shows the documentation as a site with search and a gallery of all cases. Builds it once, then serves it on localhost."""
 import functools
 import http.server
 import os
@@ -10,9 +10,9 @@ from couplet.documents import site
 
 
 def declare(parser):
-    parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="only builds the site into this folder")
-    parser.add_argument("--port", type=int, default=0, metavar="N", help="port on the loopback address (default: any free one)")
-    parser.add_argument("--again", action="store_true", help="rebuilds it even if it exists")
+    parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="builds the site into this folder and exits")
+    parser.add_argument("--port", type=int, default=0, metavar="N", help="port on localhost (default: any free one)")
+    parser.add_argument("--again", action="store_true", help="builds it again even if it exists")
 
 
 def built(again):
@@ -23,7 +23,7 @@ def built(again):
     newest = max(((ROOT / page).stat().st_mtime for page in site.pages()), default=0)
     mark = cache / "index.html"
     if again or not mark.exists() or mark.stat().st_mtime < newest:
-        print("builds the site (half a minute) ...", flush=True)
+        print("Building the site (about 10 s) ...", flush=True)
         site.build(cache)
     return cache
 
@@ -41,6 +41,6 @@ def run(arguments):
         return 0
     folder = built(arguments.again)
     server = http.server.ThreadingHTTPServer(("127.0.0.1", arguments.port), functools.partial(Quiet, directory=str(folder)))
-    print(f"http://127.0.0.1:{server.server_port}/ (Ctrl-C ends)", flush=True)
+    print(f"http://127.0.0.1:{server.server_port}/ (press Ctrl-C to stop)", flush=True)
     server.serve_forever()
     return 0

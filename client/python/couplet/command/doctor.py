@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks whether this machine can run coupled cases: programs and their versions, MPI, Python's packages, gmsh, cores, memory, and a coupled
-self-test of two seconds. Exit code 0 if cases can be run, 1 if not; each failing line names the fix."""
+"""Checks whether this machine can run coupled cases: programs and their versions, MPI, Python packages, gmsh, cores, memory, and a coupled self-test of
+two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line that fails names the fix."""
 import importlib.util
 import os
 import pathlib
@@ -19,7 +19,7 @@ PACKAGES = {"yaml": ("python3-yaml", True), "numpy": ("python3-numpy", True), "h
 
 
 def declare(parser):
-    parser.add_argument("--quick", action="store_true", help="without the self-test")
+    parser.add_argument("--quick", action="store_true", help="skips the self-test")
 
 
 def first_line(*command):

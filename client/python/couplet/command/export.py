@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM (incompressible, laminar
-flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). Settings without a counterpart there are rejected, naming the
-key. `couplet study --peers` runs them beside ours."""
+"""Writes a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM (incompressible, laminar flow for
+icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key without a counterpart there is an error that names it.
+`couplet study --peers` runs both and compares them."""
 import pathlib
 import shutil
 import tempfile
@@ -16,9 +16,9 @@ def declare(parser):
     parser.add_argument("--to", required=True, choices=TO, help="the target program")
     parser.add_argument("--folder", type=pathlib.Path, metavar="FOLDER", help="output folder (default: PROGRAM next to the case)")
     parser.add_argument("--participant", metavar="NAME", help="participant to export, if the case has several")
-    parser.add_argument("--element", metavar="KIND", help="of CalculiX, such as C3D20R (the one that fits the cells of the mesh; of second order)")
-    parser.add_argument("--solver", choices=("icoFoam", "pimpleFoam"), default="icoFoam", help="of OpenFOAM and a flow (icoFoam)")
-    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
+    parser.add_argument("--element", metavar="KIND", help="element of CalculiX, such as C3D20R (default: the second-order one for the cells of the mesh)")
+    parser.add_argument("--solver", choices=("icoFoam", "pimpleFoam"), default="icoFoam", help="solver of OpenFOAM for a flow (default: icoFoam)")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets a value; repeatable")
     parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, with your permissions")
 
 
@@ -49,7 +49,7 @@ def run(arguments):
     expect(arguments.element is None or arguments.to == "calculix", "--element: is of --to calculix")
     case = Case(arguments.case)
     folder = arguments.folder or case.file.parent / arguments.to
-    expect(not folder.exists() or folder.is_dir() and not any(folder.iterdir()), f"--folder {folder}: is there already and not empty")
+    expect(not folder.exists() or folder.is_dir() and not any(folder.iterdir()), f"--folder {folder}: exists and is not empty; choose a new name")
     with tempfile.TemporaryDirectory(prefix="couplet-export-") as work:
         try:
             command = made(case, arguments, pathlib.Path(work)).write(folder)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the cases of the gallery: name, programs and what each shows. `couplet new` copies one."""
+"""Lists the example cases: name, programs, and what each shows. `couplet new` copies one."""
 import textwrap
 
 from couplet.runs import gallery
@@ -7,14 +7,14 @@ from couplet.runs.case import expect
 
 
 def declare(parser):
-    parser.add_argument("words", nargs="*", metavar="WORD", help="only cases whose name, text or programs contain all of these words")
-    parser.add_argument("-l", "--long", action="store_true", help="also a description of each")
+    parser.add_argument("words", nargs="*", metavar="WORD", help="lists only cases whose name, text or programs contain all of these words")
+    parser.add_argument("-l", "--long", action="store_true", help="adds a description of each case")
 
 
 def run(arguments):
     words = [w.lower() for w in arguments.words]
     found = [e for e in gallery.entries() if all(w in f"{e.name} {e.title} {e.about} {' '.join(e.programs)}".lower() for w in words)]
-    expect(found, f"no case holds {' and '.join(arguments.words)}")
+    expect(found, "no case matches " + " and ".join(f'"{word}"' for word in arguments.words))
     for e in found:
         print(f"{e.name:28} {', '.join(e.programs)}")
         if arguments.long:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates a case from a configuration of preCICE: writes the YAML for a job whose participants are programs on preCICE's interface
-(docs/precice.md). The programs still read the XML themselves. Differences are listed. An unsupported element is named with its line,
-and no case is written (exit code 2)."""
+"""Creates a case from a configuration of preCICE, for a job of programs that use preCICE's interface (docs/precice.md). The programs still read the XML
+themselves. Differences are listed. If an element is not supported, it is named with its line, and no case is written (exit code 2)."""
 import os
 import pathlib
 
@@ -13,9 +12,9 @@ from couplet.runs.case import Wrong, expect
 
 
 def declare(parser):
-    parser.add_argument("configuration", type=pathlib.Path, metavar="XML", help="precice-config.xml")
-    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="YAML", help="the case; default: the XML's name with .yaml, beside it")
-    parser.add_argument("--check", action="store_true", help="writes nothing, only lists differences and unsupported elements")
+    parser.add_argument("configuration", type=pathlib.Path, metavar="XML", help="configuration file, such as precice-config.xml")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="YAML", help="case to write (default: beside the XML, with its name and .yaml)")
+    parser.add_argument("--check", action="store_true", help="lists differences and unsupported elements without writing a case")
     parser.add_argument("--force", action="store_true", help="overwrites an existing case")
 
 

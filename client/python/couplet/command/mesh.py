@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes meshes that no rank has to hold (cut meshes, NAME.h5): all ranks of a run open one together, each its share, on any number of
-ranks. 'cut SOURCE' writes the meshes of a case, or one mesh file, in one process that reads it as a whole; 'box' writes a box of
-hexahedra or tetrahedra in parallel, each rank its block; 'open SOURCE' opens a mesh as the programs do and prints time and memory."""
+"""Writes and checks cut meshes (NAME.h5) for cases that are too large for one process: each rank reads its share, on any number of ranks. 'cut SOURCE'
+converts the meshes of a case, or one mesh file, in one process that reads it as a whole. 'box' writes a box of hexahedra or tetrahedra in
+parallel. 'open SOURCE' opens a mesh as the programs do and prints time and memory."""
 import pathlib
 import subprocess
 
@@ -14,19 +14,19 @@ OPENED_BY = ("fluid_solver", "solid_solver", "mesh_mover")
 
 
 def declare(parser):
-    parser.add_argument("what", choices=("cut", "box", "open"), metavar="cut|box|open", help="what to do")
+    parser.add_argument("what", choices=("cut", "box", "open"), metavar="cut|box|open", help="action")
     parser.add_argument("source", nargs="?", type=pathlib.Path, metavar="SOURCE", help="cut: a case (YAML file, or folder with case.yaml) or a mesh file; open: a mesh file")
-    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE.h5", help="the cut mesh (of cut: beside the mesh, with its name)")
-    parser.add_argument("--participant", metavar="NAME", help="cut: the mesh of this participant alone")
-    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="cut: sets one value of the case first; repeatable")
-    parser.add_argument("--dimension", type=int, choices=(2, 3), default=3, metavar="2|3", help="cut and open: of a mesh file (3)")
-    parser.add_argument("--parameter", action="append", default=[], metavar="NAME=NUMBER", help="cut: for a name that the .geo defines; repeatable")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE.h5", help="cut mesh to write (default for cut: beside the mesh, with its name)")
+    parser.add_argument("--participant", metavar="NAME", help="cut: only the mesh of this participant")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="cut: sets a value of the case first; repeatable")
+    parser.add_argument("--dimension", type=int, choices=(2, 3), default=3, metavar="2|3", help="cut and open: dimension of a mesh file (default: 3)")
+    parser.add_argument("--parameter", action="append", default=[], metavar="NAME=NUMBER", help="cut: value of a name that the .geo defines; repeatable")
     parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, with your permissions")
     parser.add_argument("--cells", nargs=3, type=int, metavar=("NX", "NY", "NZ"), help="box: hexahedra along x, y, z")
-    parser.add_argument("--length", nargs=3, type=float, metavar=("LX", "LY", "LZ"), help="box: its sides [m] (1 1 1)")
-    parser.add_argument("--tetrahedra", action="store_true", help="box: cuts each hexahedron into six")
-    parser.add_argument("-n", "--ranks", type=int, default=1, metavar="N", help="box and open: on N ranks (1)")
-    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
+    parser.add_argument("--length", nargs=3, type=float, metavar=("LX", "LY", "LZ"), help="box: lengths of its sides [m] (default: 1 1 1)")
+    parser.add_argument("--tetrahedra", action="store_true", help="box: divides each hexahedron into six tetrahedra")
+    parser.add_argument("-n", "--ranks", type=int, default=1, metavar="N", help="box and open: number of ranks (default: 1)")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
 
 
 def tool(arguments, words, ranks=1):

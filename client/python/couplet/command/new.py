@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates your own case: copies one of the gallery, with all files that it names, into a new folder. The case runs as it is; comments
-and order of the YAML are kept."""
+"""Creates a case of your own: copies an example case with all files that it names into a new folder. Comments and the order of keys are kept."""
 import pathlib
 import shlex
 
@@ -9,11 +8,11 @@ from couplet.runs.case import expect
 
 
 def declare(parser):
-    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the new folder")
-    parser.add_argument("--from", dest="source", default="perpendicular-flap", metavar="CASE", help="a case of the gallery (couplet gallery), or one of its other files: cavity/re400.yaml")
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="folder to create")
+    parser.add_argument("--from", dest="source", default="perpendicular-flap", metavar="CASE", help="example case (couplet gallery lists them), or another file of one, such as cavity/re400.yaml")
     parser.add_argument("--end-time", metavar="T", help="simulation.end-time, such as '2 s'")
     parser.add_argument("--time-step", metavar="T", help="simulation.time-step, such as '0.01 s'")
-    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="another value of a key that the case has; repeatable")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="changes a key that the case has; repeatable")
 
 
 def run(arguments):

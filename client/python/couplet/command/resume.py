@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and
-settings. A continued run equals the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of the solvers."""
+"""Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and settings. A continued run equals
+the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of the solvers."""
 import os
 import pathlib
 import shlex
@@ -12,13 +12,13 @@ from couplet.runs.job import Job
 
 
 def declare(parser):
-    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the output folder of the run")
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}")
-    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="a further change, such as simulation.end-time='10 s'")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="changes a value, such as simulation.end-time='10 s'")
     parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant, which is given again")
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
     parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
-    parser.add_argument("--print", action="store_true", help="prints the launch line only")
+    parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
 
 
 def run(arguments):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a case: composes the launch line of all its programs from the YAML, starts it, passes on their output, and reports at the end
-where the results lie. The results are bit for bit those of the same line typed by hand (--print shows it). Ctrl-C ends the run
-after the step under way, with a checkpoint; a second one at once."""
+"""Runs a case: composes the launch line of all its programs from the YAML, starts it, shows their output, and reports at the end
+where the results are. The results equal those of the same line typed by hand (--print shows it), bit for bit. Ctrl-C stops the run
+after the current step, with a checkpoint; press it again to stop immediately."""
 import os
 import pathlib
 import shlex
@@ -14,32 +14,32 @@ from couplet.runs import folder as folders
 from couplet.runs.case import Case, expect, mapping_of
 from couplet.runs.job import Job, output_of
 
-RANKS_HELP = "ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work"
-FLAGS = {"strict": "fail on warnings about the run's own result; --strict=effects: also about neglected effects"}
+RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divided by measured or expected work"
+FLAGS = {"strict": "fails if the run warns about its own result; --strict=effects: also about neglected effects"}
 
 
 def declare(parser):
     parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=RANKS_HELP)
-    parser.add_argument("--participant", metavar="NAME", help="this participant alone, without the others")
-    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant")
-    parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="this external participant is launched separately, with COUPLET_JOIN in its environment; it is reached on this machine, or on one network interface (tcp6: by IPv6)")
-    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
-    parser.add_argument("--print", action="store_true", help="shows the launch line and runs nothing")
-    parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="hands the run to Slurm as a batch job, with these options of sbatch; with --print shows the script")
-    parser.add_argument("--picture", action="store_true", help="afterwards draws the section plot of the case, or runs its plot.py")
+    parser.add_argument("--participant", metavar="NAME", help="runs only this participant")
+    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="command that starts an external participant")
+    parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="you start this external participant yourself, with COUPLET_JOIN in its environment, on this machine or over a network interface (tcp6: IPv6)")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
+    parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
+    parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="submits the run to Slurm with these options of sbatch; with --print, prints the batch script")
+    parser.add_argument("--picture", action="store_true", help="draws the picture of the case afterwards (its section plot, or its plot.py)")
     options_of_programs(parser)
 
 
 def options_of_programs(parser):
-    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets a value; repeatable")
     parser.add_argument("--restart", type=pathlib.Path, metavar="FOLDER", help="continues from the checkpoints in this folder")
     parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
     parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, with your permissions")
     parser.add_argument("--strict", nargs="?", const="", metavar="effects", help=FLAGS["strict"])
-    parser.add_argument("--accept", action="append", default=[], metavar="ID", help="lets a finding pass (docs/findings.md); repeatable")
-    parser.add_argument("-v", "--verbose", action="store_true", help="every rank logs more")
-    parser.add_argument("-q", "--quiet", action="store_true", help="warnings and errors only")
+    parser.add_argument("--accept", action="append", default=[], metavar="ID", help="accepts a finding by its id (docs/findings.md); repeatable")
+    parser.add_argument("-v", "--verbose", action="store_true", help="logs more, on every rank")
+    parser.add_argument("-q", "--quiet", action="store_true", help="prints only warnings and errors")
 
 
 def flags_of(arguments):

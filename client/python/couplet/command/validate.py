@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the project's bars with the built programs and tests, in a checkout: scripts/validate, whose options it takes."""
+"""Measures the acceptance tests of the project with the programs and tests of a checkout. Takes the options of scripts/validate."""
 import argparse
 import os
 
@@ -8,7 +8,7 @@ from couplet.runs.case import expect
 
 
 def declare(parser):
-    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME ...", help="as of scripts/validate; without any it lists them")
+    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME ...", help="arguments of scripts/validate; without any, lists what can be measured")
 
 
 def run(arguments):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the progress of a run, from its output files: time, step, iterations, residual, time to go, and findings as they
-come; with --web as one page with curves of residuals, probes and step size, for a browser on this machine. Ends with the run; Ctrl-C ends
-the watching alone."""
+"""Shows the progress of a run from its output files: time, step, iterations, residual, remaining time, and findings as they appear. With --web, a
+page for a browser on this machine also draws residuals, probes and step size. Exits when the run ends. Ctrl-C stops watching, not the run."""
 import pathlib
 import threading
 import time
@@ -14,11 +13,11 @@ from couplet.runs.terminal import Screen
 
 
 def declare(parser):
-    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the output folder of the run")
-    parser.add_argument("--every", type=float, default=0.5, metavar="SECONDS", help="looks so often (0.5)")
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
+    parser.add_argument("--every", type=float, default=0.5, metavar="SECONDS", help="refresh interval (default: 0.5)")
     parser.add_argument("--once", action="store_true", help="prints the current state and exits")
-    parser.add_argument("--web", action="store_true", help="serves a page on the loopback address, to who has the token of its address")
-    parser.add_argument("--port", type=int, default=0, metavar="N", help="of the page (any that is free)")
+    parser.add_argument("--web", action="store_true", help="serves a page on localhost; the URL contains an access token")
+    parser.add_argument("--port", type=int, default=0, metavar="N", help="port of the page (default: any free one)")
 
 
 def ending(folder):
@@ -41,7 +40,7 @@ def run(arguments):
     if arguments.web:
         from couplet.command import page
         server, address = page.server(Progress(folder), arguments.port)
-        print(f"{address} (Ctrl-C ends)", flush=True)
+        print(f"{address} (press Ctrl-C to stop)", flush=True)
         threading.Thread(target=server.serve_forever, daemon=True).start()
     logs, screen = Logs(folder), Screen()
     try:

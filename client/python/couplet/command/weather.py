@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts a weather file to the CSV that a thermocline reads (docs/formats.md): EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of
-PVGIS as CSV, and tables with other column names, units or separators; all may be compressed (.gz). The first lines identify the format.
-29 February is dropped, several records per hour are averaged, codes for missing values become gaps, and without humidity the dew point is
-used. PVGIS gives instantaneous values in UTC: they become hourly means on the standard time of the longitude. Ranges, order and gaps of
-the result are checked by the program."""
+"""Converts a weather file to the CSV that a thermocline reads (docs/formats.md): EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS as CSV,
+and tables with other column names, units or separators. All may be compressed (.gz). The format is recognized by the first lines. 29 February
+is dropped, several records per hour are averaged, codes for missing values become gaps, and without humidity the dew point is used. PVGIS
+gives instantaneous values in UTC, which become hourly means on the standard time of the longitude. Ranges, order and gaps of the result
+are checked by the program."""
 import csv
 import gzip
 import math
@@ -36,8 +36,8 @@ TIMES = ("month", "day", "hour", "minute", "date (mm/dd/yyyy)", "time (hh:mm)", 
 
 
 def declare(parser):
-    parser.add_argument("file", type=pathlib.Path, metavar="FILE", help="the weather file")
-    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="OUT.csv", help="the CSV to write, compressed if it ends in .gz (default: NAME_weather.csv beside FILE)")
+    parser.add_argument("file", type=pathlib.Path, metavar="FILE", help="weather file to convert")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="OUT.csv", help="CSV to write, compressed if its name ends in .gz (default: NAME_weather.csv beside FILE)")
 
 
 class Source:

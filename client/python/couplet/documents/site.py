@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Site with all documents and the READMEs of cases and folders, searchable, with a gallery of all cases, by MkDocs and its Material theme. It loads
-nothing from other servers."""
+"""Site with all documents, the READMEs of cases and folders, and a gallery of all cases, built by MkDocs with its Material theme. The sidebar sorts pages
+by kind. The search leaves out pages for developers. The site loads nothing from other servers."""
+import json
 import math
 import os
 import pathlib
@@ -13,10 +14,13 @@ from couplet.places import ROOT
 from couplet.runs.case import expect
 from couplet.runs.gallery import entries
 
-BEGIN = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
-         "docs/tutorials/own-coupled.md", "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
-GUIDES = ("docs/coupling.md", "docs/precice.md", "docs/studies.md", "docs/plots.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/theory.md", "docs/stability.md")
-REFERENCE = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/findings.md", "docs/quantities.md", "docs/expressions.md", "docs/formats.md", "docs/glossary.md", "docs/protocol.md")
+# Pages by kind (https://diataxis.fr). All others, except cases, are for developers.
+TUTORIALS = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
+             "docs/tutorials/own-coupled.md", "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
+REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in ("fluid_solver", "solid_solver", "plate_modal", "thermocline", "mesh_mover", "coupler")),
+             "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/expressions.md", "docs/quantities.md",
+             "docs/plots.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
+EXPLANATION = ("docs/theory.md", "docs/coupling.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
 LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
 CONFIG = """site_name: Couplet
 docs_dir: {docs}
@@ -26,7 +30,7 @@ theme:
   name: material
   font: false
   palette: {{primary: indigo}}
-  features: [navigation.sections, navigation.indexes, navigation.top, search.highlight, toc.follow]
+  features: [navigation.indexes, navigation.top, search.highlight, toc.follow]
 plugins: [search]
 markdown_extensions: [tables, fenced_code, attr_list, md_in_html, {{toc: {{permalink: true}}}}]
 extra: {{generator: false}}
@@ -110,21 +114,50 @@ def card(entry, there, needed):
 
 
 def gallery(there, needed):
-    text = "# Gallery\n\nAll cases that come along. `couplet new mine --from NAME` makes one's own of any of them.\n\n"
+    text = "# Gallery\n\nExample cases. Copy one with `couplet new mine --from NAME`.\n\n"
     return text + '<div class="gallery" markdown="1">\n\n' + "\n".join(card(e, there, needed) for e in entries()) + "\n</div>\n"
+
+
+def label(page):
+    """Title of a page in the sidebar, without the kind of its section."""
+    title = re.sub(r"^Tutorial: ", "", title_of(page))
+    return title[0].upper() + title[1:]
+
+
+def for_developers(there):
+    """{title of a group: its pages}: what users do not need."""
+    users = {pathlib.Path(p) for p in (*TUTORIALS, *REFERENCE, *EXPLANATION, "README.md", "docs/README.md")}
+    rest = [p for p in there if p not in users and p.parts[0] != "configs" and p.parts[:2] != ("docs", "how-to")]
+    groups = {"The project": [], "Validation": [], "Source folders": []}
+    for page in rest:
+        validation = page.parts[:2] == ("docs", "validation")
+        groups["Validation" if validation else "Source folders" if page.name == "README.md" else "The project"].append(page)
+    return groups
 
 
 def nav_of(there):
     """Lines of the nav section."""
-    def group(title, names):
-        rows = [f'    - "{title_of(p)}": {"index.md" if str(p) == "README.md" else p}' for p in map(pathlib.Path, names) if p in there]
-        return [f"  - {title}:", *rows] if rows else []
-    placed = {pathlib.Path(p) for p in (*BEGIN, *GUIDES, *REFERENCE, "README.md")}
-    cases = [p for p in there if p.parts[0] == "configs"]
-    validation = [p for p in there if p.parts[:2] == ("docs", "validation")]
-    rest = [p for p in there if p not in placed and p not in cases and p not in validation]
-    return "\n".join(["  - Couplet: index.md", *group("Begin", BEGIN), "  - Gallery:", "    - gallery.md", *group("Cases", cases)[1:], *group("Guides", GUIDES), *group("Reference", REFERENCE),
-                      *group("Validation", validation), *group("The project", rest)])
+    def rows(names, indent, title=label):
+        return [f'{" " * indent}- "{title(p)}": {p}' for p in map(pathlib.Path, names) if p in there]
+
+    guides = sorted(p for p in there if p.parts[:2] == ("docs", "how-to"))
+    guides.sort(key=lambda p: p.name != "README.md")
+    lines = ["  - Couplet: index.md", "  - All pages: docs/README.md"]
+    for title, names in (("Tutorials", TUTORIALS), ("How-to", guides), ("Reference", REFERENCE), ("Explanation", EXPLANATION)):
+        lines += [f"  - {title}:", *rows(names, 4)]
+    lines += ["  - Gallery:", "    - gallery.md", *rows([p for p in there if p.parts[0] == "configs"], 4), "  - For developers:"]
+    for title, names in for_developers(there).items():
+        lines += [f"    - {title}:", *rows(names, 6, (lambda p: str(p.parent)) if title == "Source folders" else label)] if names else []
+    return "\n".join(lines)
+
+
+def leave_out(site, names):
+    """Removes pages from the search, in the index that MkDocs wrote (the theme of Debian 12 cannot exclude pages)."""
+    file = site / "search/search_index.json"
+    index = json.loads(file.read_text())
+    addresses = {str(p.with_name("index.html" if p.name == "README.md" else p.stem + ".html")) for p in names}
+    index["docs"] = [entry for entry in index["docs"] if entry["location"].partition("#")[0] not in addresses]
+    file.write_text(json.dumps(index, separators=(",", ":")))
 
 
 def stage(folder):
@@ -158,4 +191,5 @@ def build(site):
         config.write_text(CONFIG.format(docs=docs, site=site, nav=nav))
         done = subprocess.run(["mkdocs", "build", "--clean", "-f", config], capture_output=True, text=True)
         expect(done.returncode == 0, f"mkdocs failed: {(done.stderr or done.stdout).strip()[-2000:]}")
+        leave_out(site, [page for group in for_developers(pages()).values() for page in group])
         return [line for line in (done.stdout + done.stderr).splitlines() if "WARNING" in line or "ERROR" in line]

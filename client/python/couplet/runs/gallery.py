@@ -131,7 +131,7 @@ def included(file):
 
 def copy(source, target, values):
     """Copies a case with all named files to a folder, with other values. Returns the new case file."""
-    expect(not target.exists() or not any(target.iterdir()), f"{target}: is there already and not empty; a new case wants a new folder")
+    expect(not target.exists() or not any(target.iterdir()), f"folder '{target}' exists and is not empty; choose a new name")
     case, text = Case(source), source.read_text()
     moved = {key: node.value for key, node in scalars(yaml.compose(text)) if isinstance(node.value, str) and len(node.value) < 200
              and "\n" not in node.value and (source.parent / node.value).is_file()}

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs what the `study` section of a case asks for and reports the result: named variants (their summaries in one table), axes
-(error against time), or the best of some variables. An interrupted study continues where it stopped; two at once share
-their work. docs/studies.md shows the sections."""
+"""Runs the section `study` of a case and reports the result: named variants with their summaries in one table, axes with error against time, or the
+best of some variables. An interrupted study continues where it stopped, and two at once share their work. docs/studies.md describes the section."""
 import fnmatch
 import os
 import pathlib
@@ -86,22 +85,22 @@ def run_axes(case, arguments):
 
 
 def declare(parser):
-    parser.add_argument("cases", nargs="+", type=pathlib.Path, metavar="CASE", help="case files; several: studies of variants alone")
-    parser.add_argument("--only", default="*", metavar="NAMES", help="only these runs, with commas; a name with * stands for many (diameter-*)")
-    parser.add_argument("--jobs", type=int, metavar="N", help="number of concurrent runs (default: the number of processors; for axes, whose times count: 1)")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a further change, the same for all runs")
-    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="where runs and tables are written (out/study or out/optimise beside the case)")
-    parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="the folder whose bin/ holds the programs")
+    parser.add_argument("cases", nargs="+", type=pathlib.Path, metavar="CASE", help="case files; several only for studies of variants")
+    parser.add_argument("--only", default="*", metavar="NAMES", help="runs to make, separated by commas; * matches any text (diameter-*)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="number of concurrent runs (default: the number of processors; 1 for axes, whose times are compared)")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="changes a value in all runs")
+    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="folder for runs and tables (default: out/study or out/optimise beside the case)")
+    parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="folder whose bin/ contains the programs")
     parser.add_argument("--list", action="store_true", help="lists the runs and their changes")
-    parser.add_argument("--repeats", type=int, metavar="N", help="runs of each point by axes, of which the median counts")
-    parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report, its pictures and the table there")
-    parser.add_argument("--again", action="store_true", help="runs are made again although they are there")
-    parser.add_argument("--peers", action="store_true", help="writes the case for CalculiX or OpenFOAM, runs those that are installed, and puts them on the same pictures and fronts; reports the reason where it cannot")
-    parser.add_argument("--allow-commands", action="store_true", help="of --peers: allows a .geo to run commands and write files, with your permissions")
-    parser.add_argument("--for-error", metavar="SHARE", help="predicts from few cheap runs the cheapest setting that meets this error (1%%), runs it, and reports the accuracy of the prediction")
-    parser.add_argument("--quantity", metavar="NAME", help="of --for-error")
-    parser.add_argument("--quantities", action="store_true", help="errors of the study's quantities at the case as it stands, by differences: the case as it is, with a half and a quarter of the cells along each line, with twice and four times the step, and with the tolerances of the section `sources` tightened; which part dominates")
-    parser.add_argument("--optimise", action="store_true", help="the best of some variables in few runs")
+    parser.add_argument("--repeats", type=int, metavar="N", help="repetitions of each run of axes; their median counts")
+    parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report, its pictures and the table to this folder")
+    parser.add_argument("--again", action="store_true", help="repeats runs even if results exist")
+    parser.add_argument("--peers", action="store_true", help="also writes the case for CalculiX or OpenFOAM, runs those that are installed, and shows them in the same pictures; reports why if it cannot")
+    parser.add_argument("--allow-commands", action="store_true", help="with --peers: allows a .geo to run commands and write files, with your permissions")
+    parser.add_argument("--for-error", metavar="SHARE", help="predicts the cheapest setting for this error (such as 1%%) from a few cheap runs, runs it, and compares error and time with the prediction")
+    parser.add_argument("--quantity", metavar="NAME", help="quantity that --for-error is about, if the study has several")
+    parser.add_argument("--quantities", action="store_true", help="estimates the errors of the study's quantities for the case as it is, from runs with a half and a quarter of the cells along each line, with two and four times the step, and with tighter tolerances (section `sources`), and names the dominant one")
+    parser.add_argument("--optimise", action="store_true", help="finds the best values of some variables in few runs")
 
 
 def run(arguments):
