@@ -5,6 +5,7 @@
 #include "common/app/program.hpp"
 #include "common/io/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
+#include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/effects.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/thermal_solid.hpp"
@@ -34,7 +35,9 @@ int main(int argc, char** argv) {
         couplet::mesh::LoadedMesh body = couplet::io::load_mesh(
             context.comm, context.case_folder / parameters.mesh, parameters.dimension,
             parameters.mesh_parameters, {}, couplet::solid::zones_of(parameters.materials), true,
-            parameters.mesh_scale);
+            parameters.mesh_scale,
+            parameters.touching_faces == couplet::solid::SolidParameters::TouchingFaces::tie);
+        couplet::solid::check_touching(body, parameters);
         const couplet::solid::SolidContext where{context.name, context.output_folder, context.restart_time,
                                                  context.simulation.fields};
         parameters.method.solves = solves_of(context);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 
-#include <fstream>
+#include <sched.h>
 
 #include "common/app/job.hpp"
 #include "common/app/run_participant.hpp"
@@ -36,9 +36,25 @@ MPI_Comm connect_mesh_peer(const Job& job) {
 
 /// Writes the effective parameters, defaults included, beside the results.
 void write_effective(const Job& job, const Program& program) {
-  if (job.rank != 0) return;
-  std::ofstream file(base::own_file(job.output_folder / "effective.yaml"));
-  file << config::effective(program.declare);
+  if (job.rank == 0)
+    base::write_file(job.output_folder / "effective.yaml", config::effective(program.declare));
+}
+
+/// Warns where ranks share cores: they poll while they wait for each other. Collective.
+void warn_of_shared_cores(const Job& job) {
+  MPI_Comm here;
+  MPI_Comm_split_type(job.comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  ::sched_getaffinity(0, sizeof(cores), &cores);
+  MPI_Allreduce(MPI_IN_PLACE, &cores, sizeof(cores), MPI_BYTE, MPI_BOR, here);
+  const int ranks = parallel::comm_size(here), most = CPU_COUNT(&cores);
+  MPI_Comm_free(&here);
+  if (job.rank == 0 && most > 0 && ranks > most)
+    log::warn(
+        "'{}' has {} ranks on {} core{}: ranks poll while they wait for each other, so that the run takes several "
+        "times as long as with {}.",
+        job.name, ranks, most, most == 1 ? "" : "s", most);
 }
 
 int run(const Job& job, const Program& program) {
@@ -61,6 +77,7 @@ int run(const Job& job, const Program& program) {
   write_effective(job, program);
   log::info("{} runs '{}' with {} rank{}", program.name, job.name, parallel::comm_size(job.comm),
             parallel::comm_size(job.comm) == 1 ? "" : "s");
+  warn_of_shared_cores(job);
   for (const diagnostics::EffectChoice& choice : job.choices) log::info("{}", diagnostics::text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();

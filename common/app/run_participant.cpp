@@ -3,17 +3,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "common/app/loop/step_loop.hpp"
 #include "common/app/run_report.hpp"
+#include "common/app/use_of_case.hpp"
 #include "common/base/error.hpp"
 #include "common/coupling/serve.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
@@ -99,6 +102,11 @@ class Observed final : public coupling::Participant {
   bool answered_anew() const override { return inner_.answered_anew(); }
   coupling::StepReport accept_step() override {
     const coupling::StepReport report = inner_.accept_step();
+    if (!std::isnan(report.energy)) {
+      fv::Use& energy = fv::uses()["energy"];
+      energy.kind = fv::Use::Kind::energy;
+      energy.note(report.energy);
+    }
     diagnostics_.accepted(end_);
     return report;
   }
@@ -235,6 +243,7 @@ class Console {
 int run_alone(const Job& job, coupling::Participant& participant, const Diagnose& diagnose) {
   RunReport run(job);
   diagnostics::Diagnostics diagnostics(job.rank, job.simulation.error_estimate);
+  diagnostics.add("use-of-case", use_of_case(job.comm));
   Observed observed(participant, diagnostics, diagnose);
   OwnCommands command(job, observed, run);
   StepLoop loop(job.comm, job.simulation, coupling::Scheme::standalone, job.checkpoints);
@@ -274,6 +283,7 @@ int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& partici
   const auto start = Clock::now();
   RunReport run(job);
   diagnostics::Diagnostics diagnostics(job.rank, job.simulation.error_estimate);
+  diagnostics.add("use-of-case", use_of_case(job.comm));
   Observed observed(participant, diagnostics, diagnose);
   Bookkeeping books(job, run);
   coupling::ServeObserver observer;

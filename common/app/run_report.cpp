@@ -103,8 +103,7 @@ void RunReport::finish(double wall, const std::string& problem, const diagnostic
                working = parallel::sum(job_.comm, working_);
   const double most = parallel::max(job_.comm, peak_memory()), all = parallel::sum(job_.comm, peak_memory());
   if (job_.rank != 0) return;
-  std::ofstream file(base::own_file(job_.output_folder / summary_file));
-  file << fmt::format(
+  const std::string text = fmt::format(
       "{{\n  \"participant\": {},\n  \"version\": {},\n  \"ranks\": {},\n"
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
       "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"processor-working\": "
@@ -113,6 +112,7 @@ void RunReport::finish(double wall, const std::string& problem, const diagnostic
       quoted(job_.name), quoted(version_text()), parallel::comm_size(job_.comm),
       problem.empty() ? "ended" : "failed", quoted(problem), time_, count_, iterations_, wall, cpu, working,
       most, all, json(errors), json(position), diagnostics::findings_as_json(), phases());
+  base::write_file(job_.output_folder / summary_file, text);
 }
 
 }  // namespace couplet::app

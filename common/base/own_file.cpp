@@ -4,6 +4,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
 #include "common/base/error.hpp"
 
 namespace couplet::base {
@@ -18,11 +23,38 @@ const std::filesystem::path& own_file(const std::filesystem::path& file) {
       std::filesystem::is_symlink(status) ? "a symbolic link, which would lead to another file" : "no file");
 }
 
+namespace {
+
+void expect(bool good, const std::filesystem::path& file) {
+  if (!good) throw Error("Cannot write '{}' ({}). Is the disk full?", file.string(), std::strerror(errno));
+}
+
+/// Waits for the disk. Some file systems cannot flush (EINVAL), which is no failure to write.
+void flush(int file, const std::filesystem::path& name) {
+  expect(::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP, name);
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& file, std::string_view text, bool durable) {
+  const std::filesystem::path part = own_file(file).string() + "~";
+  const int out = ::open(own_file(part).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  expect(out >= 0, file);
+  while (!text.empty()) {
+    const ssize_t n = ::write(out, text.data(), text.size());
+    expect(n > 0 || (n < 0 && errno == EINTR), file);
+    text.remove_prefix(std::size_t(std::max<ssize_t>(n, 0)));
+  }
+  if (durable) flush(out, file);
+  expect(::close(out) == 0, file);
+  expect(std::rename(part.c_str(), file.c_str()) == 0, file);
+}
+
 void flush_to_disk(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY);
-  if (file < 0) return;
-  ::fsync(file);
-  ::close(file);
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  expect(file >= 0, path);
+  flush(file, path);
+  expect(::close(file) == 0, path);
 }
 
 }  // namespace couplet::base

@@ -19,32 +19,32 @@ struct Symbol {
   Unit unit;
 };
 
-constexpr Unit make(double factor, int kg, int m, int s, int K, double offset = 0) {
-  return {factor, offset, {kg, m, s, K}};
+constexpr Unit make(double factor, int kg, int m, int s, int K, int rad, double offset = 0) {
+  return {factor, offset, {kg, m, s, K, rad}};
 }
 
 constexpr Symbol symbols[] = {
-    {"kg", false, make(1, 1, 0, 0, 0)},
-    {"g", true, make(1e-3, 1, 0, 0, 0)},
-    {"t", false, make(1e3, 1, 0, 0, 0)},
-    {"m", true, make(1, 0, 1, 0, 0)},
-    {"l", true, make(1e-3, 0, 3, 0, 0)},
-    {"s", true, make(1, 0, 0, 1, 0)},
-    {"min", false, make(60, 0, 0, 1, 0)},
-    {"h", false, make(3600, 0, 0, 1, 0)},
-    {"day", false, make(86400, 0, 0, 1, 0)},
-    {"N", true, make(1, 1, 1, -2, 0)},
-    {"Pa", true, make(1, 1, -1, -2, 0)},
-    {"bar", true, make(1e5, 1, -1, -2, 0)},
-    {"J", true, make(1, 1, 2, -2, 0)},
-    {"W", true, make(1, 1, 2, -3, 0)},
-    {"Wh", true, make(3600, 1, 2, -2, 0)},
-    {"K", true, make(1, 0, 0, 0, 1)},
-    {"degC", false, make(1, 0, 0, 0, 1, 273.15)},
-    {"Hz", true, make(1, 0, 0, -1, 0)},
-    {"rad", false, make(1, 0, 0, 0, 0)},
-    {"deg", false, make(std::numbers::pi / 180, 0, 0, 0, 0)},
-    {"%", false, make(0.01, 0, 0, 0, 0)},
+    {"kg", false, make(1, 1, 0, 0, 0, 0)},
+    {"g", true, make(1e-3, 1, 0, 0, 0, 0)},
+    {"t", false, make(1e3, 1, 0, 0, 0, 0)},
+    {"m", true, make(1, 0, 1, 0, 0, 0)},
+    {"l", true, make(1e-3, 0, 3, 0, 0, 0)},
+    {"s", true, make(1, 0, 0, 1, 0, 0)},
+    {"min", false, make(60, 0, 0, 1, 0, 0)},
+    {"h", false, make(3600, 0, 0, 1, 0, 0)},
+    {"day", false, make(86400, 0, 0, 1, 0, 0)},
+    {"N", true, make(1, 1, 1, -2, 0, 0)},
+    {"Pa", true, make(1, 1, -1, -2, 0, 0)},
+    {"bar", true, make(1e5, 1, -1, -2, 0, 0)},
+    {"J", true, make(1, 1, 2, -2, 0, 0)},
+    {"W", true, make(1, 1, 2, -3, 0, 0)},
+    {"Wh", true, make(3600, 1, 2, -2, 0, 0)},
+    {"K", true, make(1, 0, 0, 0, 1, 0)},
+    {"degC", false, make(1, 0, 0, 0, 1, 0, 273.15)},
+    {"Hz", true, make(1, 0, 0, -1, 0, 0)},
+    {"rad", false, make(1, 0, 0, 0, 0, 1)},
+    {"deg", false, make(std::numbers::pi / 180, 0, 0, 0, 0, 1)},
+    {"%", false, make(0.01, 0, 0, 0, 0, 0)},
 };
 
 struct Prefix {
@@ -200,7 +200,7 @@ double bare_number(double number, std::string_view text, std::string_view unit) 
               unit);
 }
 
-/// Throws Error if a temperature and a difference, or a frequency and a rotation speed, are confused.
+/// Throws Error if a temperature and a difference are confused.
 void check_kind(const Unit& given, std::string_view given_text, double number, std::string_view text,
                 std::string_view unit) {
   if (unit == kelvin_difference && given.offset != 0)
@@ -208,8 +208,6 @@ void check_kind(const Unit& given, std::string_view given_text, double number, s
         "'{}' is a temperature, but a temperature difference is expected: write {:.10g} K (differences have "
         "the same value in K and degC).",
         text, number);
-  if (unit == "rad/s" && given_text.find("Hz") != std::string_view::npos)
-    throw Error("'{}' is a frequency, but an angular velocity is expected: 1 Hz is 6.2832 rad/s.", text);
   if (unit != "K") return;
   if (given_text == kelvin_difference)
     throw Error("'{}' is a temperature difference, but a temperature is expected.", text);
@@ -221,6 +219,14 @@ void check_kind(const Unit& given, std::string_view given_text, double number, s
 
 Unit parse_unit(std::string_view text) {
   return UnitParser(trim(text) == kelvin_difference ? "K" : trim(text)).parse();
+}
+
+Unit parse_unit(std::string_view text, std::string_view wanted) {
+  const Unit unit = parse_unit(text), target = parse_unit(wanted);
+  if (unit.dimension == target.dimension) return unit;
+  const bool is_turns = target.dimension.back() == 1 && unit.dimension.back() == 0;
+  throw Error("the unit '{}' is not convertible to {}{}.", text, wanted.empty() ? "a plain number" : wanted,
+              is_turns ? " (a turn is 6.2832 rad or 360 deg)" : "");
 }
 
 std::optional<Quantity> split_quantity(std::string_view text) {
@@ -249,15 +255,12 @@ double parse_quantity(std::string_view text, std::string_view unit) {
     throw Error("'{}' contains more than a number ('{}'); expected a plain number.", text, quantity->unit);
   const Unit given = [&] {
     try {
-      return parse_unit(quantity->unit);
+      return parse_unit(quantity->unit, unit);
     } catch (const Error& error) {
       throw Error("'{}': {} Expected {} or a unit convertible to it.", text, error.what(),
                   unit.empty() ? "a plain number" : unit);
     }
   }();
-  if (given.dimension != wanted.dimension)
-    throw Error("'{}': the unit '{}' is not convertible to {}; expected {} or a unit convertible to it.",
-                text, quantity->unit, unit, unit);
   check_kind(given, quantity->unit, quantity->number, text, unit);
   const double si = given.factor * quantity->number + given.offset;
   return (si - wanted.offset) / wanted.factor;

@@ -16,17 +16,21 @@ inline constexpr std::string_view kelvin_difference = "K difference";
 /// degC. Everything else is in SI.
 constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad" || unit == "rad/s"; }
 
-/// Unit: SI value = factor * number + offset; exponents of kg, m, s, K. Angles are plain numbers (rad = 1).
+/// Unit: SI value = factor * number + offset; exponents of kg, m, s, K, rad. Since an angle is no plain number,
+/// 1/min is no speed of rotation and rad/s no frequency.
 struct Unit {
   double factor = 1;
   double offset = 0;  ///< only for degC by itself; inside a product (W/(m degC)) it is a difference
-  std::array<int, 4> dimension{};
-  bool is_number() const { return dimension == std::array<int, 4>{}; }
+  using Dimension = std::array<int, 5>;
+  Dimension dimension{};
+  bool is_number() const { return dimension == Dimension{}; }
 };
 
 /// Parses "MPa", "kg/m^3", "W/(m K)", "kPa s", "1/s", "%"; "" and "1" are plain numbers. SI prefixes are
 /// allowed for g m s N Pa bar J W Wh K Hz l. Throws Error on an unknown symbol, with a suggestion.
 Unit parse_unit(std::string_view text);
+/// Parses a unit that converts to `wanted`. Throws Error otherwise.
+Unit parse_unit(std::string_view text, std::string_view wanted);
 
 /// Number and the text that follows it.
 struct Quantity {

@@ -23,6 +23,24 @@ namespace {
 /// Finds content that yaml-cpp accepts but that later code cannot handle.
 bool is_control(unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c == 127; }
 
+/// Throws Error for a byte that is not part of UTF-8, as in a file in Latin-1.
+void require_utf8(std::string_view text, const std::string& name) {
+  for (std::size_t i = 0, line = 1, begin = 0; i < text.size();) {
+    const auto byte = [&](std::size_t at) {
+      return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
+    };
+    const unsigned c = byte(i);
+    const std::size_t n = c < 0x80 ? 1 : c < 0xC2 ? 0 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : c < 0xF5 ? 4 : 0;
+    bool good = n > 0;
+    for (std::size_t k = 1; k < n; ++k) good = good && (byte(i + k) & 0xC0u) == 0x80;
+    if (!good)
+      throw Error("{}:{}:{}: the byte 0x{:02x} is not text in UTF-8; save the file in this encoding.", name,
+                  line, i - begin + 1, c);
+    i += n;
+    if (c == '\n') ++line, begin = i;
+  }
+}
+
 class Inspection {
  public:
   std::vector<Message> messages;
@@ -217,6 +235,7 @@ Document Document::parse(const std::string& text, const std::string& name) {
   Content& content = *document.content_;
   content.name = name;
   content.text = text;
+  require_utf8(text, name);
   content.root = parse_yaml(text, name);
   Inspection inspection;
   try {
@@ -234,6 +253,7 @@ void Document::set(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw Error("{}: expected key=value, for example --set simulation.end-time='2 s'.", option);
+  require_utf8(assignment, "--set");
   const std::string path(base::trim(assignment.substr(0, equals)));
   if (std::any_of(path.begin(), path.end(), is_control))
     throw Error("{}: the key contains a control character; remove it.", option);
@@ -304,7 +324,7 @@ void collect(const YAML::Node& node, const std::string& path, std::map<std::stri
 
 struct Si {
   double value;
-  std::optional<std::array<int, 4>> dimension;  // of a number with a unit
+  std::optional<base::Unit::Dimension> dimension;  // of a number with a unit
 };
 
 std::optional<Si> in_si(const std::string& text) {

@@ -14,14 +14,16 @@
 namespace couplet::config {
 namespace {
 
-/// Values of table(t, clamp, 0, 0, 2, 300000), which follow their positions. None for a table in a file.
+/// Values of table(t, [clamp|error,] 0, 0, 2, 300000), which follow their positions. None for a table in a
+/// file or of a function.
 std::vector<double> values_of_table(const std::string& text) {
   std::vector<double> values;
-  if (!text.starts_with("table(") || !text.ends_with(")")) return values;
+  if (!text.starts_with("table(") || text.find_first_of("()", 6) != text.size() - 1) return values;
   const std::vector<std::string> parts = base::split(text.substr(6, text.size() - 7), ',');
-  for (std::size_t i = 3; i < parts.size(); i += 2) {
+  const std::size_t first = parts.size() > 1 && !base::split_quantity(parts[1]) ? 3 : 2;
+  for (std::size_t i = first; i < parts.size(); i += 2) {
     const auto number = base::split_quantity(parts[i]);
-    if (!number || !number->unit.empty()) return {};
+    if (!number || !number->unit.empty() || !base::split_quantity(parts[i - 1])) return {};
     values.push_back(number->number);
   }
   return values;

@@ -32,6 +32,7 @@ Key::~Key() noexcept(false) {
 Key& Key::unit(std::string_view si_unit) {
   base::parse_unit(si_unit);
   declaration_.facts.unit = si_unit;
+  if (si_unit == "K") declaration_.facts.lowest = 0;
   return *this;
 }
 Key& Key::required() {

@@ -20,10 +20,29 @@ namespace couplet::config {
 
 class Section;
 
+/// Properties of a key, and name and documentation of other declarations.
+struct KeyFacts {
+  std::string name{}, unit{}, doc{};
+  bool required = false;
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool open_lowest = false;
+  std::optional<std::size_t> size{};
+  std::optional<std::pair<double, double>> plausible{};  ///< of magnitudes
+  std::string any_magnitude{};                           ///< reason
+  bool contain(double value) const {
+    return (open_lowest ? value > lowest : value >= lowest) && value <= highest;
+  }
+};
+
+/// Text "above 0 Pa", "from 0 to 0.5", "at most 3". Empty without limits.
+std::string describe_range(const KeyFacts& facts);
+
 /// Number, expression in x, y, z, t (muParser syntax) or table as text. See fv/expression.hpp for evaluation,
 /// fv/table.hpp for tables.
 struct ExpressionText {
   std::string text = "0";
+  KeyFacts key{};  ///< unit and range of the values
 };
 
 /// Word of a fixed list, as seen by a visitor.
@@ -37,18 +56,6 @@ using Slot = std::variant<double*, int*, bool*, std::string*, ExpressionText*, V
                           std::vector<std::string>*, std::vector<ExpressionText>*, std::optional<double>*,
                           std::optional<std::string>*, std::optional<ExpressionText>*,
                           std::map<std::string, double>*, Word>;
-
-/// Properties of a key, and name and documentation of other declarations.
-struct KeyFacts {
-  std::string name, unit, doc;
-  bool required = false;
-  double lowest = -std::numeric_limits<double>::infinity();
-  double highest = std::numeric_limits<double>::infinity();
-  bool open_lowest = false;
-  std::optional<std::size_t> size;
-  std::optional<std::pair<double, double>> plausible;  ///< of magnitudes
-  std::string any_magnitude;                           ///< reason
-};
 
 /// Declaration that a Section passes to its visitor.
 struct Declaration {

@@ -20,6 +20,14 @@ namespace couplet::config {
 
 namespace {
 
+using Facts = Key::Facts;
+
+void check_range(double value, const Facts& facts) {
+  if (!facts.contain(value))
+    throw Error("{:.10g}{} is out of range; expected a value {}.", value,
+                facts.unit.empty() ? "" : " " + facts.unit, describe_range(facts));
+}
+
 struct Axis {
   const char *name, *unit, *expression;
 };
@@ -46,14 +54,15 @@ std::string word(const YAML::Node& node, const char* key) {
   return value.Scalar();
 }
 
-std::vector<double> numbers(const YAML::Node& node, const char* key, std::string_view unit) {
+std::vector<double> numbers(const YAML::Node& node, const char* key, const Key::Facts& facts) {
   const YAML::Node list = node[key];
   if (!list || !list.IsSequence()) throw Error("a table needs 'at' and 'values' as lists, or a 'file'.");
   std::vector<double> result;
   for (std::size_t i = 0; i < list.size(); ++i) {
     try {
       if (!list[i].IsScalar()) throw Error("expected a number.");
-      result.push_back(base::parse_quantity(list[i].Scalar(), unit));
+      result.push_back(base::parse_quantity(list[i].Scalar(), facts.unit));
+      check_range(result.back(), facts);
     } catch (const Error& e) {
       throw Error("{}, entry {} of the list: {}", key, i + 1, e.what());
     }
@@ -90,7 +99,8 @@ std::string table_text(const YAML::Node& node, const Key::Facts& facts, const st
     return text + ")";
   }
   if (node["column"]) throw Error("'column' requires 'file'.");
-  const std::vector<double> at = numbers(node, "at", axis.unit), values = numbers(node, "values", facts.unit);
+  const std::vector<double> at = numbers(node, "at", {.unit = axis.unit}),
+                            values = numbers(node, "values", facts);
   if (at.size() != values.size())
     throw Error("a table needs one value per point; {} points and {} values are given.", at.size(),
                 values.size());
@@ -117,19 +127,9 @@ std::string with_absolute_files(const std::string& text, const std::filesystem::
   return result + text.substr(from);
 }
 
-using Facts = Key::Facts;
-
 std::string example(const Facts& facts) {
   if (base::needs_unit(facts.unit)) return fmt::format("a number with its unit, such as {}", facts.unit);
   return facts.unit.empty() ? "a number" : fmt::format("a number in {} or with its unit", facts.unit);
-}
-
-void check_range(double value, const Facts& facts) {
-  const bool good =
-      (facts.open_lowest ? value > facts.lowest : value >= facts.lowest) && value <= facts.highest;
-  if (!good)
-    throw Error("{:.10g}{} is out of range; expected a value {}.", value,
-                facts.unit.empty() ? "" : " " + facts.unit, describe_range(facts));
 }
 
 const std::string& scalar(const YAML::Node& node, const std::string& expected) {
@@ -177,7 +177,7 @@ bool is_unit(const std::string& text) {
 /// Converts a number with a unit to the key's unit. Anything else is an expression in that unit.
 ExpressionText read_expression(const YAML::Node& node, const Facts& facts,
                                const std::filesystem::path& folder) {
-  if (node.IsMap()) return {table_text(node, facts, folder)};
+  if (node.IsMap()) return {table_text(node, facts, folder), facts};
   const std::string& text = scalar(
       node, facts.unit.empty() ? "a number or an expression in x, y, z, t"
                                : fmt::format("a number in {0}, with its unit, or an expression in x, y, z, "
@@ -187,10 +187,10 @@ ExpressionText read_expression(const YAML::Node& node, const Facts& facts,
   const bool is_expression =
       !quantity || (!quantity->unit.empty() && !is_unit(quantity->unit) &&
                     quantity->unit.find_first_of("+-*/^()<>=?:,&|!") != std::string::npos);
-  if (is_expression) return {with_absolute_files(text, folder)};
+  if (is_expression) return {with_absolute_files(text, folder), facts};
   const double value = base::parse_quantity(text, facts.unit);
   check_range(value, facts);
-  return {fmt::format("{}", value)};
+  return {fmt::format("{}", value), facts};
 }
 
 template <class Read>
@@ -217,6 +217,17 @@ std::string list_of(const Facts& facts, const std::string& things) {
   std::string text =
       facts.size ? fmt::format("a list of {} {}", *facts.size, things) : fmt::format("a list of {}", things);
   return facts.unit.empty() ? text : fmt::format("{} in {} or with their units", text, facts.unit);
+}
+
+std::string read_text(const YAML::Node& node) { return scalar(node, "a text"); }
+
+/// Reads a list of names, each of which may stand in it once: a wall listed twice would count twice.
+std::vector<std::string> read_texts(const YAML::Node& node, const Facts& facts) {
+  std::vector<std::string> texts = read_list(node, facts, list_of(facts, "texts"), read_text);
+  for (auto entry = texts.begin(); entry != texts.end(); ++entry)
+    if (std::find(texts.begin(), entry, *entry) != entry)
+      throw Error("'{}' is listed twice; remove one of the two.", *entry);
+  return texts;
 }
 
 Vec3 read_vector(const YAML::Node& node, const Facts& facts) {
@@ -264,31 +275,29 @@ std::string quoted(const std::string& text) {
 
 void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot,
                 const std::filesystem::path& folder) {
-  const auto text = [](const YAML::Node& n) { return scalar(n, "a text"); };
-  std::visit(
-      Overloaded{
-          [&](double* v) { *v = read_number(node, facts); },
-          [&](int* v) { *v = read_integer(node, facts); },
-          [&](bool* v) { *v = read_bool(node); },
-          [&](std::string* v) { *v = text(node); },
-          [&](ExpressionText* v) { *v = read_expression(node, facts, folder); },
-          [&](Vec3* v) { *v = read_vector(node, facts); },
-          [&](std::vector<double>* v) {
-            *v = read_list(node, facts, list_of(facts, "numbers"),
-                           [&](const YAML::Node& n) { return read_number(n, facts); });
-          },
-          [&](std::vector<std::string>* v) { *v = read_list(node, facts, list_of(facts, "texts"), text); },
-          [&](std::vector<ExpressionText>* v) {
-            *v = read_list(node, facts, list_of(facts, "numbers or expressions"),
-                           [&](const YAML::Node& n) { return read_expression(n, facts, folder); });
-          },
-          [&](std::optional<double>* v) { *v = read_number(node, facts); },
-          [&](std::optional<std::string>* v) { *v = text(node); },
-          [&](std::optional<ExpressionText>* v) { *v = read_expression(node, facts, folder); },
-          [&](std::map<std::string, double>* v) { *v = read_named_numbers(node, facts); },
-          [&](const Word& v) { v.set(read_word(node, v)); },
-      },
-      slot);
+  std::visit(Overloaded{
+                 [&](double* v) { *v = read_number(node, facts); },
+                 [&](int* v) { *v = read_integer(node, facts); },
+                 [&](bool* v) { *v = read_bool(node); },
+                 [&](std::string* v) { *v = read_text(node); },
+                 [&](ExpressionText* v) { *v = read_expression(node, facts, folder); },
+                 [&](Vec3* v) { *v = read_vector(node, facts); },
+                 [&](std::vector<double>* v) {
+                   *v = read_list(node, facts, list_of(facts, "numbers"),
+                                  [&](const YAML::Node& n) { return read_number(n, facts); });
+                 },
+                 [&](std::vector<std::string>* v) { *v = read_texts(node, facts); },
+                 [&](std::vector<ExpressionText>* v) {
+                   *v = read_list(node, facts, list_of(facts, "numbers or expressions"),
+                                  [&](const YAML::Node& n) { return read_expression(n, facts, folder); });
+                 },
+                 [&](std::optional<double>* v) { *v = read_number(node, facts); },
+                 [&](std::optional<std::string>* v) { *v = read_text(node); },
+                 [&](std::optional<ExpressionText>* v) { *v = read_expression(node, facts, folder); },
+                 [&](std::map<std::string, double>* v) { *v = read_named_numbers(node, facts); },
+                 [&](const Word& v) { v.set(read_word(node, v)); },
+             },
+             slot);
 }
 
 std::string unknown_key(std::string_view name, const std::vector<std::string>& known) {

@@ -15,9 +15,6 @@ namespace couplet::config {
 void read_value(const YAML::Node& node, const Key::Facts& facts, const Slot& slot,
                 const std::filesystem::path& folder = {});
 
-/// Text "above 0 Pa", "from 0 to 0.5", "at most 3". Empty without limits.
-std::string describe_range(const Key::Facts& facts);
-
 /// Text "unknown key. Did you mean ...?", or the location where this program expects the key.
 std::string unknown_key(std::string_view name, const std::vector<std::string>& known);
 

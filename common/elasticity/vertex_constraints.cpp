@@ -30,11 +30,11 @@ std::vector<Vec3> directions_above(const Tensor3& tensor, double threshold) {
 class VertexConstraints::Known {
  public:
   /// Adds b . u = b . g_face for a unit vector b, or g = 0 if face < 0. With the part r of b outside the
-  /// known directions, r . u = b . (g_face - g so far).
-  void add(const Vec3& b, Index face) {
+  /// known directions, r . u = b . (g_face - g so far). Returns false if b was known already.
+  bool add(const Vec3& b, Index face) {
     const Vec3 across = b - q * b;
     const double size = across.norm();
-    if (size < new_direction) return;
+    if (size < new_direction) return false;
     const Tensor3 solve = across / (size * size) * b.transpose();
     for (Source& s : sources) s.share -= solve * s.share;
     if (face >= 0) {
@@ -45,6 +45,7 @@ class VertexConstraints::Known {
         sources.push_back({face, solve});
     }
     q += across * across.transpose() / (size * size);
+    return true;
   }
 
   Tensor3 q = Tensor3::Zero();
@@ -75,10 +76,11 @@ void VertexConstraints::constrain(Index point, std::span<const Index> faces, con
   Known known;
   if (mesh.dim == 2) known.q(2, 2) = 1;
   for (const Index b : ordered)
-    if (boundary[b].fixed) {
+    if (boundary[b].fixed && known.sources.empty()) {
       known.q = Tensor3::Identity();
       known.sources.push_back({b, Tensor3::Identity()});
-      return store(point, known);
+    } else if (boundary[b].fixed) {
+      repeated_.push_back({point, b, Tensor3::Identity()});
     }
   for (auto first = ordered.begin(); first != ordered.end();) {
     const auto last = std::find_if(first, ordered.end(),
@@ -93,9 +95,14 @@ void VertexConstraints::constrain(Index point, std::span<const Index> faces, con
       if (p.trace() > most + 0.5) source = *b, most = p.trace();
     }
     if (source >= 0)
-      for (const Vec3& b : directions_above(mean, agreed)) known.add(b, source);
+      for (const Vec3& b : directions_above(mean, agreed))
+        if (!known.add(b, source)) repeated_.push_back({point, source, b * b.transpose()});
     first = last;
   }
+  for (const Index b : ordered)
+    if (const Tensor3& across = boundary[b].known;
+        boundary[b].mirrored && (across - known.q * across).norm() < new_direction)
+      repeated_.push_back({point, b, across});
   for (const Vec3& n : directions_above(Tensor3::Identity() - symmetry, 0.5)) known.add(n, -1);
   if (known.q.trace() > (mesh.dim == 2 ? 1.5 : 0.5)) store(point, known);
 }

@@ -27,6 +27,13 @@ class VertexConstraints {
     Tensor3 share;  ///< G_j
   };
 
+  /// Face whose condition knows directions of a point that others have already made known.
+  struct Repeated {
+    Index point;
+    Index face;     ///< entry of mesh.boundary
+    Tensor3 along;  ///< projector on these directions
+  };
+
   VertexConstraints(const mesh::Mesh& mesh, const ElasticBoundary& boundary,
                     const fv::VertexInterpolation& vertices);
 
@@ -37,6 +44,7 @@ class VertexConstraints {
   /// Points with a known value g_V (not those only on symmetry planes), ascending. Entry i is column i.
   const std::vector<Index>& points() const { return points_; }
   Index column(Index point) const { return column_[point]; }  ///< -1 if there is no value
+  const std::vector<Repeated>& repeated() const { return repeated_; }
   std::span<const Source> sources(Index column) const {
     return {sources_.data() + offset_[column], std::size_t(offset_[column + 1] - offset_[column])};
   }
@@ -53,6 +61,7 @@ class VertexConstraints {
   std::vector<Index> points_, column_;
   std::vector<Index> offset_{0};
   std::vector<Source> sources_;
+  std::vector<Repeated> repeated_;
 };
 
 }  // namespace couplet::elastic

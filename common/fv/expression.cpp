@@ -4,38 +4,110 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/units.hpp"
 #include "common/fv/table.hpp"
+#include "common/fv/use.hpp"
 
 namespace couplet::fv {
 namespace {
 
-double value_in_table(void* table, double at) { return (*static_cast<const Table*>(table))(at); }
+/// Table of an expression, and its use in the run; nullptr while the text is only checked.
+struct TableInUse {
+  const Table* table;
+  Use* use = nullptr;
+};
+
+double value_in_table(void* data, double at) {
+  const auto& [table, use] = *static_cast<const TableInUse*>(data);
+  if (use) use->note(at);
+  return (*table)(at);
+}
+
+/// Plain numbers in a text, such as the ends of a pulse in "t > 0.1021 && t < 0.1023".
+std::vector<double> numbers_in(std::string_view text) {
+  std::vector<double> numbers;
+  const auto in_number = [&](std::size_t i) {
+    return std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '.' || text[i] == '_';
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!in_number(i) || (i > 0 && in_number(i - 1))) continue;
+    if (const auto quantity = base::split_quantity(text.substr(i))) numbers.push_back(quantity->number);
+  }
+  return numbers;
+}
+
+/// Rejects what muParser reads in another way than a reader of the docs: a comma outside the arguments of a
+/// function (1,5 is 5), an assignment, and comparisons in a row (0 < x < 1 compares 0 or 1 with 1).
+void refuse_other_meanings(const std::string& text) {
+  struct Level {
+    bool takes_commas = false, compares = false;
+  };
+  std::vector<Level> levels(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto is = [&](std::size_t at, std::string_view set) {
+      return at < text.size() && set.find(text[at]) != std::string_view::npos;
+    };
+    const std::size_t before = i == 0 ? std::string::npos : text.find_last_not_of(' ', i - 1);
+    if (text[i] == '(') {
+      levels.push_back({before != std::string::npos &&
+                        (std::isalnum(static_cast<unsigned char>(text[before])) || text[before] == '_')});
+    } else if (text[i] == ')' && levels.size() > 1) {
+      levels.pop_back();
+    } else if (text[i] == ',' && !levels.back().takes_commas) {
+      throw TextProblem{i, "a comma separates the arguments of a function only; write a decimal point"};
+    } else if (is(i, ",?:") || (is(i, "&|") && is(i + 1, "&|"))) {
+      levels.back().compares = false;
+    } else if (is(i, "<>=!")) {
+      const bool two = is(i + 1, "=");
+      if (text[i] == '=' && !two)
+        throw TextProblem{
+            i,
+            "'=' does not compare, and nothing can be assigned; write '==', or a range such as abs(y - 0.1) < 1e-6"};
+      if (std::exchange(levels.back().compares, true))
+        throw TextProblem{i, "comparisons in a row; join them by '&&', as in '0 < x && x < 1'"};
+      i += two;
+    }
+  }
+}
 
 }  // namespace
 
 // muParser binds variables by address, so they are in one block with the parser that never moves.
 struct Expression::State {
   std::string text = "0", where;
+  config::KeyFacts key;
   std::deque<Table> tables;
+  std::deque<TableInUse> tables_in_use;
   mu::Parser parser;
   std::array<double, 4> xyzt{};
   bool uses_time = false, uses_space = false;
   double constant = 0;
+  // In the run: null while the text is only checked.
+  Use* use = nullptr;
+  double last_time = std::numeric_limits<double>::quiet_NaN();
+  Vec3 place = Vec3::Zero();     // of the largest value
+  std::vector<double> instants;  // at which it may jump
 
   State() = default;
-  State(std::string source, std::string place) : text(std::move(source)), where(std::move(place)) {
+  State(const config::ExpressionText& source, std::string place)
+      : text(source.text), where(std::move(place)), key(source.key) {
     static constexpr std::array<const char*, 4> names{"x", "y", "z", "t"};
     try {
       for (std::size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &xyzt[i]);
       parser.DefineConst("pi", std::numbers::pi);
-      parser.SetExpr(take_tables(text, tables));
+      const std::string calls = take_tables(text, tables, key.unit);
+      refuse_other_meanings(calls);
+      parser.SetExpr(calls);
       for (std::size_t i = 0; i < tables.size(); ++i)
-        parser.DefineFunUserData(fmt::format("tab{:02}", i), value_in_table, &tables[i]);
+        parser.DefineFunUserData(fmt::format("tab{:02}", i), value_in_table,
+                                 &tables_in_use.emplace_back(&tables[i]));
       const auto used = parser.GetUsedVar();
       uses_time = used.contains("t");
       uses_space = used.contains("x") || used.contains("y") || used.contains("z");
@@ -48,7 +120,42 @@ struct Expression::State {
       if (problem.is_sentence) throw Error("{}{}", where.empty() ? "" : where + ": ", problem.what);
       fail(problem.at + 1, problem.what);
     }
-    if (!uses_time && !uses_space) require_finite(constant);
+    if (!uses_time && !uses_space) require_possible(constant);
+    if (where.empty() || !(uses_time || uses_space)) return;
+    use = &uses()[where];
+    use->given = fmt::format("'{}'", text);
+    use->key = key;
+    if (uses_time) instants = numbers_in(text);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      Use& of_table = *(tables_in_use[i].use = &uses()[fmt::format("{}, table {}", where, i + 1)]);
+      of_table.kind = Use::Kind::table;
+      of_table.from = tables[i].at().front();
+      of_table.to = tables[i].at().back();
+    }
+  }
+
+  /// Looks for values between the last time and `t` that no step sees: a pulse, or a period near the step. They
+  /// are looked for at the place of the largest value.
+  void look_between(double t) {
+    const double before = std::exchange(last_time, t);
+    if (!(t > before)) return;
+    const auto value_at = [&](double time) {
+      xyzt = {place[0], place[1], place[2], time};
+      return parser.Eval();
+    };
+    constexpr int n = 7;
+    std::vector<double> times{before};
+    for (int i = 1; i < n; ++i) times.push_back(before + (t - before) * (i + 0.3) / n);
+    for (const double instant : instants)
+      if (instant > before && instant < t) times.push_back(instant);
+    times.push_back(t);
+    std::ranges::sort(times);
+    const auto [low, high] = std::minmax({value_at(before), value_at(t)});
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      const double middle = 0.5 * (times[i - 1] + times[i]), value = value_at(middle),
+                   unseen = std::max(value - high, low - value);
+      if (unseen > use->unseen) use->unseen = unseen, use->unseen_at = middle;
+    }
   }
 
   std::size_t column_of(const mu::Parser::exception_type& e) const {
@@ -75,24 +182,35 @@ struct Expression::State {
     fail(found == std::string::npos ? 1 : found + 1, "unknown name '" + name + "'");
   }
 
-  void require_finite(double value) const {
-    if (std::isfinite(value)) return;
-    throw Error(
-        "{}the expression '{}' yields {} at x = {:g}, y = {:g}, z = {:g}, t = {:g}; it must be finite.",
-        where.empty() ? "" : where + ": ", text, value, xyzt[0], xyzt[1], xyzt[2], xyzt[3]);
+  /// Throws Error if the value is not finite or outside the range of its key.
+  void require_possible(double value) const {
+    if (std::isfinite(value) && key.contain(value)) return;
+    throw Error("{}the expression '{}' yields {} at x = {:g}, y = {:g}, z = {:g}, t = {:g}; it must be {}.",
+                where.empty() ? "" : where + ": ", text, base::format_quantity(value, key.unit), xyzt[0],
+                xyzt[1], xyzt[2], xyzt[3], std::isfinite(value) ? config::describe_range(key) : "finite");
   }
 
   double at(const Vec3& x, double t) {
+    if (use && uses_time && t != last_time) look_between(t);
     xyzt = {x[0], x[1], x[2], t};
     const double value = parser.Eval();
-    require_finite(value);
+    require_possible(value);
+    if (use) {
+      if (!use->is_used() || std::abs(value) > use->largest()) place = x;
+      use->note(value);
+    }
     return value;
   }
 };
 
+std::map<std::string, Use>& uses() {
+  static std::map<std::string, Use> all;
+  return all;
+}
+
 Expression::Expression() : state_(std::make_unique<State>()) {}
 Expression::Expression(const config::ExpressionText& text, std::string where)
-    : state_(std::make_unique<State>(text.text, std::move(where))) {}
+    : state_(std::make_unique<State>(text, std::move(where))) {}
 Expression::Expression(double constant) : state_(std::make_unique<State>()) {
   state_->text = fmt::format("{}", constant);
   state_->constant = constant;

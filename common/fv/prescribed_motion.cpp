@@ -85,7 +85,9 @@ PrescribedMotion::PrescribedMotion(const MotionParameters& parameters, int dim)
     : parameters_(parameters),
       translation_(expressions(parameters.translation, dim, "motion.translation")),
       displacement_(expressions(parameters.displacement, dim, "motion.displacement")),
-      angle_(parameters.angle, "motion.angle") {
+      angle_(parameters.angle, "motion.angle"),
+      use_(&uses()["motion"]) {
+  use_->given = "the motion, which moves points,";
   const auto refuse = [](const Expression& e, const char* key) {
     if (e.uses_space())
       throw Error(
@@ -122,6 +124,7 @@ std::vector<Vec3> PrescribedMotion::places(std::span<const Vec3> reference, doub
   std::vector<Vec3> moved(reference.begin(), reference.end());
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const double s = share(reference[i]);
+    use_->note(s);
     if (s == 0) continue;
     Vec3 shift = translation;
     if (!field.empty()) shift += field[i];

@@ -7,6 +7,7 @@
 
 #include "common/config/section.hpp"
 #include "common/fv/expression.hpp"
+#include "common/fv/use.hpp"
 
 namespace couplet::fv {
 
@@ -54,6 +55,7 @@ class PrescribedMotion {
   MotionParameters parameters_;
   std::vector<Expression> translation_, displacement_;
   Expression angle_;
+  Use* use_;
 };
 
 }  // namespace couplet::fv

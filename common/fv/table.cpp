@@ -46,15 +46,17 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
                             : base::did_you_mean(column, names, "columns"));
 }
 
-/// Throws Error if a name ends with a unit in round brackets, which would be ignored.
+/// Throws Error if a name ends with round brackets that may hold a unit: a known one as in "p(Pa)", or one word
+/// after a blank as in "p (psi)". It would be ignored.
 void check_brackets(const csv::CsvReader& rows, const std::string& name) {
   const std::size_t open = name.rfind('(');
   if (!name.ends_with(')') || open == std::string::npos) return;
   const std::string unit(base::trim(std::string_view(name).substr(open + 1, name.size() - open - 2)));
+  const bool is_word = open > 0 && name[open - 1] == ' ' && unit.find(' ') == std::string::npos;
   try {
-    base::parse_unit(unit);
+    if (!is_word) base::parse_unit(unit);
   } catch (const Error&) {
-    return;  // e.g. y(t)
+    return;  // e.g. y(x)
   }
   if (!unit.empty() && !csv::number_of(unit))
     throw Error("{}: '{}' has its unit in round brackets, where it is not read. Write '{}[{}]'.",
@@ -153,7 +155,7 @@ Property::Property(const config::ExpressionText& text, const std::string& where)
   std::deque<Table> tables;
   std::string rest;
   try {
-    rest = take_tables(text.text, tables);
+    rest = take_tables(text.text, tables, text.key.unit);
   } catch (const TextProblem& problem) {
     if (problem.is_sentence) throw Error("{}{}", place, problem.what);
     throw Error("{}cannot parse '{}' at column {}: {}.", place, text.text, problem.at + 1, problem.what);
@@ -165,21 +167,21 @@ Property::Property(const config::ExpressionText& text, const std::string& where)
         "{}'{}' is neither a number nor a table of the temperature, such as {{of: T, at: [300 K, 600 K], "
         "values: [210 GPa, 180 GPa]}}.",
         place, text.text);
+  for (const double value : tables.front().values())
+    if (!text.key.contain(value))
+      throw Error("{}{} is out of range in a table; expected a value {}.", place,
+                  base::format_quantity(value, text.key.unit), config::describe_range(text.key));
   table_.push_back(std::move(tables.front()));
+  use_ = &uses()[fmt::format("{} {}", where, text.text)];
+  use_->kind = Use::Kind::property;
+  use_->from = table_[0].at().front();
+  use_->to = table_[0].at().back();
 }
 
-double Property::lowest() const {
-  return is_constant() ? constant_ : *std::ranges::min_element(table_[0].values());
-}
-
-double Property::highest() const {
-  return is_constant() ? constant_ : *std::ranges::max_element(table_[0].values());
-}
-
-std::string problem_of_property(const config::ExpressionText& text, double above) {
+std::string problem_of_property(const config::ExpressionText& text) {
   try {
     const Property property(text, "");
-    return property.lowest() > above ? std::string() : fmt::format("values must be above {:g}", above);
+    return "";
   } catch (const Error& e) {
     return e.what();
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/fv/use.hpp"
 
 namespace couplet::fv {
 
@@ -60,35 +61,41 @@ struct TextProblem {
 
 /// Replaces the calls table(variable, [clamp|error,] x0, y0, x1, y1, ...) and table(variable, [clamp|error,]
 /// "file.csv"[, column]) by tabNN(variable), padded with blanks to keep positions. Appends table number NN to
-/// `tables`. Throws TextProblem, also if the unit in a file's header does not match.
-std::string take_tables(const std::string& text, std::deque<Table>& tables);
+/// `tables`. Throws TextProblem, also if the unit in a file's header does not match, of the values that of the
+/// key (if known).
+std::string take_tables(const std::string& text, std::deque<Table>& tables, std::string_view unit);
 
 /// Material property: a number, or a table of the temperature T: "table(T, 300, 210e9, 600, 180e9)".
 class Property final {
  public:
   Property(double constant = 0) : constant_(constant) {}  // NOLINT: a number is a property
-  /// Throws Error with `where`.
+  /// Throws Error with `where`, also for values outside the range of the key.
   Property(const config::ExpressionText& text, const std::string& where);
 
   bool is_constant() const { return table_.empty(); }
-  double operator()(double temperature) const { return is_constant() ? constant_ : table_[0](temperature); }
+  double operator()(double temperature) const {
+    if (is_constant()) return constant_;
+    use_->note(temperature);
+    return table_[0](temperature);
+  }
   double integral(double from, double to) const {
-    return is_constant() ? constant_ * (to - from) : table_[0].integral(from, to);
+    if (is_constant()) return constant_ * (to - from);
+    use_->note(from);
+    use_->note(to);
+    return table_[0].integral(from, to);
   }
   /// Integral from an arbitrary fixed temperature; only differences are meaningful.
   double antiderivative(double temperature) const {
     return is_constant() ? constant_ * temperature : table_[0].antiderivative(temperature);
   }
-  /// Smallest and largest value of the property.
-  double lowest() const;
-  double highest() const;
 
  private:
   double constant_ = 0;
   std::vector<Table> table_;  // empty if constant
+  Use* use_ = nullptr;        // of the table in this run
 };
 
-/// Problem of the text of a property that must stay above `above`. Empty if it is valid.
-std::string problem_of_property(const config::ExpressionText& text, double above);
+/// Problem of the text of a property, such as a value outside the range of its key. Empty if it is valid.
+std::string problem_of_property(const config::ExpressionText& text);
 
 }  // namespace couplet::fv

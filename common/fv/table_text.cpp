@@ -100,46 +100,45 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   }
 }
 
-/// Factor and offset of a header's unit. Empty for unknown ones ("[-]", "[cells]").
-std::optional<base::Unit> unit_of(const std::string& text) {
+/// Returns true if numbers under this heading are in `unit`, or if the heading has no unit. One that is not
+/// known ("psi") is another. An empty `unit` means any in SI.
+bool is_in_unit(const std::string& heading, std::string_view unit) {
+  if (heading.empty() || heading == "-" || heading == unit) return true;
   try {
-    return base::parse_unit(text);
+    const base::Unit given = unit.empty() ? base::parse_unit(heading) : base::parse_unit(heading, unit);
+    return given.factor == (unit.empty() ? 1 : base::parse_unit(unit).factor) && given.offset == 0;
   } catch (const Error&) {
-    return {};
+    return false;
   }
 }
 
-/// Rejects a header unit that cannot be converted to SI. The numbers of a file are used unchanged, so they
-/// must be in SI if the variable is bare or the table is the whole value.
-void check_units(const Table& table, const std::string& variable, bool is_whole_value, std::size_t at) {
-  static const std::map<std::string, std::string> unit_of_variable{{"x", "m"}, {"y", "m"}, {"z", "m"},
-                                                                   {"r", "m"}, {"t", "s"}, {"T", "K"}};
+/// Rejects a header in another unit. The numbers of a file are used unchanged, so they must be in SI if the
+/// variable is bare, and in the unit of the key if the table is the whole value.
+void check_units(const Table& table, const std::string& variable, std::optional<std::string_view> unit,
+                 std::size_t at) {
+  static const std::map<std::string, std::string> unit_of_variable{
+      {"x", "m"}, {"y", "m"}, {"z", "m"}, {"sqrt(x^2 + y^2)", "m"}, {"t", "s"}, {"T", "K"}};
   const auto known = unit_of_variable.find(variable);
-  if (const auto unit = unit_of(table.units().axis);
-      unit && !table.units().axis.empty() && known != unit_of_variable.end()) {
-    const base::Unit wanted = base::parse_unit(known->second);
-    if (unit->dimension != wanted.dimension || unit->factor != wanted.factor || unit->offset != 0)
-      throw TextProblem{
-          at,
-          fmt::format(
-              "{}: the first column is in '{}', but '{}' is in {}. Convert the column, or write the variable "
-              "in its unit, such as table(t/3600, \"file.csv\") for hours.",
-              table.where(), table.units().axis, variable, known->second),
-          true};
-  }
-  if (const auto unit = unit_of(table.units().value);
-      is_whole_value && unit && (unit->factor != 1 || unit->offset != 0))
+  if (known != unit_of_variable.end() && !is_in_unit(table.units().axis, known->second))
     throw TextProblem{
         at,
-        fmt::format("{}: the values are in '{}', but a table's values are taken in SI units. Convert "
+        fmt::format(
+            "{}: the first column is in '{}', but '{}' is in {}. Convert the column, or write the variable "
+            "in its unit, such as table(t/3600, \"file.csv\") for hours.",
+            table.where(), table.units().axis, variable, known->second),
+        true};
+  if (unit && !is_in_unit(table.units().value, *unit))
+    throw TextProblem{
+        at,
+        fmt::format("{}: the values are in '{}', but a table's values are taken in {}. Convert "
                     "the column, or scale it, such as \"1e5*table(t, \\\"file.csv\\\")\" for bar.",
-                    table.where(), table.units().value),
+                    table.where(), table.units().value, unit->empty() ? "SI units" : *unit),
         true};
 }
 
 }  // namespace
 
-std::string take_tables(const std::string& text, std::deque<Table>& tables) {
+std::string take_tables(const std::string& text, std::deque<Table>& tables, std::string_view unit) {
   std::string rest = text;
   for (std::size_t begin = last_call(rest); begin != std::string::npos; begin = last_call(rest)) {
     if (tables.size() == most_tables) throw TextProblem{begin, "there are more than 100 tables", false};
@@ -149,7 +148,7 @@ std::string take_tables(const std::string& text, std::deque<Table>& tables) {
     std::string call = fmt::format("tab{:02}({}", tables.size() - 1, arguments[0].text);
     call.resize(close - begin, ' ');
     const bool is_whole_value = rest.find_first_not_of(" (") == begin && rest.find_last_not_of(" )") < close;
-    check_units(tables.back(), arguments[0].text, is_whole_value, begin);
+    check_units(tables.back(), arguments[0].text, is_whole_value ? std::optional(unit) : std::nullopt, begin);
     rest.replace(begin, close - begin, call);
   }
   return rest;

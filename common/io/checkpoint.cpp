@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <exception>
 #include <optional>
 
 #include "common/base/own_file.hpp"
@@ -20,7 +19,6 @@ struct CheckpointWriter::State {
   std::filesystem::path file, part;
   hdf5::Handle id;
   std::optional<mesh::OrderOfEntries> orders;
-  int exceptions = std::uncaught_exceptions();
 
   void require_new(const std::string& path, const std::string& name) const {
     if (hdf5::exists(id, path))
@@ -100,11 +98,6 @@ CheckpointWriter::CheckpointWriter(StateInMemory& memory) : memory_(&memory) {}
 
 CheckpointWriter::~CheckpointWriter() {
   if (memory_ || state_->id < 0) return;
-  // Closing a file is collective. It must not happen during unwinding, when the other ranks may be elsewhere.
-  if (std::uncaught_exceptions() > state_->exceptions) {
-    state_->id.release();
-    return;
-  }
   state_->id.reset();
   std::error_code ignored;
   if (parallel::comm_rank(state_->comm) == 0) std::filesystem::remove(state_->part, ignored);
@@ -160,15 +153,7 @@ void CheckpointWriter::write_scalar(const std::string& name, double value) {
 
 void CheckpointWriter::close() {
   if (memory_ || state_->id < 0) return;
-  std::string trouble;  // closing uses MPI
-  try {
-    hdf5::close_file(state_->id);
-  } catch (const Error& error) {
-    trouble =
-        fmt::format("Cannot write the checkpoint '{}' ({}). The last good one is kept; is the disk full?",
-                    state_->file.string(), error.what());
-  }
-  parallel::throw_together(state_->comm, trouble);
+  hdf5::close_file(state_->comm, state_->id, state_->file);
   parallel::on_root(state_->comm, [&] {
     base::flush_to_disk(state_->part);
     std::error_code code;

@@ -126,22 +126,6 @@ std::optional<CheckpointSet> parse_list(const std::string& text) {
   return set;
 }
 
-void write_in_place(const fs::path& file, const std::string& text) {
-  const fs::path part = file.string() + "~";
-  base::own_file(file);
-  std::ofstream stream(base::own_file(part), std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code failed;
-  if (stream) {
-    base::flush_to_disk(part);
-    fs::rename(part, file, failed);
-  }
-  if (!stream || failed)
-    throw Error("Cannot write the checkpoint file '{}'{}. Is the disk full?", file.string(),
-                failed ? fmt::format(" ({})", failed.message()) : std::string());
-}
-
 }  // namespace
 
 std::string CheckpointStamp::text() const {
@@ -224,7 +208,7 @@ fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& sta
       fs::create_directories(folder);
       clear(folder);
     }
-    write_in_place(folder / pending_name, fmt::format("{}\n{}", first_line, stamp.text()));
+    base::write_file(folder / pending_name, fmt::format("{}\n{}", first_line, stamp.text()), true);
   } catch (const fs::filesystem_error& error) {
     throw Error("Cannot remove the earlier checkpoint in {}: {}.", folder.string(), error.code().message());
   }
@@ -245,7 +229,7 @@ void finish_checkpoint_set(const fs::path& folder, const CheckpointStamp& stamp,
   for (const fs::path& file : files)
     text += fmt::format("file {} {:016x} {}\n", fs::file_size(file), digest_of_file(file),
                         file.lexically_relative(folder).string());
-  write_in_place(folder / list_name, with_digest(text));
+  base::write_file(folder / list_name, with_digest(text), true);
   fs::remove(folder / pending_name);
 }
 

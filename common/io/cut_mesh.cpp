@@ -260,7 +260,7 @@ void write_cut_mesh(MPI_Comm comm, const mesh::MeshBlock& block, const std::file
                    {block.points.empty() ? nullptr : block.points[0].data(), 3 * block.points.size()}, 3);
   write_cells(comm, to, block.cells);
   write_boundary(to, block);
-  hdf5::close_file(out);
+  hdf5::close_file(comm, out, part);
   parallel::on_root(comm, [&] { std::filesystem::rename(part, file); });
 }
 
@@ -300,9 +300,9 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
                            const mesh::MeshParameters& parameters,
                            const std::vector<std::array<std::string, 2>>& periodic,
                            const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
-                           double scale) {
+                           double scale, bool tie) {
   if (!is_cut_mesh(file))
-    return mesh::load_mesh(comm, file, dim, parameters, periodic, materials, find_wide_points, scale);
+    return mesh::load_mesh(comm, file, dim, parameters, periodic, materials, find_wide_points, scale, tie);
   if (!parameters.empty())
     throw Error(
         "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the .geo it "
@@ -315,6 +315,7 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
   block.periodic = periodic;
   block.materials = materials;
   block.find_wide_points = find_wide_points;
+  block.tie = tie;
   return mesh::load_block(comm, std::move(block), file, scale);
 }
 

@@ -30,7 +30,7 @@ mesh::LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int
                            const mesh::MeshParameters& parameters = {},
                            const std::vector<std::array<std::string, 2>>& periodic = {},
                            const std::vector<std::vector<std::string>>& materials = {},
-                           bool find_wide_points = false, double scale = 1);
+                           bool find_wide_points = false, double scale = 1, bool tie = false);
 
 /// Extends mesh::facts_of_file() to cut meshes.
 mesh::MeshFacts facts_of_file(const std::filesystem::path& file, const mesh::MeshParameters& parameters,

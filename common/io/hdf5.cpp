@@ -2,6 +2,7 @@
 #include "common/io/hdf5.hpp"
 
 #include <algorithm>
+#include <exception>
 
 #include "common/base/own_file.hpp"
 #include "common/parallel/collective.hpp"
@@ -24,6 +25,10 @@ Handle checked(hid_t id, herr_t (*close)(hid_t), const char* action, const std::
 void check(herr_t status, const char* action, const std::string& what) {
   if (status < 0) throw Error("HDF5 could not {} '{}' ({}).", action, what, reason());
 }
+
+/// Closes a file that is being written, unless an exception is on its way: closing is collective and the
+/// other ranks may be elsewhere, and HDF5 crashes if it flushes again after a failed write.
+herr_t close_unless_failing(hid_t file) { return std::uncaught_exceptions() > 0 ? 0 : H5Fclose(file); }
 
 Handle file_access(MPI_Comm comm) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -83,14 +88,16 @@ void write_any(hid_t place, const std::string& path, const Rows& rows, hid_t typ
   H5Pset_create_intermediate_group(links, 1);
   const Handle space = file_space(rows);
   const Handle layout = layout_of(rows);
-  const Handle table = checked(H5Dcreate2(place, path.c_str(), type, space, links, layout, H5P_DEFAULT),
-                               H5Dclose, "make the table", path);
+  Handle table = checked(H5Dcreate2(place, path.c_str(), type, space, links, layout, H5P_DEFAULT), H5Dclose,
+                         "make the table", path);
   if (rows.total == 0) return;
   select(space, rows);
   const Handle memory = memory_space(rows);
   const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
   if (is_shared(table)) H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
   check(H5Dwrite(table, type, memory, space, transfer, values), "write the table", path);
+  // Closing flushes what HDF5 holds back.
+  check(H5Dclose(table.release()), "write the table", path);
 }
 
 }  // namespace
@@ -111,18 +118,22 @@ std::string reason() {
 Handle create_file(MPI_Comm comm, const std::filesystem::path& file) {
   base::own_file(file);
   const Quiet quiet;
-  return checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, file_access(comm)), H5Fclose, "create",
-                 file.string());
+  return checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, file_access(comm)), close_unless_failing,
+                 "create", file.string());
 }
 
 Handle open_file_to_write(MPI_Comm comm, const std::filesystem::path& file) {
   const Quiet quiet;
-  return checked(H5Fopen(file.c_str(), H5F_ACC_RDWR, file_access(comm)), H5Fclose, "open", file.string());
+  return checked(H5Fopen(file.c_str(), H5F_ACC_RDWR, file_access(comm)), close_unless_failing, "open",
+                 file.string());
 }
 
-void close_file(Handle& file) {
+void close_file(MPI_Comm comm, Handle& file, const std::filesystem::path& name) {
   const Quiet quiet;
-  if (H5Fclose(file.release()) < 0) throw Error(reason());
+  std::string trouble;
+  if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 || H5Fclose(file.release()) < 0)
+    trouble = fmt::format("Cannot write '{}' ({}). Is the disk full?", name.string(), reason());
+  parallel::throw_together(comm, trouble);
 }
 
 Handle open_written(hid_t place, const std::string& table) {

@@ -61,8 +61,8 @@ class Handle final {
 /// Creates a file. Throws Error with its name. Collective over comm.
 Handle create_file(MPI_Comm comm, const std::filesystem::path& file);
 Handle open_file_to_write(MPI_Comm comm, const std::filesystem::path& file);
-/// Closes a written file after flushing it. Throws Error with HDF5's reason. Collective.
-void close_file(Handle& file);
+/// Closes a written file after flushing it. Throws Error with its name on all ranks if one of them fails.
+void close_file(MPI_Comm comm, Handle& file, const std::filesystem::path& name);
 
 /// Returns true if a file that this program is writing contains `path`.
 bool exists(hid_t place, const std::string& path);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
@@ -57,20 +58,21 @@ void copy_rows(csv::LineReader& old, std::size_t n_columns, double restart_time,
 Series::Series(const std::filesystem::path& file, const std::vector<std::string>& columns,
                double restart_time)
     : n_columns_(columns.size()) {
+  for (const std::string& name : columns)
+    if (name.find_first_of(",\"") != std::string::npos)
+      throw Error(
+          "Cannot write the series '{}': '{}' would be the name of a column, which must not contain a comma or a double quote. Rename it.",
+          file.string(), name);
   const std::string head = fmt::format("{}", fmt::join(columns, ","));
   std::error_code code;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), code);
-  const std::filesystem::path part = file.string() + ".part";
-  base::own_file(file);
-  {
-    const auto old = std::isnan(restart_time) ? nullptr : rows_of(file, head);
-    std::ofstream out(base::own_file(part));
-    out << head << '\n';
-    if (old) copy_rows(*old, n_columns_, restart_time, out);
-  }
-  std::filesystem::rename(part, file, code);
-  if (!code) file_.open(file, std::ios::app);
-  if (code || !file_)
+  std::ostringstream text;
+  text << head << '\n';
+  if (const auto old = std::isnan(restart_time) ? nullptr : rows_of(file, head))
+    copy_rows(*old, n_columns_, restart_time, text);
+  base::write_file(file, text.view());
+  file_.open(file, std::ios::app);
+  if (!file_)
     throw Error("Cannot write the series '{}'. Does the folder exist, with write permission?", file.string());
 }
 

@@ -36,10 +36,14 @@ struct RawMesh {
   bool find_wide_points = true;
 };
 
+/// Number of the patch `rest` of all boundary faces without a name, which is appended if it is missing.
+int rest_of(std::vector<std::string>& patches);
+
 /// Values of the names that a .geo defines by DefineConstant.
 using MeshParameters = std::map<std::string, double>;
 
-/// Reads .msh 2.2 or 4.1 (ASCII or binary) with physical names. Throws Error with file and line.
+/// Reads .msh 2.2 or 4.1 (ASCII or binary) with physical names. Elements of second order are reduced to their
+/// corners, and the boundary in no group is the patch "rest". Throws Error with file and line.
 RawMesh read_msh(const std::filesystem::path& file);
 
 /// Reads the mesh of a CalculiX or Abaqus input deck (.inp): solid elements in two or three dimensions, of
@@ -47,8 +51,8 @@ RawMesh read_msh(const std::filesystem::path& file);
 /// ELSET zones. The remaining boundary is the patch "rest". Throws Error with file and line.
 RawMesh read_inp(const std::filesystem::path& file);
 
-/// Runs gmsh on a .geo unless a cached result <stem>.<hash>.cache.msh exists beside it, and returns the path
-/// of the .msh. The hash covers the .geo, the files it includes, `dim` and the parameters. Several programs
+/// Runs gmsh on a .geo unless its mesh is cached, and returns the path of the .msh. It depends on the .geo,
+/// the files it includes, `dim` and the parameters. Several programs
 /// may request the same file at once. `parameters` replace values in DefineConstant; an unknown name throws
 /// Error.
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
@@ -56,17 +60,17 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
 
 /// Distributes a mesh: partitions cells by PT-Scotch with one ring of vertex-neighbor ghosts (two at
 /// Mesh::wide_points) and renumbers owned cells by reverse Cuthill-McKee. Only rank 0 reads `raw`. Every
-/// boundary face must belong to exactly one patch; errors state the location. Collective.
+/// boundary face belongs to one patch, "rest" if none is given; errors state the location. Collective.
 LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw);
 
 /// Loads and distributes a mesh file (.msh, .inp, .geo, or as for convert_mesh()), with lengths multiplied by
-/// `scale`. `periodic`, `materials` and `find_wide_points` are as in RawMesh. Collective; an error on rank 0
-/// is thrown on every rank.
+/// `scale`. `periodic`, `materials` and `find_wide_points` are as in RawMesh. `tie` joins parts that touch
+/// without sharing points. Collective; an error on rank 0 is thrown on every rank.
 LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters = {},
                      const std::vector<std::array<std::string, 2>>& periodic = {},
                      const std::vector<std::vector<std::string>>& materials = {},
-                     bool find_wide_points = false, double scale = 1);
+                     bool find_wide_points = false, double scale = 1, bool tie = false);
 
 /// Boxes for tests: n cells per side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin"
 /// "zmax" in 3-D).

@@ -181,7 +181,7 @@ void write_modes(const std::filesystem::path& file, const ModalModel& model, con
   const std::filesystem::path part = file.string() + ".part";
   const std::size_t n = model.n_modes();
   {
-    const io::hdf5::Handle id = io::hdf5::create_file(MPI_COMM_SELF, part);
+    io::hdf5::Handle id = io::hdf5::create_file(MPI_COMM_SELF, part);
     io::hdf5::write_attribute(id, "format", std::string(format_name));
     io::hdf5::write_attribute(id, "version", double(format_version));
     io::hdf5::write_attribute(id, "key", key);
@@ -198,6 +198,7 @@ void write_modes(const std::filesystem::path& file, const ModalModel& model, con
     write(id, "shape/vertices", model.vertex_shape, n);
     write(id, "shape/faces", model.face_shape, n);
     write(id, "participation", model.participation, n);
+    io::hdf5::close_file(MPI_COMM_SELF, id, part);
   }
   std::error_code failed;
   std::filesystem::rename(part, file, failed);

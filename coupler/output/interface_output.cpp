@@ -2,9 +2,10 @@
 #include "coupler/output/interface_output.hpp"
 
 #include <cmath>
-#include <fstream>
+#include <sstream>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/csv/csv_reader.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void array(std::ofstream& out, const std::string& name, const std::vector<double>& values, int components) {
+void array(std::ostream& out, const std::string& name, const std::vector<double>& values, int components) {
   // ParaView requires three components for arrows and warps.
   const int shown = components == 2 ? 3 : components;
   out << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n",
@@ -25,7 +26,7 @@ void array(std::ofstream& out, const std::string& name, const std::vector<double
   out << "\n</DataArray>\n";
 }
 
-void integers(std::ofstream& out, const char* name, const std::vector<GlobalIndex>& values) {
+void integers(std::ostream& out, const char* name, const std::vector<GlobalIndex>& values) {
   out << fmt::format("<DataArray type=\"Int64\" Name=\"{}\" format=\"ascii\">\n", name);
   for (const GlobalIndex v : values) out << v << ' ';
   out << "\n</DataArray>\n";
@@ -99,7 +100,7 @@ void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file,
   for (std::size_t f = 0; f < faces; ++f)
     offsets.push_back(has_corners ? i.face_offset[f + 1] : GlobalIndex(f) + 1);
   const char* kind = !has_corners ? "Verts" : i.dim == 2 ? "Lines" : "Polys";
-  std::ofstream out(file);
+  std::ostringstream out;
   out << "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\">\n<PolyData>\n"
       << fmt::format("<Piece NumberOfPoints=\"{}\" NumberOf{}=\"{}\">\n<Points>\n", points.size() / 3, kind,
@@ -124,21 +125,16 @@ void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file,
     if (datum->place == coupling::Interface::Place::faces)
       array(out, datum->name, *values, datum->size(i.dim));
   out << "</CellData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
-  if (!out) throw Error("Cannot write {}: is the disk full?", file.string());
+  base::write_file(file, out.view());
 }
 
 void InterfaceOutput::write_list(const Surface& surface) const {
-  const fs::path file = folder_ / (surface.side->name + ".pvd"), part = file.string() + ".part";
-  {
-    std::ofstream out(part);
-    out << "<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
-    for (const auto& [time, stem, parts] : surface.files)
-      for (int r = 0; r < parts; ++r)
-        out << fmt::format("  <DataSet timestep=\"{:.12g}\" part=\"{}\" file=\"{}.{}.vtp\"/>\n", time, r,
-                           stem, r);
-    out << "</Collection>\n</VTKFile>\n";
-  }
-  fs::rename(part, file);
+  std::string text = "<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+  for (const auto& [time, stem, parts] : surface.files)
+    for (int r = 0; r < parts; ++r)
+      text +=
+          fmt::format("  <DataSet timestep=\"{:.12g}\" part=\"{}\" file=\"{}.{}.vtp\"/>\n", time, r, stem, r);
+  base::write_file(folder_ / (surface.side->name + ".pvd"), text + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace couplet::coupler

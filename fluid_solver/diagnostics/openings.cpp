@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
@@ -32,6 +33,11 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
       // A pressure given on purpose may drive the flow.
       const bool outlet = at_rest && gives_pressure(b) && b.pressure.text == "0";
       const bool total = gives_pressure(b) && b.backflow_stabilisation;
+      const bool is_closed =
+          b.velocity.empty() ? !b.mean_speed || b.mean_speed->text == "0"
+                             : std::ranges::all_of(b.velocity, [](const auto& v) { return v.text == "0"; });
+      if (inlet && !is_closed)
+        fv::uses()["boundaries." + patch.name].given = "the inlet, through which fluid enters,";
       if (inlet || outlet || total) openings_.push_back({&patch, inlet, inlet || outlet, total});
     }
     sums_.resize(n_sums * openings_.size());
@@ -41,7 +47,11 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
     for (std::size_t i = 0; i < openings_.size(); ++i) {
       const mesh::Patch& patch = *openings_[i].patch;
       double* sums = &sums_[n_sums * i];
+      const auto use = fv::uses().find("boundaries." + patch.name);
       for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+        constexpr double slowest = 1e-12;  // [m/s], round-off
+        if (use != fv::uses().end())
+          use->second.note(std::abs(s.phi[f]) > slowest * s.placement->area[f].norm() ? s.phi[f] : 0);
         sums[net] += s.phi[f] * view_.step.dt;
         sums[gross] += std::abs(s.phi[f]) * view_.step.dt;
         const double in = std::max(0., (s.mesh_flux.empty() ? 0 : s.mesh_flux[f]) - s.phi[f]) * view_.step.dt;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "common/diagnostics/prices.hpp"
 #include "common/parallel/collective.hpp"
@@ -43,6 +45,31 @@ double hydraulic_diameter(const Fluid<D>& fluid) {
   return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// True if the flow has no third dimension in which vortices stretch: most cells reach from one boundary to the
+/// opposite one, or across periodic patches to themselves. Collective.
+template <int D>
+bool is_plane(const FluidView<D>& view) {
+  if (D == 2) return true;
+  constexpr double opposite = -0.9;  // cosine of two outward normals
+  const mesh::Mesh& mesh = view.mesh;
+  const Index owned = mesh.cells.n_owned();
+  std::vector<char> spans(owned, 0);
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    if (mesh.owner[f] < owned && mesh.cell_id[mesh.owner[f]] == mesh.cell_id[mesh.neighbour[f]])
+      spans[mesh.owner[f]] = 1;
+  std::vector<std::pair<Index, Index>> faces;  // by cell
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) faces.emplace_back(mesh.owner[f], f);
+  std::ranges::sort(faces);
+  const Vectors<D>& area = view.fluid.state().placement->area;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t j = i + 1; j < faces.size() && faces[j].first == faces[i].first; ++j) {
+      const Vec<D>&a = area[faces[i].second], &b = area[faces[j].second];
+      if (a.dot(b) < opposite * a.norm() * b.norm()) spans[faces[i].first] = 1;
+    }
+  const auto deep = parallel::sum(mesh.comm, double(std::ranges::count(spans, char(1))));
+  return 2 * deep > double(mesh.cells.n_global());
+}
+
 /// Largest eddy viscosity over the molecular one.
 template <int D>
 double eddy_viscosity(const FluidView<D>& view) {
@@ -65,8 +92,8 @@ diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, doubl
       .what = fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", peclet, yplus),
       .advice =
           dimension == 2
-              ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence' "
-                "and 'dimension: 3'"
+              ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence', "
+                "'dimension: 3' and many cells in each direction"
               : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is "
                 "turbulent"};
   if (peclet > limit && reynolds < laminar_below) {
@@ -80,7 +107,7 @@ diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, doubl
   return e;
 }
 
-// Energy passes to smaller eddies by vortex stretching, which is absent in 2-D. There the models only add
+// Energy passes to smaller eddies by vortex stretching, which is absent in 2-D and on a mesh one cell deep. There the models only add
 // friction, and layers thicken with the square root of the viscosity.
 diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
   diagnostics::EffectFinding e{
@@ -94,7 +121,8 @@ diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
     return e;
   }
   e.advice =
-      "vortices in two dimensions do not stretch, so it models no turbulence: omit 'turbulence', or use 'dimension: 3'";
+      "vortices in two dimensions do not stretch, so it models no turbulence: omit 'turbulence', or use 'dimension: 3' "
+      "and many cells in each direction";
   e.share = 1 - 1 / std::sqrt(1 + eddy_viscosity);
   return e;
 }
@@ -112,15 +140,16 @@ diagnostics::EffectFinding unresolved_walls(double yplus, double peclet) {
 template <int D>
 std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const FluidParameters& p = view.parameters();
-  if (p.turbulence && D == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
+  const int dimension = is_plane(view) ? 2 : 3;
+  if (p.turbulence && dimension == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
   const double reynolds = p.density * largest_speed(view) * hydraulic_diameter(view.fluid) / p.viscosity;
-  return diagnostics::finding_of(
-      unresolved_layers(D, view.sizes.largest_peclet(view.fluid.state()), largest_yplus(view), reynolds));
+  return diagnostics::finding_of(unresolved_layers(dimension, view.sizes.largest_peclet(view.fluid.state()),
+                                                   largest_yplus(view), reynolds));
 }
 
 template <int D>
 std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<D>& view) {
-  if (!view.parameters().turbulence || D != 2) return {};
+  if (!view.parameters().turbulence || !is_plane(view)) return {};
   return diagnostics::finding_of(eddies(2, eddy_viscosity(view)));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/fv/use.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
@@ -27,6 +28,7 @@ ImmersedBodies<D>::ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters&
       velocity_(mesh.cells.n_local(), Vec<D>::Zero()) {
   for (const auto& [name, body] : parameters.bodies) {
     names_.push_back(name);
+    fv::uses()["bodies." + name].given = "the body, which closes cells or parts of them,";
     level_.emplace_back(body.level, "bodies." + name + ".level");
     speed_.emplace_back();
     if (!body.velocity.empty())
@@ -104,11 +106,23 @@ typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark_cells(double t, cons
   return parallel::any(mesh_.comm, before.faces != shape_.faces) ? Changed::shares : Changed::nothing;
 }
 
+/// Notes which bodies close at least a part of a cell.
+template <int D>
+void ImmersedBodies<D>::note_use() const {
+  std::vector<double> closes(names_.size(), 0);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const int body = !cut_ ? body_[c] : shape_.cells[c] < 1 ? nearest_[c] : -1;
+    if (body >= 0) closes[std::size_t(body)] = 1;
+  }
+  for (std::size_t i = 0; i < names_.size(); ++i) fv::uses()["bodies." + names_[i]].note(closes[i]);
+}
+
 template <int D>
 typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark(double t,
                                                             const std::shared_ptr<const Placement<D>>& at,
                                                             const std::vector<Vec3>& points) {
   const Changed changed = mark_cells(t, *at, points);
+  note_use();
   if (changed == Changed::nothing && around_of_ == at) return changed;
   this->close([&](Index c) { return cut_ ? shape_.cells[c] == 0 : is_solid(c); });
   auto around = std::make_shared<Placement<D>>(*at);

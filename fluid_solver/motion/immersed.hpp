@@ -114,6 +114,7 @@ class ImmersedBodies final : public Obstacles<D> {
   Index other(Index f) const { return f < mesh_.n_interior ? mesh_.neighbour[f] : mesh_.owner[f]; }
   bool blocked(Index f) const { return is_solid(mesh_.owner[f]) || is_solid(other(f)); }
   Changed mark_cells(double t, const Placement<D>& at, std::span<const Vec3> points);
+  void note_use() const;
   void find_levels(double t, const Placement<D>& at);
   void find_velocities(double t, const Placement<D>& at);
   CutCells<D> shape(double t, const Placement<D>& at, std::span<const Vec3> points) const;

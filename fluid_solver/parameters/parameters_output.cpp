@@ -37,6 +37,13 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   needs_direction("drag", c.drag);
   needs_direction("lift", c.lift);
   needs_direction("axis", c.axis);
+  s.check(
+      [&c] {
+        return c.drag.normalized().cross(c.lift.normalized()).norm() > 1e-6
+                   ? ""
+                   : "it is along 'drag'; both coefficients would be of the same force";
+      },
+      "lift");
 }
 
 void declare_sample(config::Section& s, SampleParameters& p) {

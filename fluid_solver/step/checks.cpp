@@ -2,8 +2,12 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
@@ -81,6 +85,42 @@ void check_axes(const FluidParameters& parameters, int dim) {
                    "output.coefficients." + name + ".axis");
 }
 
+/// Refuses parts of the fluid that no cell connects where one of them has no outlet. Collective.
+template <int D>
+void check_parts(const mesh::Mesh& mesh, const Boundary<D>& boundary) {
+  std::vector<Index> root(mesh.cells.n_local());
+  std::iota(root.begin(), root.end(), 0);
+  const auto root_of = [&](Index c) {
+    while (root[c] != c) c = root[c] = root[root[c]];
+    return c;
+  };
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    root[root_of(mesh.neighbour[f])] = root_of(mesh.owner[f]);
+  }
+  // A part has the number of its first cell, which ghost cells carry from rank to rank.
+  std::vector<double> part(mesh.cell_id.begin(), mesh.cell_id.end());
+  for (bool changes = true; parallel::any(mesh.comm, changes);) {
+    for (Index c = 0; c < mesh.cells.n_local(); ++c) part[root_of(c)] = std::min(part[root_of(c)], part[c]);
+    for (Index c = 0; c < mesh.cells.n_local(); ++c) part[c] = part[root_of(c)];
+    const std::vector<double> before = part;
+    mesh.cells.update_ghosts(part);
+    changes = part != before;
+  }
+  double parts = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) parts += part[c] == double(mesh.cell_id[c]);
+  std::set<double> here;
+  for (const Index b : boundary.rows().of_pressure) here.insert(part[mesh.owner[mesh.n_interior + b]]);
+  const std::vector<double> all =
+      parallel::all_gather(mesh.comm, std::vector<double>(here.begin(), here.end()));
+  const auto open = double(std::set<double>(all.begin(), all.end()).size());
+  parts = parallel::sum(mesh.comm, parts);
+  if (parts > 1 && open < parts)
+    throw Error(
+        "boundaries: the mesh has {} parts that no cell connects, and {} of them have no outlet, which would set their "
+        "pressure. Run each part as a participant of its own, or give each an outlet.",
+        parts, parts - open);
+}
+
 }  // namespace
 
 FluidParameters with_surfaces(FluidParameters parameters, bool moving) {
@@ -102,6 +142,7 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
   check_axes(parameters, D);
   check_frame(mesh, boundary, parameters, moving);
   if (boundary.closed()) check_sides(parameters);
+  check_parts(mesh, boundary);
   if (!parameters.bodies.empty()) {
     if (!parameters.gaps.empty())
       throw Error("gaps: not supported together with immersed bodies; remove 'gaps' or 'bodies'.");

@@ -84,8 +84,9 @@ class PlateTheory final : public diagnostics::Diagnostic {
       return all.norm() > 0 ? (all - all.dot(normal) * normal).norm() / all.norm() : 0;
     };
     double share = share_of(p.initial_velocity);
-    // Supports carry in-plane weight; a free plate has none.
-    if (!p.gravity.empty() && moves_freely()) share = std::max(share, share_of(Vec3(p.gravity.data())));
+    // Supports carry in-plane weight, unless gravity is given for nothing; a free plate has none.
+    const double weight = p.gravity.empty() ? 0 : share_of(Vec3(p.gravity.data()));
+    if (moves_freely() || weight > 0.999) share = std::max(share, weight);
     report_neglected(
         report, "motion in the plane", share, 0.01,
         fmt::format("in-plane share of {1} = {0:.2g}", share,

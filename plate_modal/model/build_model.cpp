@@ -121,23 +121,28 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
         "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
         ".geo it was made from.",
         file.string());
-  if (kind == ".unv" || kind == ".med" || kind == ".cgns") return mesh::convert_mesh(file);
-  if (kind != ".msh" && kind != ".geo")
-    throw Error("The mesh file '{}' is not a .msh, .geo, .unv, .med or .cgns file.", file.string());
-  return kind == ".geo" ? mesh::mesh_geo(file, 2, p.mesh_parameters) : file;
+  if (kind == ".geo") return mesh::mesh_geo(file, 2, p.mesh_parameters);
+  if (kind == ".msh" || kind == ".cgns") return mesh::convert_mesh(file);
+  if (!mesh::is_foreign(kind))
+    throw Error("The mesh file '{}' is not a .msh, .geo, .unv, .med, .exo or .cgns file.", file.string());
+  return file;
 }
 
 /// Mid-surface of the mesh in the parameters, with scaled lengths.
 Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = mesh_file(p, folder);
-  mesh::RawMesh raw = mesh::read_msh(file);
+  const bool is_foreign = mesh::is_foreign(file.extension());
+  mesh::RawMesh raw = is_foreign ? mesh::read_foreign(file) : mesh::read_msh(file);
   if (raw.dim != 2 || raw.cell_type.empty())
     throw Error(
         "The mesh '{}' is not two-dimensional. The mid-surface of a plate needs a 2-D mesh with its surface "
         "in a physical group.",
         (folder / *p.mesh).string());
   for (Vec3& x : raw.points) x *= p.mesh_scale;
-  Midsurface surface = midsurface_of(raw, mesh::read_boundary_entities(file));
+  std::vector<int> entities;
+  if (!is_foreign) entities = mesh::read_boundary_entities(file);
+  entities.resize(raw.boundary_patch.size(), 0);  // none of the patch 'rest'
+  Midsurface surface = midsurface_of(raw, entities);
   for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane
   const mesh::LoadedMesh flat = mesh::distribute(MPI_COMM_SELF, raw);
   mesh::check_and_report(flat.mesh, flat.geometry);

@@ -168,13 +168,13 @@ void SolidBody::add_scaled_loads(double t, std::span<double> forces) const {
   for (std::size_t i = 0; i < whole.size(); ++i) forces[i] += load_factor_ * whole[i];
 }
 
-std::vector<double> SolidBody::body_forces(double t) const {
+std::vector<double> SolidBody::body_forces(double t, const Vec3& shift) const {
   if (!has_body_forces()) return {};
   const int dim = mesh_.dim;
   std::vector<double> forces(std::size_t(mesh_.cells.n_owned()) * dim);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < dim; ++a) {
-      double force = body_force_.empty() ? 0 : body_force_[a](geometry_.cell_centre[c], t);
+      double force = body_force_.empty() ? 0 : body_force_[a](geometry_.cell_centre[c] + shift, t);
       if (!parameters_.gravity.empty()) force += density(c) * parameters_.gravity[a];
       forces[std::size_t(c) * dim + a] = force * geometry_.volume[c];  // (2.59)
     }

@@ -78,8 +78,9 @@ class SolidBody final {
   /// Sets the thermal strains at time t in the equilibrium (large strain). Collective.
   void place_expansion(double t) const;
   bool has_body_forces() const { return !body_force_.empty() || !parameters_.gravity.empty(); }
-  /// Body forces and weight of the owned cells at time t [N], `dim` values each; empty if there are none.
-  std::vector<double> body_forces(double t) const;
+  /// Body forces and weight of the owned cells, moved by `shift`, at time t [N], `dim` values each; empty if
+  /// there are none.
+  std::vector<double> body_forces(double t, const Vec3& shift = Vec3::Zero()) const;
   /// Acceleration of the known columns over [start, start + dt], dim values each; empty at rest. Uses the
   /// change of velocity, not second differences, so that its work equals the growth of kinetic energy.
   std::vector<double> known_acceleration(double start, double dt) const;

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/diagnostics/error_parts.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/mesh/topology.hpp"
+#include "common/parallel/collective.hpp"
 #include "solid_solver/body/quadratic_fit.hpp"
 
 namespace couplet::solid {
@@ -18,6 +20,8 @@ constexpr double of_far = 1. / 9;           // weight of a sample at the patch's
 constexpr double of_traction = 1;           // weight of a traction over a sample, fit of stress ...
 constexpr double of_scaled_traction = 0.1;  // ... and of displacement, as h t / (2 mu + lambda)
 constexpr double of_face = 3;               // weight of a face's displacement over a cell's
+// Stress that counts as small, relative to the largest one: errors there are relative to this.
+constexpr double small_part = 0.01;
 
 bool is_simplex(mesh::CellType type) {
   return type == mesh::CellType::triangle || type == mesh::CellType::tetrahedron;
@@ -247,6 +251,20 @@ SidedTensors StressRecovery::at_points(const DiscreteStress& found,
   return sides;
 }
 
+double StressRecovery::least_scale(const DiscreteStress& found) const {
+  double largest = 0, load = 0, displacement = 0, stiffest = 0;
+  for (const auto* of : {&found.cells, &found.faces})
+    for (const Tensor3& s : *of) largest = std::max(largest, s.norm());
+  for (const auto* of : {&found.other_in_cells, &found.other_on_faces})
+    for (const Tensor3& s : *of) load = std::max(load, s.norm());
+  for (const double u : found.cell_u) displacement = std::max(displacement, std::abs(u));
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) stiffest = std::max(stiffest, rows_.lame(c).mu);
+  const double strain =
+      parallel::max(mesh_.comm, displacement) / mesh::extent_of(mesh_, geometry_).diagonal();
+  load = parallel::max(mesh_.comm, std::max(load, stiffest * strain));
+  return diagnostics::scale_of(small_part * parallel::max(mesh_.comm, largest), load);
+}
+
 std::vector<std::vector<double>> StressRecovery::left_at_points(const DiscreteStress& found,
                                                                 std::span<const std::uint8_t> wanted,
                                                                 const SidedTensors& sides) const {
@@ -257,6 +275,7 @@ std::vector<std::vector<double>> StressRecovery::left_at_points(const DiscreteSt
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
     if (has(c, wanted))
       for (const Index v : mesh_.cell_points[c]) near[std::size_t(v)] = 1;
+  const double least = least_scale(found);
   std::vector<std::vector<PointShare>> shares(sides.size());
   std::vector<Index> around;
   visit(
@@ -275,7 +294,7 @@ std::vector<std::vector<double>> StressRecovery::left_at_points(const DiscreteSt
           if (std::ranges::find(mesh_.cell_points[c], w) != mesh_.cell_points[c].end()) continue;
           const Tensor3 here =
               unpack(std::span(sides[material]).subspan(std::size_t(w) * tensor_size, tensor_size));
-          if (const double size = here.norm(); size > 0)
+          if (const double size = std::max(here.norm(), least); size > 0)
             shares[material].push_back({mesh_.point_id[w], (fit(geometry_.points[w]) - here).norm() / size});
         }
       });

@@ -14,6 +14,10 @@ namespace {
 
 using Type = SolidCondition::Type;
 
+// Difference of displacements that count as equal, relative to the largest prescribed one; on patches whose
+// normals at points are means of faces.
+constexpr double equal = 1e-6, equal_on_curved = 0.2;
+
 std::vector<std::string> patch_names(const mesh::Mesh& mesh) {
   std::vector<std::string> names;
   for (const mesh::Patch& patch : mesh.patches)
@@ -190,10 +194,11 @@ elastic::ElasticBoundary SolidBoundaries::elastic() const {
 }
 
 template <class Take>
-void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& take) const {
+void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& take,
+                                      const Vec3& shift) const {
   const double level = c.liquid ? c.liquid->level(t) : 0;
   for (const Index f : c.faces)
-    take(f, c.liquid ? c.liquid->mean(f, level) : c.pressure(geometry_->face_centre[f], t));
+    take(f, c.liquid ? c.liquid->mean(f, level, shift) : c.pressure(geometry_->face_centre[f] + shift, t));
 }
 
 std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
@@ -203,11 +208,12 @@ std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
   return faces;
 }
 
-std::vector<double> SolidBoundaries::pressures(double t) const {
+std::vector<double> SolidBoundaries::pressures(double t, const Vec3& shift) const {
   std::vector<double> pressure(mesh_->boundary.n_owned(), 0);
   for (const Condition& c : conditions_)
     if (c.has_pressure())
-      visit_pressures(c, t, [&](Index f, double p) { pressure[f - mesh_->n_interior] = p; });
+      visit_pressures(
+          c, t, [&](Index f, double p) { pressure[f - mesh_->n_interior] = p; }, shift);
   return pressure;
 }
 
@@ -232,7 +238,7 @@ void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_p
 
 PrescribedDisplacement::PrescribedDisplacement(const mesh::Mesh& mesh, const SolidBoundaries& boundaries,
                                                const elastic::ElasticOperator& elastic)
-    : dim_(mesh.dim), size_(elastic.n_known()) {
+    : mesh_(&mesh), dim_(mesh.dim), size_(elastic.n_known()) {
   const mesh::Geometry& geometry = elastic.geometry();
   std::vector<Group> all(boundaries.conditions_.size());
   for (std::size_t c = 0; c < all.size(); ++c) all[c].value = &boundaries.conditions_[c].known;
@@ -250,6 +256,19 @@ PrescribedDisplacement::PrescribedDisplacement(const mesh::Mesh& mesh, const Sol
       group.places.push_back(geometry.points[vertices.points()[i]]);
       group.shares.push_back(share);
     }
+  const std::vector<Index> patch_of = mesh.patch_of_boundary();
+  for (const elastic::VertexConstraints::Repeated& r : vertices.repeated()) {
+    const Index column = vertices.column(r.point);
+    if (column < 0) continue;
+    const auto sources = vertices.sources(column);
+    const auto first = std::ranges::max_element(
+        sources, {}, [&](const auto& source) { return (r.along * source.share).norm(); });
+    const Index condition = boundaries.condition_of_face_[r.face],
+                known = boundaries.condition_of_face_[first->face];
+    if (condition != known)
+      shared_.push_back({column, geometry.points[r.point], r.along, &boundaries.conditions_[condition],
+                         patch_of[first->face], patch_of[r.face]});
+  }
   for (Group& group : all) {
     if (group.value->empty()) continue;
     for (const fv::Expression& e : *group.value) uses_time_ = uses_time_ || e.uses_time();
@@ -268,6 +287,30 @@ void PrescribedDisplacement::evaluate(double t, std::span<double> values) const 
       for (int c = 0; c < dim_; ++c) values[std::size_t(group.columns[i]) * dim_ + c] += g[c];
     }
   }
+}
+
+void PrescribedDisplacement::check(double t, std::span<const double> values) const {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  largest = parallel::max(mesh_->comm, largest);
+  std::string trouble;
+  for (const Shared& s : shared_) {
+    Vec3 known = Vec3::Zero(), other = Vec3::Zero();
+    for (int a = 0; a < dim_; ++a) {
+      known[a] = values[std::size_t(s.column) * std::size_t(dim_) + std::size_t(a)];
+      if (!s.condition->known.empty()) other[a] = s.condition->known[std::size_t(a)](s.place, t);
+    }
+    known = s.along * known, other = s.along * other;
+    const double same = s.condition->type == Type::frictionless ? equal_on_curved : equal;
+    if ((known - other).norm() <= same * largest) continue;
+    trouble = fmt::format(
+        "boundaries: '{}' and '{}' prescribe different displacements at {}, a common point: {} m and {} m at t = {:g} s. "
+        "Prescribe the same there, or leave the component free on one of the patches.",
+        mesh_->patches[std::size_t(s.patch)].name, mesh_->patches[std::size_t(s.other)].name,
+        place_of(s.place, dim_), place_of(known, dim_), place_of(other, dim_), t);
+    break;
+  }
+  parallel::throw_together(mesh_->comm, trouble);
 }
 
 void PrescribedDisplacement::evaluate_rate(double t, double dt, std::span<double> values) const {

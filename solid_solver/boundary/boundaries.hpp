@@ -34,8 +34,8 @@ class SolidBoundaries {
   /// Adds tractions, pressures and total loads at time t as forces [N] on boundary faces of owned cells
   /// (`dim` values per face): thesis (2.64), reference configuration. Collective.
   void add_forces(double t, std::span<double> forces, bool with_pressure = true) const;
-  /// Pressures at time t on the boundary faces of owned cells [Pa].
-  std::vector<double> pressures(double t) const;
+  /// Pressures at time t on the boundary faces of owned cells, moved by `shift` [Pa].
+  std::vector<double> pressures(double t, const Vec3& shift = Vec3::Zero()) const;
 
  private:
   friend class PrescribedDisplacement;
@@ -66,7 +66,8 @@ class SolidBoundaries {
   void make_point_loads(const SolidParameters& parameters);
   /// Calls take(face, pressure [Pa]) for the faces of a condition.
   template <class Take>
-  void visit_pressures(const Condition& condition, double t, const Take& take) const;
+  void visit_pressures(const Condition& condition, double t, const Take& take,
+                       const Vec3& shift = Vec3::Zero()) const;
   elastic::BoundaryRow row_at(const Condition& condition, Index face) const;
   const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
 
@@ -91,6 +92,9 @@ class PrescribedDisplacement {
   bool uses_time() const { return uses_time_; }
   /// Evaluates dim values per known column.
   void evaluate(double t, std::span<double> values) const;
+  /// Throws Error if two conditions prescribe different displacements at a common point at time t. `values`:
+  /// those of evaluate(). Collective.
+  void check(double t, std::span<const double> values) const;
   /// Evaluates the time derivative by a central difference over 2e-3 dt.
   void evaluate_rate(double t, double dt, std::span<double> values) const;
 
@@ -101,6 +105,16 @@ class PrescribedDisplacement {
     std::vector<Vec3> places;
     std::vector<Tensor3> shares;  // one per place, after the places without (whose share is I)
   };
+  /// Point with a known displacement that another condition prescribes, too.
+  struct Shared {
+    Index column;
+    Vec3 place;
+    Tensor3 along;  // directions that both prescribe
+    const SolidBoundaries::Condition* condition;
+    Index patch, other;  // of the known value, of `condition`
+  };
+  const mesh::Mesh* mesh_;
+  std::vector<Shared> shared_;
   int dim_;
   std::size_t size_ = 0;
   bool uses_time_ = false;

@@ -16,6 +16,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/quality.hpp"
+#include "common/mesh/touching_faces.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
@@ -71,6 +72,32 @@ void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
         "at {} vertices, the first at {}, the adjacent cells and faces do not span all directions: values "
         "there are plain means of the neighbours, exact for constant fields only",
         inexact->count, text_of(inexact->first, mesh.dim));
+}
+
+void check_touching(const mesh::LoadedMesh& body, const SolidParameters& parameters) {
+  if (parameters.touching_faces == SolidParameters::TouchingFaces::apart) return;
+  const auto is_free = [&](const std::string& patch) {
+    const auto at = parameters.boundaries.find(patch);
+    if (at != parameters.boundaries.end() &&
+        (at->second.type != SolidCondition::Type::free || !at->second.parts.empty()))
+      return false;
+    if (!parameters.heat) return true;
+    const auto heat = parameters.heat->boundaries.find(patch);
+    return heat == parameters.heat->boundaries.end() || heat->second.type == HeatBoundary::Type::adiabatic;
+  };
+  for (const mesh::TouchingFaces& found : mesh::find_touching_faces(body.mesh, body.geometry)) {
+    if (found.patch != found.other && !is_free(found.patch) && !is_free(found.other)) continue;
+    throw Error(
+        "mesh: {} face{} of patch '{}', the first at {}, touch{} faces of {} without sharing their points, so that "
+        "neither force nor heat passes there. {} If the parts are meant to be separate, such as the faces of a "
+        "crack, set 'touching-faces: apart'.",
+        found.count, found.count == 1 ? "" : "s", found.patch, text_of(found.where, body.mesh.dim),
+        found.count == 1 ? "es" : "", found.patch == found.other ? "the same patch" : "'" + found.other + "'",
+        found.alike
+            ? "Merge the double points of the mesh, or set 'touching-faces: tie'."
+            : "The faces of the two sides have other corners, so 'touching-faces: tie' cannot join them: "
+              "mesh both sides alike, or as one body.");
+  }
 }
 
 void check_axis(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic) {

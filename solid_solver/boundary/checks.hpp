@@ -7,6 +7,7 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/mesh.hpp"
+#include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {
 
@@ -14,6 +15,10 @@ namespace couplet::solid {
 /// be exact for linear fields. Collective.
 void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                 const fv::VertexInterpolation& vertices);
+
+/// Throws Error for parts that touch without sharing points, unless the case leaves them apart or both sides
+/// have conditions of their own. Collective.
+void check_touching(const mesh::LoadedMesh& body, const SolidParameters& parameters);
 
 /// Throws Error if a body of revolution extends beyond the axis. Faces on the axis are symmetry planes like
 /// those across it. Collective.

@@ -232,7 +232,8 @@ void BearingLoad::add_forces(double t, std::span<double> forces) const {
 
 HydrostaticPressure::HydrostaticPressure(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                          const TotalLoad& load, const std::string& where)
-    : mesh_(&mesh), geometry_(&geometry), level_(load.level, where + ".level") {
+    : mesh_(&mesh), geometry_(&geometry), level_(load.level, where + ".level"), use_(&fv::uses()[where]) {
+  use_->given = "the hydrostatic pressure";
   Vec3 gravity = Vec3::Zero();
   for (std::size_t a = 0; a < load.gravity.size(); ++a) gravity[Index(a)] = load.gravity[a];
   up_ = -gravity.normalized();
@@ -258,10 +259,16 @@ double mean_positive(double d0, double d1, double d2) {
   return d[1] <= 0 ? corner(d[2], d[0], d[1]) : all + corner(-d[0], -d[1], -d[2]);
 }
 
-double HydrostaticPressure::mean(Index face, double level) const {
+double HydrostaticPressure::mean(Index face, double level, const Vec3& shift) const {
+  const double pressure = below(face, level, shift);
+  use_->note(pressure);
+  return pressure;
+}
+
+double HydrostaticPressure::below(Index face, double level, const Vec3& shift) const {
   const auto points = mesh_->face_points[face];
   const auto place = [&](std::size_t i) -> const Vec3& { return geometry_->points[points[i]]; };
-  const auto depth = [&](const Vec3& x) { return level - up_.dot(x); };
+  const auto depth = [&](const Vec3& x) { return level - up_.dot(x + shift); };
   if (mesh_->dim == 2) return weight_ * mean_positive(depth(place(0)), depth(place(1)));
   if (points.size() == 3) return weight_ * mean_positive(depth(place(0)), depth(place(1)), depth(place(2)));
   // Cut by a diagonal. Areas along the mean normal, as those of the face are.
@@ -316,12 +323,12 @@ Nearest nearest_face(const mesh::Mesh& mesh, const mesh::Geometry& geometry, con
   return best;
 }
 
+}  // namespace
+
 std::string place_of(const Vec3& x, int dim) {
   return dim == 3 ? fmt::format("({:g}, {:g}, {:g})", x[0], x[1], x[2])
                   : fmt::format("({:g}, {:g})", x[0], x[1]);
 }
-
-}  // namespace
 
 std::vector<Index> faces_of_point_load(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                        const PointLoad& load, std::span<const std::uint8_t> open,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/fv/expression.hpp"
+#include "common/fv/use.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters/boundary_parameters.hpp"
 
@@ -45,6 +46,9 @@ class DistributedForce {
   // Inverse of J about the axes with inertia, and projection on the other axes; both zero without a point.
   Tensor3 spin_ = Tensor3::Zero(), lost_ = Tensor3::Zero();
 };
+
+/// "(0, 0.5)" in 2-D, "(0, 0.5, 1)" in 3-D.
+std::string place_of(const Vec3& x, int dim);
 
 /// Component-wise sum over the ranks. Collective.
 Vec3 sum_of(MPI_Comm comm, const Vec3& value);
@@ -93,15 +97,18 @@ class HydrostaticPressure {
 
   /// Height of the free surface at time t [m].
   double level(double t) const { return level_(Vec3::Zero(), t); }
-  /// Mean over a face below this free surface [Pa].
-  double mean(Index face, double level) const;
+  /// Mean over a face, moved by `shift`, below this free surface [Pa].
+  double mean(Index face, double level, const Vec3& shift) const;
 
  private:
+  double below(Index face, double level, const Vec3& shift) const;
+
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   fv::Expression level_;
   Vec3 up_ = Vec3::Zero();
   double weight_ = 0;  // rho |g| [N/m^3]
+  fv::Use* use_;
 };
 
 /// Mean of max(0, d) with d linear between the ends of an edge.

@@ -39,23 +39,33 @@ std::string neglected(const BucklingEstimate& found) {
               : std::string());
 }
 
-/// |a x| / |u| / (factor - 1), RMS over cells. The part a of u along x is by the K-orthogonality of modes.
+/// Components below this part of the displacement are not judged by themselves.
+constexpr double least_part = 0.1;
+
+/// |a x| / |u| / (factor - 1), RMS over cells, of the component where it is largest: a frame under its load moves sideways less
+/// than it shortens. The part a of u along x is by the K-orthogonality of modes.
 double growth_of(const SolidBody& body, const std::vector<double>& u, const std::vector<double>& x,
                  double factor) {
   const mesh::Mesh& mesh = body.mesh();
   if (!(factor > 1)) return std::numeric_limits<double>::infinity();
   std::vector<double> force(x.size());
   body.kernel().apply(x, {}, force);
-  std::array<double, 4> sums{};  // u.Kx, x.Kx, |u|^2, |x|^2
+  std::array<double, 8> sums{};  // u.Kx, x.Kx, then u^2 and x^2 of each component
   for (std::size_t i = 0; i < x.size(); ++i) sums[0] += u[i] * force[i], sums[1] += x[i] * force[i];
+  const std::size_t dim = mesh.dim;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    for (std::size_t i = std::size_t(c) * mesh.dim; i < std::size_t(c + 1) * mesh.dim; ++i) {
-      sums[2] += body.geometry().volume[c] * u[i] * u[i];
-      sums[3] += body.geometry().volume[c] * x[i] * x[i];
+    for (std::size_t a = 0; a < dim; ++a) {
+      const std::size_t i = std::size_t(c) * dim + a;
+      sums[2 + a] += body.geometry().volume[c] * u[i] * u[i];
+      sums[5 + a] += body.geometry().volume[c] * x[i] * x[i];
     }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
-  if (!(sums[1] > 0) || !(sums[2] > 0)) return 0;
-  return std::abs(sums[0] / sums[1]) * std::sqrt(sums[3] / sums[2]) / (factor - 1);
+  if (!(sums[1] > 0)) return 0;
+  double largest = 0;
+  for (std::size_t a = 0; a < dim; ++a)
+    if (sums[2 + a] > least_part * least_part * (sums[2] + sums[3] + sums[4]))
+      largest = std::max(largest, std::sqrt(sums[5 + a] / sums[2 + a]));
+  return std::abs(sums[0] / sums[1]) * largest / (factor - 1);
 }
 
 }  // namespace

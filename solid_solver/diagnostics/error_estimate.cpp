@@ -98,7 +98,8 @@ double ErrorEstimate::left_by_solver() const {
   return body_.equilibrium().share_left(view_.stepper.effort().residual, norm(view_.comm(), last.rhs));
 }
 
-/// |u . (b - A u)| / |u . b| of the last linear static solve: relative error of u . b.
+/// |u . (b - A u)| / |u . b| of the last linear static solve: relative error of u . b, which is twice the strain
+/// energy; over the scale of that if larger.
 double ErrorEstimate::missed_work() const {
   const LastSolve& last = view_.stepper.last_solve();
   if (!last.is_known(view_.comm())) return 0;
@@ -106,7 +107,8 @@ double ErrorEstimate::missed_work() const {
   body_.kernel().apply(last.unknowns, {}, missed);
   for (std::size_t i = 0; i < missed.size(); ++i) missed[i] = last.rhs[i] - missed[i];
   const double work = product(view_.comm(), last.unknowns, last.rhs);
-  return work != 0 ? std::abs(product(view_.comm(), last.unknowns, missed) / work) : 0;
+  const double scale = std::max(std::abs(work), 2 * strain_->now(true).scale);
+  return scale > 0 ? std::abs(product(view_.comm(), last.unknowns, missed)) / scale : 0;
 }
 
 /// Adds the effect of a temperature error: the thermal displacement changes in proportion, by its share |u .
@@ -162,7 +164,7 @@ double ErrorEstimate::thermal_mesh_error(double known) const {
 
 double ErrorEstimate::linear_mesh_error() const {
   const StrainAudit& audit = strain_->now(true);
-  if (!(audit.strain_energy > 0)) return diagnostics::ErrorParts::unknown;
+  if (!(audit.scale > 0)) return diagnostics::ErrorParts::unknown;
   const double missed = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
   return body_.is_dynamic() ? missed + drift_.over_size(missed) : missed;
 }

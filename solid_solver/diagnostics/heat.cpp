@@ -77,6 +77,30 @@ void HeatSwing::observe(diagnostics::Report& report) {
            size, highest_ - lowest_)});
 }
 
+/// Finds temperatures below absolute zero, which a linear equation yields if more heat is drawn than there is.
+class ImpossibleTemperature final : public diagnostics::Diagnostic {
+ public:
+  explicit ImpossibleTemperature(const Heat& heat) : heat_(heat) {}
+  void look(diagnostics::Report& report) override {
+    const std::vector<double>& cells = heat_.accepted().cells;
+    const double lowest =
+        parallel::min(heat_.conduction().mesh().comm, cells.empty() ? 0 : std::ranges::min(cells));
+    if (lowest < 0)
+      report.findings.push_back(
+          {.id = "impossible-temperature",
+           .severity = base::Severity::wrong,
+           .number = lowest,
+           .limit = 0,
+           .sentence = fmt::format(
+               "the temperature falls to {:.4g} K, below absolute zero: more heat is drawn than there is; "
+               "check fluxes, films and sources, their signs and units",
+               lowest)});
+  }
+
+ private:
+  const Heat& heat_;
+};
+
 /// Judges whether a steady temperature could follow its loads. Heat takes L^2/a to cross a solid of half
 /// thickness L = volume/surface, a = k/(rho c).
 class HeatStorage final : public diagnostics::Diagnostic {
@@ -142,6 +166,10 @@ diagnostics::Made heat_swing(const Heat& heat) {
   // The only scheme without damping.
   if (heat.is_steady() || heat.parameters().scheme != HeatParameters::Scheme::trapezoidal) return nullptr;
   return std::make_shared<HeatSwing>(heat);
+}
+
+diagnostics::Made impossible_temperature(const Heat& heat) {
+  return std::make_shared<ImpossibleTemperature>(heat);
 }
 
 diagnostics::Made heat_storage(const Heat& heat) {

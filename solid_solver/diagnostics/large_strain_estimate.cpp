@@ -13,7 +13,6 @@
 #include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
-#include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -23,6 +22,10 @@ using Values = std::vector<double>;
 /// Size of displacement gradients for differences. The forces of Saint Venant-Kirchhoff are cubic, so
 /// differences are exact; for other laws they have relative errors of this size.
 constexpr double probe_gradient = 0.01;
+/// Gradient over the last one judged from which another look is worth it.
+constexpr double steeper = 1.1;
+/// Change of the displacement below which small strain is not in question.
+constexpr double harmless = 0.02;
 
 struct Displacement {
   Values unknowns, known;
@@ -68,29 +71,6 @@ class Forces {
   std::unique_ptr<elastic::FiniteKernel> kernel_;
 };
 
-/// Solves with K of the symmetric gradient.
-class Stiffness {
- public:
-  explicit Stiffness(const SolidBody& body)
-      : kernel_(body.mesh(), body.elastic(), elastic::FaceGradientScheme::symmetric),
-        problem_{body.mesh(), body.elastic(), {}, kernel_, 0} {
-    MethodParameters chosen = body.parameters().method;
-    chosen.type = MethodParameters::Type::automatic;
-    chosen.face_gradient = MethodParameters::FaceGradient::symmetric;
-    method_ = make_solution_method(problem_, chosen);
-  }
-  Values solve(const Values& b) {
-    Values u(b.size(), 0);
-    method_->solve(b, u);
-    return u;
-  }
-
- private:
-  elastic::ElasticKernel kernel_;
-  SolidProblem problem_;
-  std::unique_ptr<SolutionMethod> method_;
-};
-
 /// Root of x - a x^3 = 1 on the branch from zero load; NaN if the load has a maximum before.
 double amplitude(double a) {
   if (a > 4. / 27) return std::numeric_limits<double>::quiet_NaN();
@@ -133,20 +113,21 @@ std::string LargeStrainEstimate::text() const {
   return fmt::format("large strain would change the displacement by about {:.3g} %", 100 * change);
 }
 
-LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const double> unknowns,
-                                          std::span<const double> known) {
-  const mesh::Geometry& geometry = body.geometry();
+std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, SolutionMethod& method,
+                                                         std::span<const double> unknowns,
+                                                         std::span<const double> known,
+                                                         double& gradient_seen) {
   const mesh::Mesh& mesh = body.mesh();
-  const Displacement u1{{unknowns.begin(), unknowns.end()}, {known.begin(), known.end()}};
   double steepest = 0;
   body.kernel().face_gradients(
       unknowns, known, [&](Index, const Tensor3& g) { steepest = std::max(steepest, g.norm()); }, 0,
       mesh.n_flux_faces());
   steepest = parallel::max(mesh.comm, steepest);
-  if (!(steepest > 0)) return {};
+  if (!(steepest > steeper * gradient_seen)) return {};
+  gradient_seen = steepest;
+  const Displacement u1{{unknowns.begin(), unknowns.end()}, {known.begin(), known.end()}};
   const double s = probe_gradient / steepest;
   Forces forces(body);
-  Stiffness stiffness(body);
   const std::size_t n = u1.unknowns.size();
   const auto dot = [&](const Values& a, const Values& b) {
     double local = 0;
@@ -159,7 +140,16 @@ LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const
     q[i] = -even[i] / (s * s);
     c[i] = (odd2[i] - 2 * odd[i]) / (6 * s * s * s);
   }
-  const Displacement u2{stiffness.solve(q), Values(known.size(), 0)};
+  const elastic::ElasticField field{unknowns, known};
+  const double work =
+      parallel::sum(mesh.comm, body.kernel().product(elastic::ElasticPart::stiffness, field, field));
+  if (steepest + (std::abs(dot(q, u1.unknowns)) + std::abs(dot(c, u1.unknowns))) / work < harmless) return {};
+  const auto solve = [&](const Values& b) {
+    Values u(n, 0);
+    method.solve(b, u);
+    return u;
+  };
+  const Displacement u2{solve(q), Values(known.size(), 0)};
   // Scales u2 to the size of u1, so that differences resolve both.
   const double size2 = std::sqrt(dot(u2.unknowns, u2.unknowns));
   const double t = size2 > 0 ? std::sqrt(dot(u1.unknowns, u1.unknowns)) / size2 : 1;
@@ -167,7 +157,7 @@ LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const
                without = forces.part(s, combined(1, u1, -t, u2), 1);
   Values r(n);
   for (std::size_t i = 0; i < n; ++i) r[i] = -(with[i] - without[i]) / (2 * s * s * t) - c[i];
-  return summed(mesh, geometry, u1.unknowns, u2.unknowns, stiffness.solve(r));
+  return summed(mesh, body.geometry(), u1.unknowns, u2.unknowns, solve(r));
 }
 
 }  // namespace couplet::solid

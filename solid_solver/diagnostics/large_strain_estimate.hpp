@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
 #include "solid_solver/body/solid_body.hpp"
+#include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {
 
@@ -30,10 +32,14 @@ struct LargeStrainEstimate {
   }
 };
 
-/// Needs two linear solves and some force evaluations, with its own operator. `unknowns`, `known`: linear
-/// solution. Laws: Saint Venant-Kirchhoff, or nearly incompressible neo-Hookean with the volume strain of
-/// cells. Throws SolveFailure. Collective.
-LargeStrainEstimate estimate_large_strain(const SolidBody& body, std::span<const double> unknowns,
-                                          std::span<const double> known);
+/// Looks for such a change in a solution whose steepest gradient exceeds `gradient_seen` by a tenth, which is updated. Four
+/// evaluations of the forces bound the parts of u1 in Q and C, before a held body yields to them; only if these and the
+/// gradient allow a change of 2 %, u2 and u3 are solved for. Empty otherwise. `unknowns`, `known`: linear solution by `method`.
+/// Laws: Saint Venant-Kirchhoff (in plane stress with its constants, which is exact), or nearly incompressible neo-Hookean with
+/// the volume strain of cells. Throws SolveFailure. Collective.
+std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, SolutionMethod& method,
+                                                         std::span<const double> unknowns,
+                                                         std::span<const double> known,
+                                                         double& gradient_seen);
 
 }  // namespace couplet::solid

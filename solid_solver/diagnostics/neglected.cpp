@@ -79,19 +79,23 @@ Opinion neglected_geometry(const P& p, const Deformation& d,
       std::isnan(d.strain)
           ? ""
           : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)", d.strain, 57.29578 * d.rotation);
+  const double share = share_of_geometry(d, large_strain, buckling_factor);
+  const bool is_estimated = large_strain || !std::isnan(buckling_factor);
   return diagnostics::finding_of(
       {.effect = "geometric non-linearity",
-       .number = d.gradient,
-       .limit = 0.02,
+       .number = is_estimated ? share : d.gradient,
+       .limit = is_estimated ? 0.05 : 0.02,
        .what = fmt::format("max |grad u| = {:.2g}{}{}", d.gradient, parts,
-                           large_strain ? "; " + large_strain->text() : ""),
-       .advice = !std::isnan(buckling_factor)
-                     ? "lateral motion grows as the load nears the buckling load: use "
-                       "'kinematics: finite-strain'"
-                 : d.gradient < 0.1 ? "expect errors of a few per cent"
-                                    : "the result holds for linear theory, not for the body: use "
-                                      "'kinematics: finite-strain'",
-       .share = share_of_geometry(d, large_strain, buckling_factor)});
+                           large_strain   ? "; " + large_strain->text()
+                           : is_estimated ? fmt::format("; the buckling shape would grow by {:.2g}", share)
+                                          : ""),
+       .advice =
+           !std::isnan(buckling_factor) ? "lateral motion grows as the load nears the buckling load: use "
+                                          "'kinematics: finite-strain'"
+           : !is_estimated && d.gradient < 0.1 ? "expect errors of a few per cent"
+                                               : "the result holds for linear theory, not for the body: use "
+                                                 "'kinematics: finite-strain'",
+       .share = share});
 }
 
 Opinion neglected_yielding(double share_of_yield) {

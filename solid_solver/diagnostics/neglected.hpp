@@ -18,7 +18,7 @@ using Opinion = std::optional<diagnostics::Finding>;
 Opinion neglected_inertia(const SolidParameters& parameters, double inertia_over_load);
 /// `kinetic_over_strain`: largest energy ratio in a dynamic run.
 Opinion spare_inertia(double kinetic_over_strain, double steps);
-/// `large_strain`: absent if not requested. `buckling_factor`: NaN unless it is low.
+/// `large_strain`: absent if not known or too small to matter. `buckling_factor`: NaN unless it is low.
 Opinion neglected_geometry(const SolidParameters& parameters, const Deformation& largest,
                            const std::optional<LargeStrainEstimate>& large_strain, double buckling_factor);
 /// `share_of_yield`: largest equivalent stress over the yield strength.

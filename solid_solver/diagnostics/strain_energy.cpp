@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/diagnostics/error_parts.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
@@ -104,9 +106,7 @@ double StrainAudit::missed_by_mesh(int dim) const {
   return std::max({missed, smooth_difference, inner_variation});
 }
 
-double StrainAudit::mismatch() const {
-  return strain_energy > 0 ? std::abs(stress_work - strain_energy) / strain_energy : 0;
-}
+double StrainAudit::mismatch() const { return scale > 0 ? std::abs(stress_work - strain_energy) / scale : 0; }
 
 bool StrainAudit::is_doubtful() const {
   return mismatch() > most_mismatch || (compares_gradients && gradient_difference > most_difference) ||
@@ -127,6 +127,41 @@ std::string StrainAudit::text() const {
         100 * inner_variation);
   return text;
 }
+
+namespace {
+
+/// What the strain of the body is compared with. Over all ranks.
+struct Scales {
+  double energy = 0, size = 0;  ///< of free thermal strain e: e : C : e / 2 and mu |e|^2 [J]
+  double load = 0;              ///< mu (|u|/L)^2 with the size L of the body [J]
+  double of(double value, double thermal) const {
+    return diagnostics::scale_of(std::max({value, thermal, 0.0}), load);
+  }
+};
+
+Scales scales_of(const SolidView& view) {
+  const SolidBody& body = view.body;
+  const mesh::Mesh& mesh = body.mesh();
+  const std::vector<double>& volume = body.geometry().volume;
+  const int axes = body.parameters().plane == SolidParameters::Plane::stress ? 2 : 3;
+  Scales scales;
+  if (body.thermal())
+    if (const std::vector<double> pressure = body.thermal()->pressure(view.now().time); !pressure.empty())
+      elastic::visit_pyramids(mesh, body.geometry(), [&](Index c, Index f, double v) {
+        const elastic::LameConstants& lame = body.elastic().lame(c);
+        const double strain = pressure[f] / (axes * lame.lambda + 2 * lame.mu);
+        scales.energy += 0.5 * v * axes * pressure[f] * strain;
+        scales.size += v * lame.mu * axes * strain * strain;
+      });
+  const double length = mesh::extent_of(mesh, body.geometry()).diagonal();
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    scales.load += volume[c] * body.elastic().lame(c).mu *
+                   elastic::vector_at(view.now().cell_u, c, mesh.dim).squaredNorm() / (length * length);
+  for (double* sum : {&scales.energy, &scales.size, &scales.load}) *sum = parallel::sum(mesh.comm, *sum);
+  return scales;
+}
+
+}  // namespace
 
 StrainAudit audit_strain(const SolidView& view, bool compare) {
   const SolidBody& body = view.body;
@@ -187,7 +222,12 @@ StrainAudit audit_strain(const SolidView& view, bool compare) {
   audit.strain_energy = parallel::sum(mesh.comm, energy);
   audit.stress_work = parallel::sum(mesh.comm, work);
   within.finish(body.kernel(), {unknowns, known}, points, audit);
-  if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
+  const Scales scales = scales_of(view);
+  audit.scale = scales.of(audit.strain_energy, scales.energy);
+  if (audit.recovered_difference && audit.scale > 0)
+    *audit.recovered_difference *= std::min(1.0, audit.strain_energy / audit.scale);
+  if (const double of_size = scales.of(size, scales.size); of_size > 0)
+    audit.gradient_difference = std::sqrt(difference / of_size);
   return audit;
 }
 

@@ -16,7 +16,10 @@ struct StrainAudit {
   /// Half the work of loads, prescribed motions and thermal strains [J], computed from the stress: sum_f (C :
   /// epsilon_f) S . (u_N - u_P)/2. In equilibrium it equals half of their products with the displacements.
   double stress_work = 0;
-  /// Relative norm sqrt(sum V_f mu |epsilon|^2) of the strain difference of two face gradients. Only mu
+  /// Energy to which differences are relative [J]: the strain energy, or that of the strain to which heat would
+  /// free the body, if larger, but no less than round-off.
+  double scale = 0;
+  /// Relative norm sqrt(sum V_f mu |epsilon|^2), scaled likewise, of the strain difference of two face gradients. Only mu
   /// enters, because the volume strain is negligible near nu = 1/2.
   double gradient_difference = 0;
   bool compares_gradients = false;
@@ -24,7 +27,7 @@ struct StrainAudit {
   double inner_variation = 0;
   /// SmoothEnergy::missed() of static triangle meshes, else 0.
   double smooth_difference = 0;
-  /// RecoveredStrain::missed() of the symmetric gradient.
+  /// RecoveredStrain::missed() of the symmetric gradient, scaled likewise.
   std::optional<double> recovered_difference;
   /// Error of the stiffness, and so of the displacement, due to the mesh: the largest of these. In 3-D at
   /// most the square of the gradient difference; with other gradients, only that difference.
@@ -43,7 +46,7 @@ struct StrainAudit {
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(strain_energy, stress_work, gradient_difference, compares_gradients, inner_variation,
+    numbers(strain_energy, stress_work, scale, gradient_difference, compares_gradients, inner_variation,
             smooth_difference, recovered_difference);
   }
 };

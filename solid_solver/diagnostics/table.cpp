@@ -19,6 +19,7 @@ Made quantities(const HeatView& view);
 Made stress_error(const SolidView& view);
 Made heat_swing(const Heat& heat);
 Made heat_storage(const Heat& heat);
+Made impossible_temperature(const Heat& heat);
 Made heat_error(const Heat& heat);
 
 // Later diagnostics read earlier ones: energies read strains, stresses and quantities the displacement error.
@@ -36,6 +37,7 @@ void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
   if (const Heat* heat = view.body.thermal() ? view.body.thermal()->heat() : nullptr) {
     all.add("heat-swing", heat_swing(*heat));
     all.add("heat-storage", heat_storage(*heat));
+    all.add("impossible-temperature", impossible_temperature(*heat));
   }
   if (all.with_errors()) all.add("error", solid_error(view, strain, stability));
   all.add("quantities", quantities(view));
@@ -45,6 +47,7 @@ void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
 void add_diagnostics(const HeatView& view, diagnostics::Diagnostics& all) {
   all.add("heat-swing", heat_swing(view.heat));
   all.add("heat-storage", heat_storage(view.heat));
+  all.add("impossible-temperature", impossible_temperature(view.heat));
   if (all.with_errors()) all.add("error", heat_error(view.heat));
   all.add("quantities", quantities(view));
 }

@@ -64,7 +64,7 @@ Values sensitivity(const SolidBody& body, std::span<const double> weight) {
   return z;
 }
 
-/// sum_P |sum_f V_fP s_f : E_f - V_P s_P : E_P|
+/// sum_P (sum_f V_fP s_f : E_f - V_P s_P : E_P)
 double variation_in_cells(const SolidBody& body, const Strains& of_u, const Strains& of_z,
                           std::span<const double> pressure) {
   const auto n = std::size_t(body.mesh().cells.n_owned());
@@ -77,7 +77,7 @@ double variation_in_cells(const SolidBody& body, const Strains& of_u, const Stra
   });
   double all = 0;
   for (std::size_t c = 0; c < n; ++c)
-    if (volume[c] > 0) all += std::abs(varies[c] - contraction(stress[c], strain[c]) / volume[c]);
+    if (volume[c] > 0) all += varies[c] - contraction(stress[c], strain[c]) / volume[c];
   return all;
 }
 
@@ -90,6 +90,20 @@ double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 
     all += v * 2 * body.elastic().lame(c).mu * std::abs(contraction(gap(of_u), gap(of_z)));
   });
   return all;
+}
+
+/// Integral of v^2 with v = e (x - x_0) about the middle x_0 of the body, e the free thermal strain [m^5].
+double free_size(const SolidBody& body, std::span<const double> pressure) {
+  const int axes = body.parameters().plane == SolidParameters::Plane::stress ? 2 : 3;
+  const mesh::Extent box = mesh::extent_of(body.mesh(), body.geometry());
+  double all = 0;
+  elastic::visit_pyramids(body.mesh(), body.geometry(), [&](Index c, Index f, double v) {
+    const elastic::LameConstants& lame = body.elastic().lame(c);
+    const double strain = pressure[f] / (axes * lame.lambda + 2 * lame.mu);
+    all +=
+        v * strain * strain * (body.geometry().cell_centre[c] - 0.5 * (box.lower + box.upper)).squaredNorm();
+  });
+  return parallel::sum(body.mesh().comm, all);
 }
 
 /// Kernel with the other face gradient, for comparison.
@@ -116,11 +130,11 @@ double weighted_mesh_error(const SolidBody& body, std::span<const double> unknow
     return std::numeric_limits<double>::quiet_NaN();
   }
   const Strains u1 = strains(body.kernel(), mesh, unknowns, known), z1 = strains(body.kernel(), mesh, z, {});
-  double missed = variation_in_cells(body, u1, z1, pressure) / 3;
+  const double varies = std::abs(parallel::sum(mesh.comm, variation_in_cells(body, u1, z1, pressure))) / 3;
   const elastic::ElasticKernel other = other_kernel(body);
   const Strains u2 = strains(other, mesh, unknowns, known), z2 = strains(other, mesh, z, {});
-  missed += gap_of_gradients(body, {&u1, &u2}, {&z1, &z2});
-  return parallel::sum(mesh.comm, missed) / size;
+  const double missed = varies + parallel::sum(mesh.comm, gap_of_gradients(body, {&u1, &u2}, {&z1, &z2}));
+  return missed / std::max(size, std::sqrt(size * free_size(body, pressure)));
 }
 
 namespace {

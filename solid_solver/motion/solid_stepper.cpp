@@ -108,6 +108,7 @@ void SolidStepper::begin_step(const coupling::Step& step, bool has_loads) {
   if (body_.prescribed().is_zero()) return;
   const double end = step.time + step.dt;
   body_.prescribed().evaluate(end, trial_.known);
+  body_.prescribed().check(end, trial_.known);
   if (body_.is_dynamic()) {
     body_.prescribed().evaluate_rate(end, step.dt, trial_.known_rate);
   } else {

@@ -76,7 +76,7 @@ class SolidStepper final {
   linalg::SolveStatistics find_equilibrium(const StageWork& work, const SolidState& now);
   void scale_loads(const StageWork& work, double factor);
   void add_inertia(const StageWork& work, const SolidState& now);
-  void add_kernel_inertia(const StageWork& work, const SolidState& now, const time::Levels& known);
+  void add_kernel_inertia(const SolidState& now, const time::Levels& known);
   void add_face_forces(const StageWork& work);
   void guess(const StageWork& work, const SolidState& now);
   void finish_cells(const StageWork& work, const SolidState& now);

@@ -200,7 +200,7 @@ void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
   time::Levels known =
       stage.acceleration + (damping.mass - work.system->mass_factor * damping.stiffness) * stage.rate;
-  if (body_.has_mass()) return add_kernel_inertia(work, now, known);
+  if (body_.has_mass()) return add_kernel_inertia(now, known);
   const History levels(now, state_, false);
   const int dim = mesh_.dim;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
@@ -212,9 +212,8 @@ void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
   }
 }
 
-/// All nodes have inertia, known ones by their own acceleration (and mass damping by their velocity).
-void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& now,
-                                      const time::Levels& known) {
+/// All nodes have inertia. That of known ones acts on the supports only, since each node has a mass of its own.
+void SolidStepper::add_kernel_inertia(const SolidState& now, const time::Levels& known) {
   const History cells(now, state_, false), faces(now, state_, true);
   const int dim = mesh_.dim;
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
@@ -224,13 +223,7 @@ void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& n
   for (std::size_t i = 0; i < open.size(); ++i)
     for (int a = 0; a < dim; ++a)
       levels[n_cells + i * dim + a] = faces(known, std::size_t(open[i] - mesh_.n_interior) * dim + a);
-  const double start = work.place_time - 0.5 * work.stage.dt;  // over a step's length around the place
-  std::vector<double> of_known = body_.known_acceleration(start, work.stage.dt);
-  if (parameters_.damping && parameters_.damping->mass > 0) {
-    const std::vector<double> velocity = body_.known_velocity(start, work.stage.dt);
-    for (std::size_t i = 0; i < velocity.size(); ++i) of_known[i] += parameters_.damping->mass * velocity[i];
-  }
-  kernel_.apply_with_mass(levels, of_known, 1, false, force);
+  kernel_.apply_with_mass(levels, {}, 1, false, force);
   for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
 }
 

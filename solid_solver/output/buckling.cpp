@@ -14,11 +14,71 @@
 
 namespace couplet::solid {
 
-elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
-  const mesh::Geometry& geometry = body.geometry();
+namespace {
+
+// Distance between the places where a load is compared, relative to the size of the body.
+constexpr double load_step = 1e-6;
+// Largest skew part of the gradient of a body force with a potential, relative to the gradient.
+constexpr double skew_part = 1e-3;
+
+/// Derivatives of the values along each axis by central differences; values(shift) are those at moved places.
+template <class Values>
+std::vector<std::vector<double>> slopes(const SolidBody& body, const Values& values) {
+  const double h = load_step * mesh::extent_of(body.mesh(), body.geometry()).diagonal();
+  std::vector<std::vector<double>> result;
+  for (int a = 0; a < body.mesh().dim; ++a) {
+    const std::vector<double> before = values(-h * Vec3::Unit(a));
+    std::vector<double>& slope = result.emplace_back(values(h * Vec3::Unit(a)));
+    for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - before[i]) / (2 * h);
+  }
+  return result;
+}
+
+/// Adds -db/dx of the body forces if it is symmetric.
+void add_body_forces(const SolidBody& body, double time, std::vector<elastic::PlaceBlock>& to) {
   const mesh::Mesh& mesh = body.mesh();
-  return {fields.face_stress(0, mesh.n_flux_faces(), fields.point_displacement()),
-          elastic::pressure_stiffness(mesh, geometry, body.boundaries().pressures(time))};
+  const auto slope = slopes(body, [&](const Vec3& shift) { return body.body_forces(time, shift); });
+  std::vector<elastic::PlaceBlock> blocks;
+  double skew = 0, whole = 0;
+  for (Index c = 0; c < mesh.cells.n_owned() && !slope[0].empty(); ++c) {
+    Tensor3 gradient = Tensor3::Zero();
+    for (int a = 0; a < mesh.dim; ++a)
+      for (int b = 0; b < mesh.dim; ++b)
+        gradient(a, b) = slope[std::size_t(b)][std::size_t(c * mesh.dim + a)];
+    if (gradient.isZero(0)) continue;
+    skew += (0.5 * (gradient - gradient.transpose())).squaredNorm();
+    whole += gradient.squaredNorm();
+    blocks.push_back({c, c, -0.5 * (gradient + gradient.transpose())});
+  }
+  if (parallel::sum(mesh.comm, skew) <= skew_part * skew_part * parallel::sum(mesh.comm, whole))
+    to.insert(to.end(), blocks.begin(), blocks.end());
+}
+
+/// Adds the symmetric part of a dp/dx, see pressure_stiffness().
+void add_pressure_slopes(const SolidBody& body, double time, std::vector<elastic::PlaceBlock>& to) {
+  const mesh::Mesh& mesh = body.mesh();
+  const auto slope =
+      slopes(body, [&](const Vec3& shift) { return body.boundaries().pressures(time, shift); });
+  for (Index b = 0; b < mesh.boundary.n_owned(); ++b) {
+    Vec3 gradient = Vec3::Zero();
+    for (int a = 0; a < mesh.dim; ++a) gradient[a] = slope[std::size_t(a)][std::size_t(b)];
+    if (gradient.isZero(0)) continue;
+    const Tensor3 block = body.geometry().face_area[mesh.n_interior + b] * gradient.transpose();
+    const Index node = mesh.cells.n_local() + b;
+    to.push_back({node, node, 0.5 * (block + block.transpose())});
+  }
+}
+
+}  // namespace
+
+elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
+  const mesh::Mesh& mesh = body.mesh();
+  elastic::Prestress prestress{
+      fields.face_stress(0, mesh.n_flux_faces(), fields.point_displacement()),
+      elastic::pressure_stiffness(mesh, body.geometry(), body.boundaries().pressures(time))};
+  add_body_forces(body, time, prestress.loads);
+  add_pressure_slopes(body, time, prestress.loads);
+  return prestress;
 }
 
 double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress) {

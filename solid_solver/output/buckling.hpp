@@ -9,8 +9,9 @@
 
 namespace couplet::solid {
 
-/// Prestress of the linear solution in `fields` with the pressures at `time` (type: pressure), which follow
-/// the surface. Tractions and forces keep their direction. Collective.
+/// Prestress of the linear solution in `fields` with the tangent of the loads at `time`. Pressures follow the
+/// surface, and they and body forces are those of the place to which the body moves. A body force without
+/// potential (b_y = f(x)) belongs to the body, and tractions and forces keep their direction. Collective.
 elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time);
 
 /// Largest compression in it [Pa], at least 0. Collective.

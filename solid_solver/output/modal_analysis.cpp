@@ -58,6 +58,9 @@ std::vector<double> participation(const SolidProblem& problem, const modes::Eige
 
 // Largest number of rows factorized by default: factors fill in 3-D (33 000 tetrahedra have 2e5 rows).
 constexpr GlobalIndex most_rows_2d = 2000000, most_rows_3d = 400000;
+// Share of the difference of two gradients' strains by which the strain energy errs at most. Measured on the ten
+// lowest modes of a free prism with 2 to 8 cells across: 0.1 to 0.45.
+constexpr double first_order_part = 0.5;
 // Relative residual left by factors of the exact matrix.
 constexpr double exact = 1e-6;
 
@@ -172,7 +175,9 @@ double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
     const double share =
         parallel::sum(mesh.comm, body.kernel().product(elastic::ElasticPart::stiffness, u, u)) /
         modes.eigenvalue[m];
-    most = std::max(most, share * std::max({gap.missed, gap.variation, recovered.missed()}));
+    const double missed =
+        std::max({gap.missed + recovered.missed(), gap.variation, first_order_part * std::sqrt(gap.missed)});
+    most = std::max(most, share * missed);
   }
   return 0.5 * most;
 }

@@ -22,8 +22,10 @@ std::optional<SolidProblem> vibration(const SolidBody& body);
 modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
                               std::span<const double> cell_mass, int n);
 
-/// Relative error of the frequencies due to the mesh, the largest: half that of the strain energies of the mass-normalised
-/// shapes where what is held rests. Collective.
+/// Bound of the relative errors of the frequencies due to the mesh: half that of the strain energies of the
+/// mass-normalised shapes. Two gradients differ by a strain g and by the energy g^2, which falls faster with the cell
+/// size than the error of the frequencies: the larger of this energy, with that of recovered strains, and of a share of
+/// g counts. Collective.
 double mode_error(const SolidBody& body, const modes::EigenModes& modes);
 
 /// What the surface shows of these modes, on rank 0 (empty elsewhere): vertices by ascending point_id, faces by

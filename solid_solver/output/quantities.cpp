@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/diagnostics/finding.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/fv/gradients.hpp"
@@ -186,11 +186,12 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
                                        q.value, q.unit, error, method_of(q))});
   }
   if (rank != 0 || context.output_folder.empty()) return;
-  std::ofstream file(context.output_folder / "quantities.csv");
-  file << "quantity,unit,value,estimated error,at the place,by the dual problem,of the whole body,method\n";
+  std::string text =
+      "quantity,unit,value,estimated error,at the place,by the dual problem,of the whole body,method\n";
   for (const QuantityEstimate& q : found)
-    file << fmt::format("\"{}\",{},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", q.name, q.unit, q.value,
+    text += fmt::format("\"{}\",{},{:.12g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", q.name, q.unit, q.value,
                         q.error(), q.local, q.dual, q.body, method_of(q));
+  base::write_file(context.output_folder / "quantities.csv", text);
 }
 
 }  // namespace couplet::solid

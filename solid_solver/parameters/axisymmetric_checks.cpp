@@ -55,10 +55,9 @@ void check_axisymmetric(config::Section& s, SolidParameters& p) {
   refuse(
       "output",
       [](const SolidParameters& q) {
-        return q.output.spectrum || q.output.modes > 0 || q.output.buckling > 0 ||
-               q.output.large_strain_estimate;
+        return q.output.spectrum || q.output.modes > 0 || q.output.buckling > 0;
       },
-      "'plane: axisymmetric' supports none of 'spectrum', 'modes', 'buckling' and 'large-strain-estimate'; "
+      "'plane: axisymmetric' supports none of 'spectrum', 'modes' and 'buckling'; "
       "model the body in 3-D");
   s.check(
       [&p]() -> std::string {

@@ -46,10 +46,13 @@ void declare_force(config::Section& s, const char* key, Texts& force, const int&
 }
 
 void declare_moment(config::Section& s, Texts& moment, const int& dimension) {
-  s.value("moment", moment)
-      .unit("N m")
-      .plausible(1e-9, 1e12)
-      .doc("moment about 'point', one expression of t per component; in 2-D one, positive from x to y");
+  {
+    config::Key key = s.value("moment", moment);
+    if (dimension == 2) key.size(1);
+    key.unit("N m")
+        .plausible(1e-9, 1e12)
+        .doc("moment about 'point', one expression of t per component; in 2-D one, positive from x to y");
+  }
   s.check([&] { return moment.empty() ? std::string() : problem_of_totals(moment, dimension == 3 ? 3 : 1); },
           "moment");
 }

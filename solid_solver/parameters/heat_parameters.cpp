@@ -18,16 +18,26 @@ struct HeatProperty {
   double lowest, highest;  // usual magnitudes
 };
 
-void declare_property(config::Section& s, const HeatProperty& q, Text& text, double above, const char* doc) {
-  s.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).doc(doc);
-  s.check([&text, above] { return text ? fv::problem_of_property(*text, above) : std::string(); }, q.name);
+void declare_property(config::Section& s, const HeatProperty& q, Text& text, bool is_positive,
+                      const char* doc) {
+  {
+    config::Key key = s.value(q.name, text);
+    key.unit(q.unit).plausible(q.lowest, q.highest).doc(doc);
+    if (is_positive) key.positive();
+  }
+  s.check([&text] { return text ? fv::problem_of_property(*text) : std::string(); }, q.name);
 }
 
 void declare_boundary(config::Section& s, HeatBoundary& b) {
   using Type = HeatBoundary::Type;
   const auto expression = [](config::Section& v, const HeatProperty& q, config::ExpressionText& text,
-                             const char* doc) {
-    v.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).required().doc(doc);
+                             const char* doc, double least = -std::numeric_limits<double>::infinity()) {
+    v.value(q.name, text)
+        .range(least, std::numeric_limits<double>::infinity())
+        .unit(q.unit)
+        .plausible(q.lowest, q.highest)
+        .required()
+        .doc(doc);
     v.check([&text] { return fv::problem_of(text); }, q.name);
   };
   s.variant<Type>(
@@ -43,7 +53,7 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
        {"convection", Type::convection,
         [&b, expression](config::Section& v) {
           expression(v, {"coefficient", "W/(m^2 K)", 1e-3, 1e7}, b.coefficient,
-                     "heat transfer coefficient, of x, y, z, t");
+                     "heat transfer coefficient, of x, y, z, t", 0);
           expression(v, {"ambient", "K", 70, 5000}, b.ambient, "temperature of the fluid, of x, y, z, t");
         }},
        {"adiabatic", Type::adiabatic, [](config::Section&) {}},
@@ -54,18 +64,19 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
 }  // namespace
 
 void declare(config::Section& s, HeatMaterial& m) {
-  declare_property(s, {"conductivity", "W/(m K)", 1e-3, 1e4}, m.conductivity, 0,
+  declare_property(s, {"conductivity", "W/(m K)", 1e-3, 1e4}, m.conductivity, true,
                    "thermal conductivity: a number or a table of T");
-  declare_property(s, {"specific-heat", "J/(kg K)", 10, 1e5}, m.specific_heat, 0,
+  declare_property(s, {"specific-heat", "J/(kg K)", 10, 1e5}, m.specific_heat, true,
                    "specific heat: a number or a table of T");
-  declare_property(s, {"expansion", "1/K", 1e-8, 1e-2}, m.expansion, -1,
+  declare_property(s, {"expansion", "1/K", 1e-8, 1e-2}, m.expansion, false,
                    "instantaneous coefficient of thermal expansion: a number or a table of T, integrated "
                    "from the reference temperature");
-  declare_property(s, {"youngs-modulus-table", "Pa", 1, 2e12}, m.youngs_modulus, 0,
+  declare_property(s, {"youngs-modulus-table", "Pa", 1, 2e12}, m.youngs_modulus, true,
                    "table of T that replaces youngs-modulus where the temperature is known");
   s.value("poissons-ratio-table", m.poissons_ratio)
+      .range(-0.99, 0.49999)
       .doc("table of T that replaces poissons-ratio where the temperature is known");
-  s.check([&m] { return m.poissons_ratio ? fv::problem_of_property(*m.poissons_ratio, -1) : std::string(); },
+  s.check([&m] { return m.poissons_ratio ? fv::problem_of_property(*m.poissons_ratio) : std::string(); },
           "poissons-ratio-table");
 }
 

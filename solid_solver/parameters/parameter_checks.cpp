@@ -140,29 +140,8 @@ void check_rigid_patches(config::Section& s, SolidParameters& p) {
              !symmetric_suits(p),
          "a remote-load with 'coupling: rigid' requires 'face-gradient: symmetric' and 'type: newton-krylov' "
          "(or 'auto') without 'preconditioner: mixed' and 'zero-normal-gradient'");
-  refuse("output", p.output.spectrum || p.output.modes > 0 || p.output.large_strain_estimate,
-         "'spectrum', 'modes' and 'large-strain-estimate' do not support a remote-load with 'coupling: "
-         "rigid'");
-}
-
-void check_large_strain_estimate(config::Section& s, SolidParameters& p) {
-  s.check(
-      [&p]() -> std::string {
-        if (!p.output.large_strain_estimate) return "";
-        if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
-          return "'large-strain-estimate' requires a linear static analysis: 'analysis: static' without "
-                 "'kinematics: finite-strain'";
-        if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
-          return "'large-strain-estimate' supports plane strain only; model the sheet in 3-D";
-        if (has_orthotropic(p) || p.expansion)
-          return "'large-strain-estimate' supports neither orthotropic materials nor thermal strain";
-        MethodParameters any = p.method;
-        any.type = MethodParameters::Type::automatic;
-        SolidParameters q = p;
-        q.method = any;
-        return symmetric_suits(q) ? "" : "'large-strain-estimate' does not support 'zero-normal-gradient'";
-      },
-      "output");
+  refuse("output", p.output.spectrum || p.output.modes > 0,
+         "'spectrum' and 'modes' do not support a remote-load with 'coupling: rigid'");
 }
 
 void check_quantities(config::Section& s, SolidParameters& p) {
@@ -226,8 +205,7 @@ void check_contact(config::Section& s, SolidParameters& p) {
              !symmetric_suits(p),
          "'contact' requires 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
          "'preconditioner: mixed' and 'zero-normal-gradient'");
-  refuse("output", p.output.buckling > 0 || p.output.large_strain_estimate,
-         "'buckling' and 'large-strain-estimate' know nothing of a seat; remove them, or 'contact'");
+  refuse("output", p.output.buckling > 0, "'buckling' knows nothing of a seat; remove it, or 'contact'");
 }
 
 /// Settings incompatible with an elastic matrix, reported at the key to change.

@@ -98,10 +98,6 @@ void declare(config::Section& s, SolidOutputParameters& o) {
       .plausible(1e-9, 1e4)
       .doc("point about which 'moments' are taken; it rests");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
-  s.value("large-strain-estimate", o.large_strain_estimate)
-      .doc(
-          "for a linear static analysis: change of the displacement that 'kinematics: finite-strain' would "
-          "cause, from two more linear solves per step; reported at the end of the run");
   s.value("spectrum", o.spectrum)
       .doc(
           "write the eigenvalues of M^-1 K of a dynamic analysis to spectrum.csv at the start and report "
@@ -111,14 +107,15 @@ void declare(config::Section& s, SolidOutputParameters& o) {
       .doc(
           "number of lowest free vibrations to compute (face-gradient: symmetric): for a dynamic analysis "
           "at the start and unloaded, for a linear static one at the end, about the loaded equilibrium "
-          "whose stress stiffens or softens the body; modes.csv, and in 3-D modes.h5, which plate_modal "
+          "whose stress and loads (as for buckling) stiffen or soften the body; modes.csv, and in 3-D modes.h5, which plate_modal "
           "reads; 0: none");
   s.value("buckling", o.buckling)
       .range(0, 1000)
       .doc(
           "number of lowest load factors at which the equilibrium of a linear static analysis buckles "
           "(face-gradient: symmetric), computed at the end: buckling.csv and the shapes in buckling.xdmf; "
-          "pressures follow the surface, other loads keep their direction; 0: none; with 'analysis: "
+          "pressures follow the surface; they and body forces are those of the place to which the body moves; other "
+          "loads keep their direction; 0: none; with 'analysis: "
           "buckling' 4");
 }
 
@@ -135,6 +132,13 @@ void declare_scene(config::Section& s, SolidParameters& p) {
       .doc(
           "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
           "keys remain in metres");
+  using TouchingFaces = SolidParameters::TouchingFaces;
+  s.choice(
+       "touching-faces", p.touching_faces,
+       {{"refused", TouchingFaces::refused}, {"tie", TouchingFaces::tie}, {"apart", TouchingFaces::apart}})
+      .doc(
+          "parts of the mesh that touch without sharing points: refused unless the faces on both sides are patches of their "
+          "own with a load or support; tie joins faces with the same corners; apart leaves them, as those of a crack");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
@@ -280,7 +284,6 @@ void declare(config::Section& s, SolidParameters& p) {
   check_contact(s, p);
   check_load_stepping(s, p);
   check_buckling(s, p);
-  check_large_strain_estimate(s, p);
   check_quantities(s, p);
 }
 

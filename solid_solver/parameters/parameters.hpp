@@ -40,7 +40,6 @@ struct SolidOutputParameters {
   bool point_stress = false;
   bool acceleration = false;
   bool energies = false;
-  bool large_strain_estimate = false;
   bool spectrum = false;
   bool moments = false;
   Vec3 moment_centre = Vec3::Zero();  // [m]
@@ -56,10 +55,12 @@ void declare(config::Section& section, SolidOutputParameters& output);
 struct SolidParameters {
   enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: becomes static_ after parsing
   enum class Plane { strain, stress, axisymmetric };
+  enum class TouchingFaces { refused, tie, apart };
   enum class Kinematics { small_strain, finite_strain };
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
   double mesh_scale = 1;
+  TouchingFaces touching_faces = TouchingFaces::refused;
   int dimension = 3;
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;

@@ -44,10 +44,7 @@ Heat::Heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<H
       conduction_(mesh, geometry, boundaries_.conditions()),
       source_(parameters_.source, "heat.source"),
       matrix_(conduction_.make_matrix()) {
-  if (is_steady() && !boundaries_.fix_the_level())
-    throw Error(
-        "heat.boundaries: a steady temperature is undetermined without a level; set at least one patch to "
-        "'type: temperature' or 'type: convection'.");
+  require_level(!boundaries_.gives_temperature() && !boundaries_.any_transfer());
   properties_vary_ =
       std::ranges::any_of(materials_, [](const HeatProperties& m) { return !m.is_constant(); });
   solver_ = std::make_unique<linalg::LinearSolver>(
@@ -57,6 +54,13 @@ Heat::Heat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<H
 }
 
 Heat::~Heat() = default;
+
+void Heat::require_level(bool is_missing) const {
+  if (is_steady() && is_missing)
+    throw Error(
+        "heat.boundaries: a steady temperature is undetermined without a level; set at least one patch to "
+        "'type: temperature' or to 'type: convection' with a coefficient above 0.");
+}
 
 void Heat::start() {
   const fv::Expression initial(parameters_.initial_temperature, "heat.initial-temperature");
@@ -145,6 +149,8 @@ void Heat::solve(const coupling::Step& step, std::span<const double> source) {
   trial_.boundary = state_.boundary;
   boundaries_.known(conduction_, end, trial_.known);
   boundaries_.fluxes(end, face_heat_, transfer_);
+  if (is_steady() && !boundaries_.gives_temperature())
+    require_level(parallel::max(mesh_->comm, transfer_.empty() ? 0 : std::ranges::max(transfer_)) == 0);
   const std::vector<double> in_cells = sources(end, source);
   // The matrix of the last step is reused if none of its data have changed.
   const bool kept = !properties_vary_ && !boundaries_.transfer_uses_time() &&

@@ -92,6 +92,8 @@ class Heat final {
  private:
   struct Coefficients;
   void start();
+  /// Throws Error if a steady field is `is_missing` a temperature that determines its level.
+  void require_level(bool is_missing) const;
   std::pair<std::vector<double>, std::vector<double>> known_fields() const;
   Coefficients coefficients(double dt) const;
   std::vector<double> face_heat() const;  // through flux faces into their owners [W]

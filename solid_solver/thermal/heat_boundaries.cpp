@@ -54,8 +54,8 @@ HeatBoundaries::HeatBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geo
   on_patch_.emplace_back();
 }
 
-bool HeatBoundaries::fix_the_level() const {
-  return any_transfer() || std::ranges::count(conditions_, fv::HeatCondition::temperature) > 0;
+bool HeatBoundaries::gives_temperature() const {
+  return std::ranges::count(conditions_, fv::HeatCondition::temperature) > 0;
 }
 
 bool HeatBoundaries::any_transfer() const {

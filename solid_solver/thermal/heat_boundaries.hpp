@@ -20,8 +20,8 @@ class HeatBoundaries final {
 
   /// One per patch.
   const std::vector<fv::HeatCondition>& conditions() const { return conditions_; }
-  /// True if a condition determines the temperature level, as a steady field requires.
-  bool fix_the_level() const;
+  /// Returns true if a patch has a given temperature.
+  bool gives_temperature() const;
   bool any_transfer() const;
   bool transfer_uses_time() const;
 

@@ -26,7 +26,7 @@ MISTAKES = [
     ("degrees for radians in a motion", "fluid", [("    boundaries:", "    motion: {angle: 30}\n    boundaries:")], "refused",
      {"message": "motion.angle: '30' has no unit, but one is required: write 30 deg or 30 rad."}),
     ("hertz for radians per second", "fluid", [("    boundaries:", "    rotating-frame: {speed: 10 Hz}\n    boundaries:")], "refused",
-     {"message": "rotating-frame.speed: '10 Hz' is a frequency, but an angular velocity is expected"}),
+     {"message": "rotating-frame.speed: '10 Hz': the unit 'Hz' is not convertible to rad/s (a turn is 6.2832 rad or 360 deg)."}),
     ("a step far beyond the explicit limit", "fluid", STIFF + [("    boundaries:", "    viscous: explicit\n    time-step: 0.5 s\n    boundaries:")],
      "refused", {"message": "The explicit viscous term is stable there up to a step of", "run": True, "code": 1}),
     ("a long step that the fluid may divide", "fluid", STIFF + [("    boundaries:", "    viscous: explicit\n    boundaries:")],

@@ -18,6 +18,24 @@ Curve Loop(1) = {1, 2, 3}; Plane Surface(1) = {1};
 Physical Curve("bottom") = {1}; Physical Curve("right") = {2}; Physical Curve("top") = {3}; Physical Curve("left") = {3};
 Physical Surface("inside") = {1};
 """
+TOUCHING = """*NODE
+1, 0, 0
+2, 1, 0
+3, 1, 1
+4, 0, 1
+5, 1, 0
+6, 2, 0
+7, 2, 1
+8, 1, 1
+*ELEMENT, TYPE=CPS4, ELSET=body
+1, 1, 2, 3, 4
+2, 5, 6, 7, 8
+*NSET, NSET=left
+1, 4
+*NSET, NSET=right
+6, 7
+"""
+TWO_PARTS = [("square.msh", "parts.inp"), ("      bottom: {type: free}\n      top: {type: free}\n", "      rest: {type: free}\n")]
 HOLD = "{type: fixed-displacement, value: [0, 0]}"
 SPATIAL = [("dimension: 2", "dimension: 3"), ("value: [0, 0]", "value: [0, 0, 0]"), ("[1 MPa, 0]", "[1 MPa, 0, 0]"), ("[1, 1]", "[1, 1, 0]")]
 MISTAKES = [
@@ -60,6 +78,13 @@ MISTAKES = [
     ("two patches on one face", "solid", [("square.msh", "shared.msh")], "refused",
      {"message": "The boundary face at (0.25, 0) is in two patches, 'bottom' and 'right'. Every boundary face must be in exactly one patch.", "run": True,
       "files": {"shared.msh": SHARED}}),
+    ("parts that touch but share no points", "solid", TWO_PARTS, "refused",
+     {"message": "mesh: 2 faces of patch 'rest', the first at (1, 0.5), touch faces of the same patch without sharing their points", "run": True,
+      "files": {"parts.inp": TOUCHING}}),
+    ("parts that touch and are tied", "solid", TWO_PARTS + [("dimension: 2", "dimension: 2\n    touching-faces: tie")], "right",
+     {"message": "the load passes from part to part", "run": True, "files": {"parts.inp": TOUCHING}}),
+    ("parts that touch and are tied, but with other points", "solid", TWO_PARTS + [("dimension: 2", "dimension: 2\n    touching-faces: tie")], "refused",
+     {"message": "so 'touching-faces: tie' cannot join them", "run": True, "files": {"parts.inp": TOUCHING.replace("8, 1, 1", "8, 1, 0.8")}}),
     ("geometry that is not closed", "solid", [("square.msh", "open.geo")], "refused",
      {"message": "gmsh could not mesh 'open.geo'", "run": True, "files": {"open.geo": OPEN}}),
     ("interface on the wrong side", "coupled", [("bottom: {type: fixed-displacement, value: [0, 0]}", "bottom: {type: interface}"),

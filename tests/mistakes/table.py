@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import flow_mistakes
 import number_mistakes
+import reliability_mistakes
 import scene_mistakes
 
 REFUSED, FLAGGED, RIGHT = "refused", "flagged", "right"
@@ -24,5 +25,5 @@ class Mistake:
     twice: list = None  # arguments of a second run in the same folder, which is the one judged
 
 
-GROUPS = {"numbers": number_mistakes, "flow": flow_mistakes, "scene": scene_mistakes}
+GROUPS = {"numbers": number_mistakes, "flow": flow_mistakes, "scene": scene_mistakes, "reliability": reliability_mistakes}
 MISTAKES = {name: [Mistake(*words[:4], **(words[4] if len(words) > 4 else {})) for words in group.MISTAKES] for name, group in GROUPS.items()}

@@ -44,9 +44,14 @@ class UnusedInput final : public TankDiagnostic {
       tell(report, "flow-schedule", "first",
            fmt::format("no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
                        first - rows.begin(), first->at));
-    else if (const auto later = std::ranges::find_if_not(rows, began); later != rows.end())
-      report.sentences.push_back(fmt::format("flow.rows[{}] starts at {:g} s, after the end of the run",
-                                             later - rows.begin(), later->at));
+    else if (const auto later = std::ranges::find_if_not(rows, began); later != rows.end()) {
+      tell(report, "flow-schedule", "later",
+           fmt::format("flow.rows[{}] starts at {:g} s, after the end of the run; of {} rows {} ran",
+                       later - rows.begin(), later->at, rows.size(), later - rows.begin()));
+      // A short run of a long schedule is no fault, but one that only sees its first row may have other units.
+      if (later - rows.begin() > 1) report.findings.back().severity = base::Severity::note;
+    }
+    look_at_end(report);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const ScheduleRow& row = rows[i];
       if (row.mass_flow == 0 || !began(row) || flowed_[i] != 0) continue;
@@ -59,6 +64,21 @@ class UnusedInput final : public TankDiagnostic {
                        "that whenever it started",
                        i, limits, row.mass_flow > 0 ? "top" : "bottom"));
     }
+  }
+
+  /// Reports a last row with a flow that holds far longer than the whole schedule before it.
+  void look_at_end(diagnostics::Report& report) const {
+    const FlowParameters& flow = view_.parameters().flow;
+    if (flow.repeat || flow.rows.size() < 2 || flow.rows.back().mass_flow == 0) return;
+    constexpr double long_times = 10;
+    const double span = flow.rows.back().at - flow.rows.front().at, held = reached_ - flow.rows.back().at;
+    if (held > long_times * span)
+      tell(
+          report, "flow-schedule", "end",
+          fmt::format(
+              "the last row, flow.rows[{}], starts at {:g} s and its flow went on for {:g} s more, {:.0f} times the "
+              "schedule before it: end it by a row without flow, or check the unit of its times",
+              flow.rows.size() - 1, flow.rows.back().at, held, held / span));
   }
 
   void look_at_capsules(diagnostics::Report& report) const {

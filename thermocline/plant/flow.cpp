@@ -117,15 +117,11 @@ class FlowColumns {
     if (text.empty())
       throw Error("{}: the unit of the column '{}' is missing; write for example '{} [{}]'.", place,
                   column.name, column.name, column.example);
-    const auto wanted = base::parse_unit(column.unit);
     try {
-      const base::Unit unit = base::parse_unit(text);
-      if (unit.dimension == wanted.dimension) return unit;
+      return base::parse_unit(text, column.unit);
     } catch (const Error& error) {
       throw Error("{}: column '{}': {}", place, column.name, error.what());
     }
-    throw Error("{}: the unit '{}' of the column '{}' is not one of {}.", place, text, column.name,
-                column.unit);
   }
 
   std::array<std::optional<std::size_t>, known.size()> at_;

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "common/base/error.hpp"
@@ -84,21 +83,16 @@ void DayReport::finish() {
     results_.add(day_);
   }
   if (folder_.empty()) return;
-  std::ofstream summary(base::own_file(folder_ / "summary.csv"));
-  summary << "quantity,unit,value\n";
+  std::string summary = "quantity,unit,value\n";
   for (const ReportLine& line : lines())
-    summary << fmt::format("{},{},{}\n", line.quantity, line.unit, line.value);
-  if (!stress_.empty()) {
-    std::ofstream stress(base::own_file(folder_ / "stress.csv"));
-    stress << "z [m],mean daily lowest share [-],mean daily highest share [-],highest share [-]\n";
-    for (const StressHistory::Ring& ring : stress_.rings())
-      stress << fmt::format("{},{},{},{}\n", ring.z, ring.sum_lowest / stress_.days(),
-                            ring.sum_highest / stress_.days(), ring.highest);
-    stress.flush();
-    if (!stress) throw Error("Cannot write {}. Is the disk full?", (folder_ / "stress.csv").string());
-  }
-  summary.flush();
-  if (!summary) throw Error("Cannot write {}. Is the disk full?", (folder_ / "summary.csv").string());
+    summary += fmt::format("{},{},{}\n", line.quantity, line.unit, line.value);
+  base::write_file(folder_ / "summary.csv", summary);
+  if (stress_.empty()) return;
+  std::string stress = "z [m],mean daily lowest share [-],mean daily highest share [-],highest share [-]\n";
+  for (const StressHistory::Ring& ring : stress_.rings())
+    stress += fmt::format("{},{},{},{}\n", ring.z, ring.sum_lowest / stress_.days(),
+                          ring.sum_highest / stress_.days(), ring.highest);
+  base::write_file(folder_ / "stress.csv", stress);
 }
 
 void declare(config::Section& s, EconomicsParameters& p) {

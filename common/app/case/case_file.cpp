@@ -110,8 +110,7 @@ std::string find_participant(const CommandLine& command_line, const Program& pro
 /// Problem of an expression in x, y, z, t or of a property (a number or a table of the temperature T).
 std::string problem_of_expression(const config::ExpressionText& text) {
   std::string problem = fv::problem_of(text);
-  if (problem.find("unknown name 'T'") != std::string::npos)
-    return fv::problem_of_property(text, -std::numeric_limits<double>::infinity());
+  if (problem.find("unknown name 'T'") != std::string::npos) return fv::problem_of_property(text);
   return problem;
 }
 

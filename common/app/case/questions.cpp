@@ -21,6 +21,7 @@
 #include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/readers/read_msh.hpp"
 
 namespace couplet::app {
 
@@ -56,7 +57,7 @@ class FileCheck {
     }
     try {
       if (file.extension() == ".msh") {
-        check_patches(mesh::read_msh(file).patches);
+        if (!mesh::is_converted(file)) check_patches(mesh::read_msh(file).patches);
       } else if (file.extension() == ".inp") {
         check_patches(mesh::read_inp(file).patches);
       } else if (file.extension() == ".geo") {
@@ -64,7 +65,7 @@ class FileCheck {
       } else if (io::is_cut_mesh(file)) {
         check_patches(io::read_cut_mesh_facts(file).patches);
       } else if (const std::string kind = file.extension().string();
-                 kind != ".unv" && kind != ".cgns" && !mesh::is_read_by_meshio(kind)) {
+                 kind != ".cgns" && !mesh::is_foreign(kind)) {
         report("mesh",
                fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo, .cgns or .h5 file.", name));
       }
@@ -80,7 +81,12 @@ class FileCheck {
                                                       base::did_you_mean(name, script.constants, "names")));
     const auto dimension = config::text_of(document_, section_ + ".dimension");
     if (dimension != "2" && dimension != "3") return;
-    if (const auto& patches = script.groups[*dimension == "2" ? 1 : 2]) check_patches(*patches);
+    std::optional<Names> patches = script.groups[*dimension == "2" ? 1 : 2];
+    if (!patches) return;
+    // Only gmsh knows whether some boundary is in no group.
+    for (const std::string& entry : config::keys_of(document_, section_ + ".boundaries"))
+      if (entry == "rest" && std::ranges::find(*patches, entry) == patches->end()) patches->push_back(entry);
+    check_patches(*patches);
   }
 
   void check_patches(const Names& patches) {

@@ -43,6 +43,15 @@ void declare_files(config::Section& section, SimulationParameters& p) {
       [&](config::Section& s) {
         s.value("folder", p.output_folder)
             .doc("folder in which each participant creates its own; relative to the folder of the YAML file");
+        s.check(
+            [&p] {
+              const bool is_of_a_shell =
+                  p.output_folder.starts_with('~') || p.output_folder.find('$') != std::string::npos;
+              return is_of_a_shell
+                         ? "'~' and '$' are not replaced here, as a shell would do; write the whole path"
+                         : "";
+            },
+            "folder");
         s.value("interval", p.output_interval)
             .unit("s")
             .plausible(1e-12, 1e10)

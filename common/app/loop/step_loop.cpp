@@ -5,7 +5,6 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <random>
 #include <tuple>
@@ -13,6 +12,7 @@
 
 #include "common/app/watch/watch.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/log/log.hpp"
@@ -116,17 +116,15 @@ fs::path find_checkpoint(const fs::path& folder, bool tell) {
         "out/checkpoints/step-00000100, or its parent folder for the latest one.",
         folder.string());
   const io::FoundSet& furthest = found.back();
-  const auto youngest =
-      std::max_element(found.begin(), found.end(), [](const io::FoundSet& a, const io::FoundSet& b) {
-        return std::tie(a.stamp.run, a.stamp.time) < std::tie(b.stamp.run, b.stamp.time);
-      });
-  if (tell && youngest->stamp.run > furthest.stamp.run)
+  const io::FoundSet& latest = *std::ranges::max_element(
+      found, {}, [](const io::FoundSet& set) { return std::tie(set.stamp.run, set.stamp.time); });
+  if (tell && latest.stamp.run > furthest.stamp.run)
     log::warn(
-        "--restart {}: {}, from an earlier run, is later (t = {:g} s) than the last one of the latest run, "
-        "{} (t = {:g} s). The former is used; to use the latter, give its folder.",
-        folder.string(), furthest.folder.filename().string(), furthest.stamp.time,
-        youngest->folder.filename().string(), youngest->stamp.time);
-  return furthest.folder;
+        "--restart {}: {}, the last one of the latest run (t = {:g} s), is used. To use {} of an earlier run "
+        "(t = {:g} s), give its folder.",
+        folder.string(), latest.folder.filename().string(), latest.stamp.time,
+        furthest.folder.filename().string(), furthest.stamp.time);
+  return latest.folder;
 }
 
 StepLoop::StepLoop(MPI_Comm comm, const SimulationParameters& simulation, coupling::Scheme scheme,
@@ -178,10 +176,7 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
   actions.save(folder);
   write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state()});
   on_first_rank(comm_, [&] {
-    std::ofstream keys(folder / "keys.txt", std::ios::binary);
-    keys << simulation_.keys;
-    keys.close();
-    if (!keys) throw Error("Cannot write the checkpoint in {}. Is the disk full?", folder.string());
+    base::write_file(folder / "keys.txt", simulation_.keys, true);
     io::finish_checkpoint_set(folder, stamp, continues_);
     log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
     // Keeps sets of other runs.

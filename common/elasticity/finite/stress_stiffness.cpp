@@ -28,7 +28,7 @@ void StressStiffness::apply(std::span<const double> x, std::span<double> y) {
   space_.clear_forces();
   for (const FaceGroup& group : groups_) space_.mesh().dim == 2 ? push<2>(group) : push<3>(group);
   if (edges_) push_edges();
-  add_blocks(space_, of_.pressure, 1);
+  add_blocks(space_, of_.loads, 1);
   space_.collect();
   space_.take_rows({}, {}, y);
 }

@@ -11,7 +11,7 @@
 namespace couplet::elastic {
 
 /// Geometric stiffness of the symmetric gradient without a matrix: v . K_sigma v = sum_f V_f sigma_f : G_f^T
-/// G_f. Triangles share it with their edges (SharedEdges). It includes the stiffness of a follower pressure.
+/// G_f. Triangles share it with their edges (SharedEdges). It includes the tangent of the loads.
 class StressStiffness {
  public:
   /// Keeps references to mesh and rows, and the needed parts of `of`. Collective.

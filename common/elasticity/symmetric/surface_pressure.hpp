@@ -15,10 +15,10 @@ struct PlaceBlock {
   Tensor3 block;
 };
 
-/// Initial stresses of a body.
+/// Initial stresses of a body and the tangent of its loads.
 struct Prestress {
-  std::vector<Tensor3> stress;       ///< per flux face [Pa], of the kernel's test functions
-  std::vector<PlaceBlock> pressure;  ///< of a follower pressure
+  std::vector<Tensor3> stress;    ///< per flux face [Pa], of the kernel's test functions
+  std::vector<PlaceBlock> loads;  ///< change of the loads with the displacement
 };
 
 /// Adds `factor` times the forces of the blocks for the displacement in the space.

@@ -72,7 +72,7 @@ linalg::SparseMatrix TiedMatrix::assemble(const EnergyParts& parts) {
   assembly.add_edges(parts);
   assembly.add_volumes(parts);
   if (parts.stiffness != 0) assembly.add_supports();
-  if (parts.stress != 0) assembly.add_places(parts.stress, parts.prestress->pressure);
+  if (parts.stress != 0) assembly.add_places(parts.stress, parts.prestress->loads);
   if (parts.mass != 0) assembly.add_mass(parts.mass, parts.density);
   tie_ = assembly.mean_diagonal();
   add_ties(assembly);

@@ -114,6 +114,7 @@ struct FieldWriter::State {
   void begin(std::span<const Vec3> places, double restart_time);
   void start(std::span<const Vec3> places);
   bool continue_from(double restart_time);
+  void set_aside(const std::string& problem);
   void find_order();
   /// Reads the entries of an earlier run up to `restart_time`. Returns the names of later outputs.
   std::vector<std::string> read_index(double restart_time);
@@ -121,7 +122,7 @@ struct FieldWriter::State {
 };
 
 void FieldWriter::State::start(std::span<const Vec3> places) {
-  const hdf5::Handle id = hdf5::create_file(mesh.comm, file());
+  hdf5::Handle id = hdf5::create_file(mesh.comm, file());
   hdf5::write_attribute(id, "format", format);
   hdf5::write_attribute(id, "ranks", double(parallel::comm_size(mesh.comm)));
   const Topology topology = make_topology(mesh);
@@ -132,6 +133,7 @@ void FieldWriter::State::start(std::span<const Vec3> places) {
   hdf5::write_table(id, "mesh/point-id", point_rows, mesh.point_id.data());
   write_points(id, "mesh/coordinates", places);
   hdf5::write_attribute(id, "kind", double(topology.kind));
+  hdf5::close_file(mesh.comm, id, file());
   index = {file().filename().string(),
            topology.kind,
            rows.total * rows.width,
@@ -162,7 +164,7 @@ void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vecto
 }
 
 std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
-  const hdf5::Reader in(file(), "output", "Move it away or restart without it.");
+  const hdf5::Reader in(file(), "output");
   if (in.text("/", "format") != format)
     in.refuse(format == surface_format ? "it is not a surface output file" : "it is not a field output file");
   const double kind = in.number("/", "kind");
@@ -193,9 +195,7 @@ void FieldWriter::State::find_order() {
     cell_order = parallel::GlobalOrder::of_rows(mesh.comm, cells_there, here(mesh.cell_id, cell_rows));
     point_order = parallel::GlobalOrder::of_rows(mesh.comm, points_there, here(mesh.point_id, point_rows));
   } catch (const Error&) {
-    throw Error(
-        "The output '{}' cannot be used: it was written on another mesh. Move it away or restart without it.",
-        file().string());
+    throw Error("The output '{}' cannot be used: it was written on another mesh.", file().string());
   }
 }
 
@@ -203,14 +203,35 @@ bool FieldWriter::State::continue_from(double restart_time) {
   int there = parallel::comm_rank(mesh.comm) == 0 && std::filesystem::exists(file()) ? 1 : 0;
   MPI_Bcast(&there, 1, MPI_INT, 0, mesh.comm);
   if (there == 0) return false;
-  const std::vector<std::string> dropped =
-      parallel::on_all(mesh.comm, [&] { return read_index(restart_time); });
-  find_order();
-  number = static_cast<int>(index.entries.size());
-  if (dropped.empty()) return true;
-  const hdf5::Handle id = hdf5::open_file_to_write(mesh.comm, file());
-  for (const std::string& entry : dropped) hdf5::remove(id, "steps/" + entry);
-  return true;
+  try {
+    const std::vector<std::string> dropped =
+        parallel::on_all(mesh.comm, [&] { return read_index(restart_time); });
+    find_order();
+    number = static_cast<int>(index.entries.size());
+    if (dropped.empty()) return true;
+    hdf5::Handle id = hdf5::open_file_to_write(mesh.comm, file());
+    for (const std::string& entry : dropped) hdf5::remove(id, "steps/" + entry);
+    hdf5::close_file(mesh.comm, id, file());
+    return true;
+  } catch (const Error& problem) {  // the same on all ranks
+    set_aside(problem.what());
+    return false;
+  }
+}
+
+/// Renames a file that cannot be continued. Damaged outputs must not keep a run from resuming, because its
+/// state is in the checkpoint.
+void FieldWriter::State::set_aside(const std::string& problem) {
+  point_order.reset();
+  cell_order.reset();
+  number = 0;
+  parallel::on_root(mesh.comm, [&] {
+    std::filesystem::path aside = file().string() + ".aside";
+    while (std::filesystem::exists(aside)) aside += "-1";
+    std::filesystem::rename(file(), aside);
+    log::warn("{} It is set aside as '{}', and the outputs from here on are in a new file.", problem,
+              aside.string());
+  });
 }
 
 /// Creates the folder and continues an existing series or begins one. Collective.
@@ -260,8 +281,8 @@ void FieldWriter::write(double time, std::span<const Vec3> points, const std::ve
     for (const Index v : part_->points) places.push_back(points[v]);
   xdmf::Entry entry{step_name(s.number), time, {}};
   {
-    const hdf5::Handle id = hdf5::open_file_to_write(s.mesh.comm, s.file());
-    const hdf5::Handle group = hdf5::make_group(id, entry.group);
+    hdf5::Handle id = hdf5::open_file_to_write(s.mesh.comm, s.file());
+    hdf5::Handle group = hdf5::make_group(id, entry.group);
     hdf5::write_attribute(group, "time", time);
     if (s.moving) s.write_points(id, entry.group + "/coordinates", part_ ? places : points);
     std::vector<double> values;
@@ -277,6 +298,8 @@ void FieldWriter::write(double time, std::span<const Vec3> points, const std::ve
       hdf5::write_attribute(table, "components", double(components));
       entry.fields.push_back({field.name, field.unit, on_cells, components});
     }
+    group.reset();
+    hdf5::close_file(s.mesh.comm, id, s.file());
   }
   ++s.number;
   s.index.entries.push_back(std::move(entry));

@@ -34,12 +34,10 @@ bool is_all(const std::vector<std::string>& names) { return names.size() == 1 &&
 
 std::string wrong_surfaces(const std::vector<std::string>& names, const std::vector<std::string>& patches) {
   if (is_all(names)) return "";
-  for (auto name = names.begin(); name != names.end(); ++name) {
-    if (std::ranges::find(patches, *name) == patches.end())
+  for (const std::string& name : names)
+    if (std::ranges::find(patches, name) == patches.end())
       return fmt::format("'{}' is not a patch of the boundary. {} The one word 'all' stands for all of them",
-                         *name, base::did_you_mean(*name, patches, "patches"));
-    if (std::find(names.begin(), name, *name) != name) return fmt::format("'{}' is given twice", *name);
-  }
+                         name, base::did_you_mean(name, patches, "patches"));
   return "";
 }
 

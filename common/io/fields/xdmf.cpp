@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 
 #include "common/base/error.hpp"
@@ -91,17 +90,11 @@ std::int64_t cell_code(mesh::CellType type) { return kinds[static_cast<std::size
 std::uint64_t points_of(std::int64_t code) { return std::ranges::find(kinds, code, &Kind::code)->points; }
 
 void write(const std::filesystem::path& index, const Series& series) {
-  const std::filesystem::path part = index.string() + ".part";
-  {
-    base::own_file(index);
-    std::ofstream file(base::own_file(part));
-    file << "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
-            "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-    for (const Entry& entry : series.entries) file << grid(series, entry);
-    file << "    </Grid>\n  </Domain>\n</Xdmf>\n";
-    if (!file.flush()) throw Error("Cannot write the index '{}'. Is the disk full?", index.string());
-  }
-  std::filesystem::rename(part, index);
+  std::string text =
+      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
+      "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const Entry& entry : series.entries) text += grid(series, entry);
+  base::write_file(index, text + "    </Grid>\n  </Domain>\n</Xdmf>\n");
 }
 
 }  // namespace couplet::io::xdmf

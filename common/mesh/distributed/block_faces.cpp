@@ -32,6 +32,7 @@ class BlockFaces {
     sides_ = {};
     join_periodic_of(matched.bounded, before);
     number_boundary(matched.bounded, before);
+    number_unnamed(matched.unnamed);
     block_.element_points = {}, block_.element_offset = {0}, block_.element_patch = {};
     split_materials_of(matched.pairs);
     if (parallel::comm_size(comm_) > 1)
@@ -80,7 +81,7 @@ class BlockFaces {
       if (cells.size() == 1) {
         sides_.push_back(side_of(cells[0]));
       } else if (cells.size() > 2) {
-        faults.push_back({FaceFault::Kind::many_cells, side_of(cells[0]).key, 0, 0, std::ssize(cells)});
+        faults.push_back({FaceFault::Kind::many_cells, side_of(cells[0]).key});
       } else {
         const bool bonded = is_bonded(block_.cells.zone[cells[0].cell], block_.cells.zone[cells[1].cell]);
         within_.push_back({cells[0].cell, cells[1].cell, static_cast<std::int8_t>(cells[0].face), bonded});
@@ -118,6 +119,16 @@ class BlockFaces {
     n_boundary_ = parallel::sum(comm_, GlobalIndex(bounded.size()));
     for (const BoundedCell& b : bounded)
       records_.push_back({b.cell, {b.face, 0, block_.element_patch[b.element - first_element], number++}});
+  }
+
+  /// Numbers boundary faces without an element behind the others, in the order of their cells.
+  void number_unnamed(const std::vector<FaceSide>& unnamed) {
+    const GlobalIndex n = parallel::sum(comm_, GlobalIndex(unnamed.size()));
+    if (n == 0) return;
+    const int patch = rest_of(block_.patches);
+    GlobalIndex number = n_boundary_ + parallel::exclusive_scan(comm_, GlobalIndex(unnamed.size()));
+    for (const FaceSide& side : unnamed) records_.push_back({side.cell, {side.face, 0, patch, number++}});
+    n_boundary_ += n;
   }
 
   /// Creates two boundary faces for each face between two materials, numbered by the face's cells.

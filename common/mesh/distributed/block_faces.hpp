@@ -22,7 +22,7 @@ struct BlockGraph {
 
 /// Orients inverted cells, matches the faces of all blocks, joins periodic patches and fills the records of
 /// the block's cells. The block's boundary elements are removed. Throws Error with the location of a cell
-/// without volume, a boundary face in no patch or in two, a boundary element that is not a boundary face, a
+/// without volume, a boundary face in two patches, a boundary element that is not a boundary face, a
 /// face of more than two cells, or a periodic face without a partner. Collective.
 BlockGraph find_block_faces(MPI_Comm comm, MeshBlock& block);
 

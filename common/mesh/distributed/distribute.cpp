@@ -7,6 +7,7 @@
 #include "common/mesh/distributed/surroundings.hpp"
 #include "common/mesh/partition.hpp"
 #include "common/mesh/quality.hpp"
+#include "common/mesh/touching_faces.hpp"
 
 namespace couplet::mesh {
 namespace {
@@ -115,6 +116,7 @@ LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw) { return distribute(com
 LoadedMesh load_block(MPI_Comm comm, MeshBlock block, const std::filesystem::path& file, double scale) {
   for (Vec3& x : block.points) x *= scale;
   try {
+    if (block.tie) tie_touching_faces(comm, block);
     LoadedMesh loaded = distribute(comm, std::move(block));
     give_back(comm);
     check_and_report(loaded.mesh, loaded.geometry);

@@ -8,6 +8,8 @@
 #include <tuple>
 
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/topology.hpp"
 
@@ -35,17 +37,6 @@ std::string face_in_two_patches(const std::string& one, const std::string& other
       where, one, other);
 }
 
-std::string faces_in_no_patch(GlobalIndex n, const std::vector<std::string>& places, int dim) {
-  std::string text;
-  for (const std::string& at : places) text += (text.empty() ? "" : ", ") + at;
-  return fmt::format(
-      "{} boundary face{} in no patch, with centre{} {}{}. Every boundary face must be in exactly one "
-      "patch: add {} to a physical group (for a location inside the domain: the mesh has two coincident "
-      "points there that should be one).",
-      n, n == 1 ? " is" : "s are", n == 1 ? "" : "s", text, n > GlobalIndex(places.size()) ? ", ..." : "",
-      dim == 2 ? "the curve (Physical Curve)" : "the surface (Physical Surface)");
-}
-
 constexpr std::size_t most_told = 3;
 
 /// Centers of the faces as text. Collective.
@@ -68,17 +59,44 @@ std::vector<std::string> places_of(MPI_Comm comm, const MeshBlock& block,
   return places;
 }
 
-/// Number of cells of all blocks that have each of these faces. Collective.
-std::vector<GlobalIndex> cells_with(MPI_Comm comm, const MeshBlock& block,
-                                    const std::vector<FaceFault>& faults) {
-  std::vector<GlobalIndex> count(faults.size(), 0);
+/// Cell at a fault.
+struct CellAtFault {
+  std::array<GlobalIndex, 8> points{};  ///< ascending
+  std::size_t fault;
+  CellType type;
+  int zone;
+};
+
+/// Cells of all blocks that have one of these faces. Collective.
+std::vector<CellAtFault> cells_at(MPI_Comm comm, const MeshBlock& block,
+                                  const std::vector<FaceFault>& faults) {
+  std::vector<CellAtFault> found;
   for (Index c = 0; c < block.cells.size(); ++c)
     for (int f = 0; f < shape_of(block.cells.type[c]).n_faces; ++f) {
       const FaceKey key = make_side(block.cells.face_of(c, f), 0, 0, f).key;
-      for (std::size_t i = 0; i < faults.size(); ++i) count[i] += faults[i].face == key;
+      for (std::size_t i = 0; i < faults.size(); ++i) {
+        if (faults[i].face != key) continue;
+        found.push_back({{}, i, block.cells.type[c], block.cells.zone[c]});
+        std::ranges::copy(block.cells.points_of(c), found.back().points.begin());
+        std::ranges::sort(found.back().points);
+      }
     }
-  MPI_Allreduce(MPI_IN_PLACE, count.data(), static_cast<int>(count.size()), MPI_INT64_T, MPI_SUM, comm);
-  return count;
+  return parallel::all_gather(comm, found);
+}
+
+/// Throws Error if two of the cells are the same one, as .msh 2.2 has a cell in two groups.
+void refuse_twin(const std::vector<CellAtFault>& cells, const std::vector<std::string>& zones,
+                 const std::vector<std::string>& places) {
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const CellAtFault &one = cells[k], &other = cells[i];
+      if (one.fault != other.fault || one.points != other.points) continue;
+      if (one.zone == other.zone)
+        throw Error("The mesh has the {} at {} twice.", name_of(one.type), places[one.fault]);
+      throw Error("The {} at {} is in two groups, '{}' and '{}'. A cell must be in exactly one.",
+                  name_of(one.type), places[one.fault], zones[std::size_t(one.zone)],
+                  zones[std::size_t(other.zone)]);
+    }
 }
 
 int at_place(std::uint8_t order, int i) { return order >> 2 * i & 3; }
@@ -101,13 +119,14 @@ class MeetingFaces {
 
   std::vector<FacePair> pairs;  // as reported to each cell
   std::vector<BoundedCell> bounded;
+  std::vector<FaceSide> unnamed;
   std::vector<FaceFault> faults;
 
  private:
   void meet(std::span<const FaceSide> cells, std::span<const FaceSide> elements) {
     using enum FaceFault::Kind;
     const FaceKey& face = cells.empty() ? elements[0].key : cells[0].key;
-    if (cells.size() > 2) return faults.push_back({many_cells, face, 0, 0, std::ssize(cells)});
+    if (cells.size() > 2) return faults.push_back({many_cells, face});
     if (!elements.empty()) {
       const int patch = elements[0].group;
       if (cells.size() != 1) return faults.push_back({cells.empty() ? orphan : inside, face, patch});
@@ -118,7 +137,7 @@ class MeetingFaces {
       pairs.push_back(make_pair(cells[0], cells[1]));
       pairs.push_back(make_pair(cells[1], cells[0]));
     } else {
-      faults.push_back({unassigned, face});
+      unnamed.push_back(cells[0]);
     }
   }
 
@@ -136,7 +155,7 @@ std::string face_of_many_cells(GlobalIndex cells, const std::string& where) {
 
 void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const std::vector<FaceFault>& found) {
   using enum FaceFault::Kind;
-  std::array<std::size_t, 5> count{};
+  std::array<std::size_t, 4> count{};
   std::vector<FaceFault> all;
   for (const FaceFault& fault : found)
     if (count[std::size_t(fault.kind)]++ < most_told) all.push_back(fault);
@@ -144,29 +163,45 @@ void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const std::vector<
   if (all.empty()) return;
   std::ranges::stable_sort(all, {}, [](const FaceFault& f) { return std::max(f.kind, two_patches); });
   const std::vector<std::string> places = places_of(comm, block, all);
-  const std::vector<GlobalIndex> cells = cells_with(comm, block, all);
-  const GlobalIndex n_unassigned = parallel::sum(comm, GlobalIndex(count[std::size_t(unassigned)]));
+  const std::vector<CellAtFault> cells = cells_at(comm, block, all);
+  refuse_twin(cells, block.zones, places);
+  const GlobalIndex n_cells = std::ranges::count(cells, std::size_t(0), &CellAtFault::fault);
   const auto patch = [&](int number) { return block.patches[std::size_t(number)]; };
   const FaceFault& first = all.front();
   switch (first.kind) {
     case many_cells:
-      throw Error(face_of_many_cells(first.cells, places[0]));
+      throw Error(face_of_many_cells(n_cells, places[0]));
     case inside:
       throw Error(face_inside(patch(first.patch), places[0]));
     case two_patches:
       throw Error(face_in_two_patches(patch(first.patch), patch(first.other), places[0]));
     case orphan:
-      throw Error(cells[0] > 0 ? face_inside(patch(first.patch), places[0])
-                               : face_without_cell(patch(first.patch), places[0]));
-    case unassigned:
-      // Faces matched within their own block may also have more than two cells.
-      for (std::size_t i = 0; i < all.size(); ++i)
-        if (cells[i] > 2) throw Error(face_of_many_cells(cells[i], places[i]));
-      throw Error(faces_in_no_patch(
-          n_unassigned, {places.begin(), places.begin() + std::ptrdiff_t(std::min(most_told, places.size()))},
-          block.dim));
+      throw Error(n_cells > 0 ? face_inside(patch(first.patch), places[0])
+                              : face_without_cell(patch(first.patch), places[0]));
   }
 }
+
+namespace {
+
+/// Logs the number of boundary faces without a name and where some are. Collective.
+void tell_unnamed(MPI_Comm comm, const MeshBlock& block, std::span<const FaceSide> unnamed) {
+  const GlobalIndex n = parallel::sum(comm, GlobalIndex(unnamed.size()));
+  if (n == 0) return;
+  std::vector<FaceFault> first;
+  for (const FaceSide& side : unnamed.first(std::min(most_told, unnamed.size())))
+    first.push_back({FaceFault::Kind::orphan, side.key});
+  first = parallel::all_gather(comm, first);
+  first.resize(std::min(most_told, first.size()));
+  const std::vector<std::string> places = places_of(comm, block, first);
+  if (parallel::comm_rank(comm) != 0) return;
+  log::info(
+      "mesh: {} boundary face{} in no group {} the patch 'rest', at {}{} (a location inside the domain: two "
+      "coincident points there should be one)",
+      n, n == 1 ? "" : "s", n == 1 ? "forms" : "form", base::join(places),
+      n > std::ssize(places) ? ", ..." : "");
+}
+
+}  // namespace
 
 FaceSide make_side(std::span<const GlobalIndex> points, GlobalIndex cell, int group, int face) {
   FaceSide side{{-1, -1, -1, -1}, cell, group, static_cast<std::int8_t>(face), 0, 0};
@@ -210,6 +245,10 @@ MatchedFaces match_faces(MPI_Comm comm, const MeshBlock& block, const std::vecto
                                                                     }))
                         .items;
   std::ranges::sort(matched.bounded, {}, &BoundedCell::element);
+  const auto at_cell = [&](const FaceSide& s) { return block.cell_shares.rank_of(s.cell); };
+  matched.unnamed = parallel::exchange(comm, parallel::sort_by_rank(comm, meeting.unnamed, at_cell)).items;
+  std::ranges::sort(matched.unnamed, {}, [](const FaceSide& s) { return std::pair(s.cell, s.face); });
+  tell_unnamed(comm, block, matched.unnamed);
   return matched;
 }
 

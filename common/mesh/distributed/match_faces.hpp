@@ -14,11 +14,10 @@ using FaceKey = std::array<GlobalIndex, 4>;
 
 /// Fault of a face, as known by the rank that found it. Its points may be on other ranks.
 struct FaceFault {
-  enum class Kind { many_cells, inside, two_patches, orphan, unassigned };
+  enum class Kind { many_cells, inside, two_patches, orphan };
   Kind kind;
   FaceKey face;
   int patch = 0, other = 0;  ///< patches of its boundary elements
-  GlobalIndex cells = 0;     ///< number of cells that share it
 };
 /// Throws an Error on all ranks with the location of the first fault, if any rank found one. Collective.
 void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const std::vector<FaceFault>& found);
@@ -57,6 +56,8 @@ struct BoundedCell {
 struct MatchedFaces {
   std::vector<FacePair> pairs;       ///< for cells of this rank's share
   std::vector<BoundedCell> bounded;  ///< for elements of this rank's block, ascending
+  /// Sides of boundary faces without an element, of cells of this rank's share, by cell and face.
+  std::vector<FaceSide> unnamed;
 };
 
 /// Matches sides. Those without a partner in their own block are matched on the rank of their smallest point.

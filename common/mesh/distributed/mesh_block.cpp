@@ -82,6 +82,13 @@ CellList sorted(const CellList& cells) {
   return result;
 }
 
+int rest_of(std::vector<std::string>& patches) {
+  const auto found = std::ranges::find(patches, "rest");
+  const auto number = static_cast<int>(found - patches.begin());
+  if (found == patches.end()) patches.emplace_back("rest");
+  return number;
+}
+
 PointNumbers::PointNumbers(std::span<const GlobalIndex> all) {
   if (all.empty()) return;
   const auto [least, most] = std::ranges::minmax(all);

@@ -133,6 +133,7 @@ struct MeshBlock {
   std::vector<std::array<std::string, 2>> periodic;
   std::vector<std::vector<std::string>> materials;
   bool find_wide_points = true;
+  bool tie = false;  ///< for load_block(): see tie_touching_faces()
 
   Index n_elements() const { return static_cast<Index>(element_patch.size()); }
   std::span<const GlobalIndex> element(Index e) const {
@@ -179,8 +180,8 @@ void drop_unused_points(MPI_Comm comm, MeshBlock& block);
 
 /// Distributes a mesh: matches faces, partitions the cells by PT-Scotch and sends them with their
 /// surroundings to their ranks. No rank holds more than its block and its part with surroundings. `part`
-/// replaces PT-Scotch with a rank per cell of the block. Every boundary face must belong to exactly one
-/// patch; errors state the location. Collective.
+/// replaces PT-Scotch with a rank per cell of the block. Every boundary face belongs to one patch, "rest" if
+/// none is given; errors state the location. Collective.
 LoadedMesh distribute(MPI_Comm comm, MeshBlock block, std::span<const int> part = {});
 
 /// Scales, distributes, checks and reports a block of this file. Throws Error with the name of the file.

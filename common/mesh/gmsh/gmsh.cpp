@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -13,6 +15,7 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
+#include "common/mesh/readers/read_msh.hpp"
 
 namespace couplet::mesh {
 
@@ -81,6 +84,40 @@ fs::path own_name(const fs::path& result) {
          fmt::format("{}.{}.{}.msh", result.stem().stem().string(), host.c_str(), getpid());
 }
 
+Error not_writable(const fs::path& result, const fs::path& source) {
+  return Error(
+      "The mesh of '{}' is kept in the folder '{}', which cannot be written. Set XDG_CACHE_HOME to a folder that "
+      "all computers of the run can write.",
+      source.string(), result.parent_path().string());
+}
+
+constexpr std::uintmax_t most_bytes = std::uintmax_t(4) << 30;  // of all cached meshes
+
+/// Removes the meshes that were not used for longest, but not `newest`, until the others fit the limit. Other
+/// programs may do the same.
+void remove_oldest(const fs::path& newest) {
+  struct Kept {
+    fs::file_time_type used;
+    std::uintmax_t bytes;
+    fs::path file;
+  };
+  std::vector<Kept> all;
+  std::uintmax_t total = 0;
+  std::error_code gone;
+  for (const fs::directory_entry& entry : fs::directory_iterator(newest.parent_path(), gone)) {
+    if (entry.path().extension() != ".msh") continue;
+    const Kept kept{entry.last_write_time(gone), entry.file_size(gone), entry.path()};
+    if (gone) continue;
+    total += kept.bytes;
+    if (kept.file != newest) all.push_back(kept);
+  }
+  std::ranges::sort(all, {}, &Kept::used);
+  for (auto oldest = all.begin(); total > most_bytes && oldest != all.end(); ++oldest) {
+    fs::remove(oldest->file, gone);
+    total -= oldest->bytes;
+  }
+}
+
 void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
   const fs::path own = own_name(result);
   std::error_code error;
@@ -88,13 +125,11 @@ void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
   fs::copy_file(mesh, own, error);  // copies only to a new file
   if (error) {
     fs::remove(own, error);
-    throw Error(
-        "The mesh of '{}' is written next to it, but that folder is not writable. Change the permissions, "
-        "or create the .msh elsewhere and use that.",
-        source.string());
+    throw not_writable(result, source);
   }
   base::flush_to_disk(own);
   fs::rename(own, result);
+  remove_oldest(result);
 }
 
 constexpr std::string_view head = "$Comments\ncouplet ";
@@ -115,24 +150,38 @@ void seal_cache(const std::filesystem::path& file, const std::string& name) {
 
 }  // namespace
 
+fs::path cache_of(const fs::path& source, const std::string& key) {
+  const auto folder_in = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value == '/' ? fs::path(value) : fs::path();
+  };
+  fs::path folder = folder_in("XDG_CACHE_HOME");
+  if (folder.empty()) folder = folder_in("HOME") / ".cache";
+  folder /= "couplet/meshes";
+  std::error_code ignored;  // told when a mesh is written
+  fs::create_directories(folder, ignored);
+  const std::string all = fs::weakly_canonical(fs::absolute(source)).string() + "\n" + key;
+  return folder / fmt::format("{}.{:016x}.cache.msh", source.stem().string(), base::stable_hash(all));
+}
+
 bool is_sound_cache(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return false;
   const std::string text = text_of(file);
   const std::size_t at = text.rfind(head);
-  if (at != std::string::npos && std::string_view(text).substr(at) ==
-                                     seal_of(std::string_view(text).substr(0, at), file.filename().string()))
+  if (at != std::string::npos &&
+      std::string_view(text).substr(at) ==
+          seal_of(std::string_view(text).substr(0, at), file.filename().string())) {
+    std::error_code ignored;  // of another user's
+    fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
     return true;
+  }
   log::warn("The cached mesh '{}' is damaged, or not written by Couplet; it is regenerated.", file.string());
   return false;
 }
 
 void run_gmsh(const std::vector<std::string>& options, const fs::path& source, bool trusted,
               const fs::path& result, const std::string& verb) {
-  if (access(fs::absolute(result).parent_path().c_str(), W_OK) != 0)
-    throw Error(
-        "The mesh of '{}' is written next to it, but that folder is not writable. Change the permissions, "
-        "or create the .msh elsewhere and use that.",
-        source.string());
+  if (access(result.parent_path().c_str(), W_OK) != 0) throw not_writable(result, source);
   const OwnFolder folder;
   const fs::path mesh = folder.path() / "mesh.msh", log = folder.path() / "gmsh.log",
                  place = fs::canonical(fs::absolute(source).parent_path()),
@@ -151,39 +200,39 @@ void run_gmsh(const std::vector<std::string>& options, const fs::path& source, b
             ? ""
             : "\nHere a geometry may neither run commands nor use files outside its folder. If it must and you "
               "trust the case, start with --allow-commands.");
+  if (text_of(mesh).find("$Nodes") == std::string::npos)
+    throw Error("gmsh could not {} '{}': it found no nodes in it.", verb, source.string());
   seal_cache(mesh, result.filename().string());
   put(mesh, result, source);
 }
 
-// gmsh would treat unknown options as scripts.
-bool gmsh_has(const std::string& library) {
+namespace {
+
+/// Returns true if gmsh was built with CGNS. One that was not would take the file for a script.
+bool reads_cgns() {
   const OwnFolder folder;
-  try {
-    run_in_sandbox({"gmsh", "-info"}, folder.path(), folder.path() / "info.log");
-  } catch (const Error&) {
-    return false;  // not installed
-  }
+  run_in_sandbox({"gmsh", "-info"}, folder.path(), folder.path() / "info.log");
   std::istringstream words(read_log(folder.path() / "info.log"));
   for (std::string word; words >> word;)
-    if (word == library || word.starts_with(library + "[")) return true;
+    if (word == "Cgns" || word.starts_with("Cgns[")) return true;
   return false;
 }
 
+}  // namespace
+
 fs::path convert_mesh(const fs::path& file) {
-  const std::string kind = file.extension().string();
-  const std::string library = kind == ".med" ? "Med" : kind == ".cgns" ? "Cgns" : "";
-  if (!library.empty() && !gmsh_has(library))
+  if (file.extension() == ".msh" && !is_converted(file)) return file;
+  if (file.extension() == ".cgns" && !reads_cgns())
     throw Error(
-        "Cannot read the mesh '{}': the gmsh on the PATH was built without {}. Convert it elsewhere, for "
+        "Cannot read the mesh '{}': the gmsh on the PATH was built without CGNS. Convert it elsewhere, for "
         "example with meshio, to .msh 4.1 with its groups as physical names.",
-        file.string(), kind == ".med" ? "MED" : "CGNS");
+        file.string());
   if (!std::ifstream(file))
     throw Error("Cannot open the file '{}'. Check the path and the permissions.", file.string());
-  const std::string hash = fmt::format("{:016x}", base::stable_hash(text_of(file)));
-  const fs::path result = file.parent_path() / (file.stem().string() + "." + hash + ".cache.msh");
+  const fs::path result = cache_of(file, text_of(file));
   if (is_sound_cache(result)) return result;
   log::info("reading {} with gmsh", file.string());
-  run_gmsh({"-0"}, file, false, result, "read");
+  run_gmsh({"-0", "-save_all"}, file, false, result, "read");
   return result;
 }
 

@@ -9,22 +9,23 @@
 
 namespace couplet::mesh {
 
-/// Runs gmsh on `source` with these options and renames its complete .msh 4.1 to `result`. Several programs
-/// may do so at the same time. `verb` is for messages: "mesh" or "read". In the sandbox gmsh reads only the
+/// Runs gmsh on `source` with these options and renames its complete .msh 4.1 to `result`, a cached mesh.
+/// Several programs may do so at the same time. Meshes used long ago are removed if all exceed 4 GB. `verb` is for messages: "mesh" or "read". In the sandbox gmsh reads only the
 /// folder of the source; a trusted source has the user's rights. Throws Error with gmsh's messages.
 void run_gmsh(const std::vector<std::string>& options, const std::filesystem::path& source, bool trusted,
               const std::filesystem::path& result, const std::string& verb);
 
-/// Returns true if a cached mesh matches its seal. A damaged or foreign one is logged and must be
-/// regenerated.
+/// Path of the mesh made of `source`, <stem>.<hash>.cache.msh in $XDG_CACHE_HOME/couplet/meshes, or below
+/// ~/.cache. The hash covers the path of the source and `key`, all that the mesh depends on.
+std::filesystem::path cache_of(const std::filesystem::path& source, const std::string& key);
+
+/// Returns true if a cached mesh matches its seal, and marks it as used. A damaged or foreign one is logged
+/// and must be regenerated.
 bool is_sound_cache(const std::filesystem::path& file);
 
-/// Converts a mesh of another program (.unv; .med and .cgns if gmsh supports them) to <stem>.<hash>.cache.msh
-/// beside it. Groups become patches and zones. Throws Error for a format that gmsh does not read.
+/// Returns the .msh to read: the file itself, or what gmsh makes of a .msh of another version or of a .cgns,
+/// if it supports that, as a cached mesh. Throws Error for a format that gmsh does not read.
 std::filesystem::path convert_mesh(const std::filesystem::path& file);
-/// Returns true if gmsh is available and was built with this library, "Med" or "Cgns".
-bool gmsh_has(const std::string& library);
-
 /// Block of this rank for a mesh in a .msh, .inp, .geo (meshed with these parameters) or foreign file. Throws
 /// Error if it does not have `dim` dimensions. Collective.
 MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
@@ -34,12 +35,12 @@ MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
 /// three-dimensional if it names a physical volume. Throws Error.
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
 
-/// Returns true for formats read by the Python module meshio: .med, .exo, .e, .ex2.
-bool is_read_by_meshio(const std::string& extension);
+/// Returns true for the formats of read_foreign(): universal files (.unv), MED and Exodus (.exo, .e, ...).
+bool is_foreign(const std::string& extension);
 
-/// Reads a mesh by running meshio in a sandbox, which passes it on as an input deck (read_inp). Groups of
-/// cells become zones, groups of faces and sets of nodes patches. Throws Error with what to install if
-/// python3 or meshio is missing, or with meshio's message.
-RawMesh read_by_meshio(const std::filesystem::path& file);
+/// Reads a mesh of another program by a Python script in a sandbox, which passes it on as an input deck
+/// (read_inp). Groups of cells become zones, groups of faces, sets of sides and sets of nodes patches. What
+/// the script leaves out is logged. Throws Error with what is wrong, or what to install.
+RawMesh read_foreign(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

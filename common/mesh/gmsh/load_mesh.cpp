@@ -26,15 +26,11 @@ constexpr std::uintmax_t bytes_of_large_msh = std::uintmax_t(64) << 20;
 /// Returns true if the mesh is read as an input deck. Others are .msh files or converted by gmsh.
 bool is_deck(const std::filesystem::path& file) {
   const std::string kind = file.extension().string();
-  return kind == ".inp" || (is_read_by_meshio(kind) && !(kind == ".med" && gmsh_has("Med")));
+  return kind == ".inp" || is_foreign(kind);
 }
 
 RawMesh read_deck(const std::filesystem::path& file) {
-  return file.extension() == ".inp" ? read_inp(file) : read_by_meshio(file);
-}
-
-std::filesystem::path finished_msh(const std::filesystem::path& file) {
-  return file.extension() == ".msh" ? file : convert_mesh(file);
+  return file.extension() == ".inp" ? read_inp(file) : read_foreign(file);
 }
 
 /// Reads this rank's block of a mesh. A .geo is meshed in `dim` dimensions. Collective.
@@ -49,13 +45,19 @@ MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
     else if (is_deck(file))
       deck = read_deck(file);
     else
-      msh = finished_msh(file);
+      msh = convert_mesh(file);
     if (!msh.empty() && std::filesystem::file_size(msh) >= bytes_of_large_msh)
       holders = parallel::comm_size(comm);
   });
   parallel::broadcast(comm, msh);
   MPI_Bcast(&holders, 1, MPI_INT, 0, comm);
-  return msh.empty() ? block_of(comm, deck) : read_msh_block(comm, msh, holders);
+  if (msh.empty()) return block_of(comm, deck);
+  try {
+    return read_msh_block(comm, msh, holders);
+  } catch (const Error& e) {
+    if (msh == file) throw;
+    throw Error("Cannot use the mesh of '{}', as gmsh saved it. {}", file.string(), e.what());
+  }
 }
 
 void check_file(const std::filesystem::path& file, const MeshParameters& parameters) {
@@ -63,7 +65,7 @@ void check_file(const std::filesystem::path& file, const MeshParameters& paramet
     throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
   const std::string kind = file.extension().string();
-  const bool foreign = kind == ".unv" || kind == ".cgns" || is_read_by_meshio(kind);
+  const bool foreign = kind == ".cgns" || is_foreign(kind);
   if (kind == ".vtk")
     throw Error(
         "Cannot read the mesh file '{}': this format does not name its parts. Convert it with meshio to "
@@ -107,11 +109,12 @@ LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters,
                      const std::vector<std::array<std::string, 2>>& periodic,
                      const std::vector<std::vector<std::string>>& materials, bool find_wide_points,
-                     double scale) {
+                     double scale, bool tie) {
   MeshBlock block = read_mesh(comm, file, dim, parameters);
   block.periodic = periodic;
   block.materials = materials;
   block.find_wide_points = find_wide_points;
+  block.tie = tie;
   return load_block(comm, std::move(block), file, scale);
 }
 
@@ -140,7 +143,7 @@ MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters&
     if (volumes && volumes->empty()) dim = 2;  // not set if some name is computed
   }
   const auto msh = [&] {
-    return file.extension() == ".geo" ? mesh_geo(file, dim, parameters) : finished_msh(file);
+    return file.extension() == ".geo" ? mesh_geo(file, dim, parameters) : convert_mesh(file);
   };
   MeshFacts facts = facts_of(is_deck(file) ? read_deck(file) : read_msh(msh()));
   facts.scale(scale);
@@ -212,10 +215,8 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   std::vector<std::string> numbers;
   for (const auto& [name, value] : parameters)
     numbers.insert(numbers.end(), {"-setnumber", name, fmt::format("{}", value)});
-  const std::string hash = fmt::format(
-      "{:016x}", base::stable_hash(fmt::format("{}\n{}\n{}", dim, base::join(numbers, " "), script.text)));
-  const std::string stem = geo.stem().string() + "." + hash;
-  const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
+  const std::filesystem::path result =
+      cache_of(geo, fmt::format("{}\n{}\n{}", dim, base::join(numbers, " "), script.text));
   if (is_sound_cache(result)) return result;
 
   std::vector<std::string> options{fmt::format("-{}", dim)};

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/csv/csv_reader.hpp"
+#include "common/log/log.hpp"
 
 namespace couplet::mesh {
 namespace {
@@ -65,6 +65,7 @@ std::string why_not_read(std::string_view name) {
 
 /// Limit on members of all sets, including nested ones, because sets of sets could grow without bound.
 constexpr std::size_t most_members = 20000000;
+constexpr int most_nested = 1000;  // sets within sets
 
 /// Rejected keywords, which create or move nodes and elements or divide the deck.
 constexpr std::pair<std::string_view, std::string_view> refused[] = {
@@ -74,6 +75,18 @@ constexpr std::pair<std::string_view, std::string_view> refused[] = {
     {"ELCOPY", "it generates elements"}, {"SUBMODEL", "it is not a mesh"},
     {"IMPORT", "it reads another file"}, {"MANIFEST", "it reads other files"}};
 
+/// Keywords that connect nodes without a common cell.
+constexpr std::string_view connecting[] = {"TIE",
+                                           "EQUATION",
+                                           "MPC",
+                                           "RIGID BODY",
+                                           "COUPLING",
+                                           "CONTACT PAIR",
+                                           "CONTACT",
+                                           "SHELL TO SOLID COUPLING",
+                                           "EMBEDDED ELEMENT",
+                                           "MODEL CHANGE"};
+
 class DeckReader {
  public:
   explicit DeckReader(InpLines& lines) : lines_(lines) {}
@@ -82,6 +95,16 @@ class DeckReader {
     bool more = lines_.next();
     if (more && !lines_.is_keyword()) lines_.fail("an input deck must begin with a keyword ('*NODE', ...).");
     while (more) more = block();
+    for (auto* sets : {&deck_.node_sets, &deck_.element_sets})
+      for (InpSet& set : sets->all) resolve(set, *sets, 0);
+    for (InpSurface& surface : deck_.surfaces) {
+      resolve(surface.nodes, deck_.node_sets, 0);
+      for (auto& part : surface.parts) resolve(part.elements, deck_.element_sets, 0);
+    }
+    for (InpSet& section : deck_.sections) {
+      resolve(section, deck_.element_sets, 0);
+      section.name = deck_.element_sets.find(section.name)->name;
+    }
     return std::move(deck_);
   }
 
@@ -95,11 +118,6 @@ class DeckReader {
             fmt::format("*{} is not supported: {}. Export the mesh with all nodes and elements "
                         "written out.",
                         word, reason));
-    if (k.word == "INCLUDE") {
-      const std::string* name = k.find("INPUT");
-      lines_.include(name ? *name : "");
-      return lines_.next();
-    }
     if (k.word == "NODE") return nodes(k);
     if (k.word == "ELEMENT") return elements(k);
     if (k.word == "NSET") return set(k, "NSET", deck_.node_sets);
@@ -111,7 +129,8 @@ class DeckReader {
           "decks with several parts are not supported. Export it flat (Abaqus: 'do not use parts and "
           "assemblies').");
     if (k.word == "INSTANCE") return instance();
-    ++deck_.passed_over["*" + k.word.substr(0, 40)];
+    (std::ranges::find(connecting, k.word) == std::end(connecting) ? deck_.passed_over : deck_.connections)
+        .insert("*" + k.word.substr(0, 40));
     return skip();
   }
 
@@ -132,6 +151,14 @@ class DeckReader {
     return more;
   }
 
+  /// Names parameters other than these, and continues with the data of INPUT=...
+  void open(const InpKeyword& k, std::initializer_list<std::string_view> read) {
+    for (const auto& [name, value] : k.parameters)
+      if (name != "INPUT" && std::ranges::find(read, name) == read.end())
+        log::warn("{}: the parameter {} of *{} is not read.", lines_.place(), name.substr(0, 40), k.word);
+    if (const std::string* input = k.find("INPUT")) lines_.include(*input);
+  }
+
   const std::string& required(const InpKeyword& k, const char* name) {
     const std::string* value = k.find(name);
     if (!value || value->empty()) lines_.fail(fmt::format("*{} needs {}=...", k.word, name));
@@ -141,13 +168,14 @@ class DeckReader {
   bool nodes(const InpKeyword& k) {
     if (const std::string* system = k.find("SYSTEM"); system && upper(*system) != "R")
       lines_.fail("*NODE is supported in rectangular coordinates only.");
+    open(k, {"NSET", "SYSTEM"});
     InpSet* set = k.find("NSET") ? &deck_.node_sets.at(*k.find("NSET")) : nullptr;
     while (lines_.next() && !lines_.is_keyword()) {
       csv::split_cells(lines_.text(), ',', cells_);
       while (!cells_.empty() && cells_.back().empty()) cells_.pop_back();
       const std::int64_t id = cells_.empty() ? 0 : identifier_of(cells_[0]);
-      if (id == 0 || cells_.size() < 2 || cells_.size() > 7)
-        lines_.fail("a node needs a whole number above 0 and two or three coordinates: '12, 0.5, 1, 0'.");
+      if (id == 0 || cells_.size() > 7)
+        lines_.fail("a node needs a whole number above 0 and up to three coordinates: '12, 0.5, 1, 0'.");
       Vec3 x = Vec3::Zero();
       for (std::size_t a = 1; a < std::min<std::size_t>(cells_.size(), 4); ++a) {
         if (cells_[a].empty()) continue;
@@ -178,9 +206,14 @@ class DeckReader {
     const std::string name = upper(required(k, "TYPE"));
     const InpType type = inp_type(name);
     if (type.use == InpType::Use::unknown) lines_.fail(why_not_read(name));
+    open(k, {"TYPE", "ELSET"});
     if (type.use == InpType::Use::nothing) {
-      ++deck_.passed_over[name];
-      return skip();
+      deck_.passed_over.insert(name);
+      while (lines_.next() && !lines_.is_keyword()) {
+        csv::split_cells(lines_.text(), ',', cells_);
+        deck_.other_elements.emplace(identifier_of(cells_[0]), 0);
+      }
+      return lines_.is_keyword();
     }
     const std::string* own_set = k.find("ELSET");
     if (own_set) deck_.element_sets.at(*own_set);
@@ -210,7 +243,7 @@ class DeckReader {
   /// Merges consecutive numbers into one range.
   void add(InpSet& set, const InpRange& range) {
     if (!set.members.empty() && range.step == 1 && set.members.back().step == 1 &&
-        set.members.back().last + 1 == range.first) {
+        set.members.back().is_generated == range.is_generated && set.members.back().last + 1 == range.first) {
       set.members.back().last = range.last;
       return;
     }
@@ -219,21 +252,38 @@ class DeckReader {
     set.members.push_back(range);
   }
 
-  /// Adds a number, or the members of a set defined before.
-  void add_named(InpSet& set, std::string_view cell, const InpSets& sets, const char* kind) {
+  /// Adds a number, or a set that may be defined later.
+  void add_named(InpSet& set, std::string_view cell) {
     if (const std::int64_t id = identifier_of(cell); id > 0) return add(set, {id, id, 1});
-    const InpSet* other = sets.find(std::string(cell));
-    if (!other)
-      lines_.fail(
-          fmt::format("'{}' is neither a number nor the name of an earlier {}.", cell.substr(0, 60), kind));
-    if (other == &set) return;
-    const std::vector<InpRange> members = other->members;
-    for (const InpRange& r : members) add(set, r);
+    if (++members_ > most_members) lines_.fail("the sets of this deck have too many members.");
+    set.sets.push_back({std::string(cell), lines_.mark()});
+  }
+
+  /// Adds the members of the sets that `set` contains.
+  void resolve(InpSet& set, InpSets& sets, int depth) {
+    for (const auto& [name, mark] : set.sets) {
+      if (depth > most_nested)
+        lines_.fail_at(mark,
+                       fmt::format("sets contain each other, or are nested deeper than {}.", most_nested));
+      InpSet* other = sets.find(name);
+      if (!other)
+        lines_.fail_at(mark, fmt::format("'{}' is neither a number nor the name of an {}.",
+                                         name.substr(0, 60), &sets == &deck_.node_sets ? "NSET" : "ELSET"));
+      if (other == &set) continue;
+      resolve(*other, sets, depth + 1);
+      for (const InpRange& r : other->members) add(set, r);
+    }
+    set.sets.clear();
+    std::ranges::sort(set.members);
+    set.members.erase(std::unique(set.members.begin(), set.members.end()), set.members.end());
   }
 
   bool set(const InpKeyword& k, const char* kind, InpSets& sets) {
     const std::string name = required(k, kind);
     const bool generates = k.find("GENERATE") != nullptr;
+    if (&sets == &deck_.node_sets && k.find("ELSET"))
+      lines_.fail("*NSET of the nodes of an ELSET is not supported; list the nodes.");
+    open(k, {kind, "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"});
     sets.at(name).is_given = true;
     while (lines_.next() && !lines_.is_keyword()) {
       InpSet& here = sets.at(name);
@@ -242,17 +292,13 @@ class DeckReader {
         const std::int64_t step = numbers_.size() > 2 ? numbers_[2] : 1;
         if (numbers_.size() > 3 || numbers_[1] < numbers_[0])
           lines_.fail("GENERATE needs first, last and step: '1, 100, 3'.");
-        add(here, {numbers_[0], numbers_[1] - (numbers_[1] - numbers_[0]) % step, step});
+        add(here, {numbers_[0], numbers_[1] - (numbers_[1] - numbers_[0]) % step, step, true});
         continue;
       }
       csv::split_cells(lines_.text(), ',', cells_);
-      const auto cells = cells_;
-      for (const std::string_view cell : cells)
-        if (!cell.empty()) add_named(here, cell, sets, kind);
+      for (const std::string_view cell : cells_)
+        if (!cell.empty()) add_named(here, cell);
     }
-    std::vector<InpRange>& members = sets.at(name).members;
-    std::ranges::sort(members);
-    members.erase(std::unique(members.begin(), members.end()), members.end());
     return lines_.is_keyword();
   }
 
@@ -266,21 +312,19 @@ class DeckReader {
     if (type != "ELEMENT" && type != "NODE")
       lines_.fail(
           fmt::format("surfaces of TYPE={} are not supported; use ELEMENT or NODE.", type.substr(0, 40)));
+    open(k, {"NAME", "TYPE", "INTERNAL"});
     while (lines_.next() && !lines_.is_keyword()) {
       csv::split_cells(lines_.text(), ',', cells_);
-      const auto cells = cells_;
-      InpSet members;
       if (type == "NODE") {
-        add_named(members, cells[0], deck_.node_sets, "NSET");
-        surface.nodes.insert(surface.nodes.end(), members.members.begin(), members.members.end());
+        add_named(surface.nodes, cells_[0]);
         continue;
       }
-      const std::string face = cells.size() > 1 ? upper(cells[1]) : "";
+      const std::string face = cells_.size() > 1 ? upper(cells_[1]) : "";
       if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6')
         lines_.fail(fmt::format("expected a face of an element or of an ELSET, such as 'beam, S3', not '{}'.",
                                 lines_.text().substr(0, 60)));
-      add_named(members, cells[0], deck_.element_sets, "ELSET");
-      surface.parts.push_back({std::move(members.members), face[1] - '1', lines_.mark()});
+      surface.parts.push_back({{}, face[1] - '1', lines_.mark()});
+      add_named(surface.parts.back().elements, cells_[0]);
     }
     deck_.surfaces.push_back(std::move(surface));
     return lines_.is_keyword();
@@ -288,10 +332,7 @@ class DeckReader {
 
   bool section(const InpKeyword& k) {
     const std::string& name = required(k, "ELSET");
-    const InpSet* set = deck_.element_sets.find(name);
-    if (!set)
-      lines_.fail(fmt::format("*SOLID SECTION: no ELSET '{}' is defined before.", name.substr(0, 60)));
-    deck_.sections.emplace_back(set->name, set->members);
+    deck_.sections.push_back({name.substr(name.rfind('.') + 1), {}, {{name, lines_.mark()}}});
     return skip();
   }
 
@@ -312,11 +353,11 @@ std::string key_of(const std::string& name) { return upper(name.substr(name.rfin
 
 InpSet& InpSets::at(const std::string& name) {
   const auto [found, is_new] = number.try_emplace(key_of(name), all.size());
-  if (is_new) all.push_back({name.substr(name.rfind('.') + 1), {}, false});
+  if (is_new) all.push_back({name.substr(name.rfind('.') + 1), {}, {}});
   return all[found->second];
 }
 
-const InpSet* InpSets::find(const std::string& name) const {
+InpSet* InpSets::find(const std::string& name) {
   const auto found = number.find(key_of(name));
   return found == number.end() ? nullptr : &all[found->second];
 }

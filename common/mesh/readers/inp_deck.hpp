@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -27,8 +28,8 @@ struct InpKeyword {
   const std::string* find(std::string_view name) const;
 };
 
-/// Lines of a CalculiX or Abaqus input deck with included files in place. Comments ("**") and empty lines are
-/// skipped.
+/// Lines of a CalculiX or Abaqus input deck with included files in place, be they of keywords or of data.
+/// Comments ("**", or a single star) and empty lines are skipped.
 class InpLines final {
  public:
   explicit InpLines(const std::filesystem::path& file);
@@ -45,6 +46,7 @@ class InpLines final {
   /// Opens an included file, which must lie below the folder of the first. Throws Error.
   void include(const std::string& name);
   [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail_at(std::uint64_t mark, const std::string& what) const;
   /// Name of the deck.
   const std::string& name() const { return name_; }
   /// Location "folder/file.inp:12".
@@ -88,31 +90,37 @@ struct InpType {
 /// Range of node or element numbers: first, first + step, ..., last.
 struct InpRange {
   std::int64_t first = 0, last = 0, step = 1;
+  bool is_generated = false;  ///< by GENERATE, which may have gaps; listed members must exist
   auto operator<=>(const InpRange&) const = default;
 };
 struct InpSet {
+  struct Reference {
+    std::string name;
+    std::uint64_t mark = 0;
+  };
   std::string name;  ///< as it was written first
   std::vector<InpRange> members;
-  bool is_given = false;  ///< by *NSET or *ELSET, not only beside nodes or elements
+  std::vector<Reference> sets;  ///< that it contains; empty once the deck is read
+  bool is_given = false;        ///< by *NSET or *ELSET, not only beside nodes or elements
 };
 /// Sets by their names in capitals, in the order of the file.
 struct InpSets {
   std::vector<InpSet> all;
   std::map<std::string, std::size_t> number;  ///< into `all`
   InpSet& at(const std::string& name);        ///< created if missing
-  const InpSet* find(const std::string& name) const;
+  InpSet* find(const std::string& name);
 };
 
 /// Surface made of element faces ("beam, S3") or of nodes.
 struct InpSurface {
   struct Part {
-    std::vector<InpRange> elements;
+    InpSet elements;
     int face = 0;  ///< from 0
     std::uint64_t mark = 0;
   };
   std::string name;
   std::vector<Part> parts;
-  std::vector<InpRange> nodes;  ///< for a surface of nodes
+  InpSet nodes;  ///< for a surface of nodes
 };
 
 /// Elements of a deck with their corners stored contiguously.
@@ -136,10 +144,12 @@ struct InpDeck {
   InpElements elements;
   InpSets node_sets, element_sets;
   std::vector<InpSurface> surfaces;
-  /// *SOLID SECTION: name of its set, its elements.
-  std::vector<std::pair<std::string, std::vector<InpRange>>> sections;
-  std::map<std::string, int> passed_over;  ///< keywords and types that are irrelevant for the mesh
-  std::size_t second_order = 0;            ///< elements reduced to their corners
+  /// *SOLID SECTION, by the names of their sets.
+  std::vector<InpSet> sections;
+  std::set<std::string> passed_over;  ///< keywords and types that are irrelevant for the mesh
+  std::set<std::string> connections;  ///< keywords that connect nodes of the mesh, which are not read
+  std::unordered_map<std::int64_t, Index> other_elements;  ///< numbers of elements that are no cells
+  std::size_t second_order = 0;                            ///< elements reduced to their corners
 };
 
 /// Reads the deck. `lines` is kept to locate faults found later. Throws Error with file and line.

@@ -49,7 +49,7 @@ void InpLines::open(const fs::path& file) {
 }
 
 void InpLines::include(const std::string& name) {
-  if (name.empty()) fail("*INCLUDE names no file (INPUT=...).");
+  if (name.empty()) fail("INPUT=... names no file to include.");
   if (files_.size() >= most_deep || opened_.size() >= most_files)
     fail(fmt::format("*INCLUDE is nested deeper than {} files, or there are more than {} of them.", most_deep,
                      most_files));
@@ -60,7 +60,11 @@ void InpLines::include(const std::string& name) {
         fmt::format("*INCLUDE '{}' is outside the folder of the mesh '{}'. Move it there, or insert its "
                     "content into the file.",
                     name, folder_.string()));
-  if (!fs::is_regular_file(file)) fail(fmt::format("*INCLUDE: the file '{}' does not exist.", file.string()));
+  if (!fs::is_regular_file(file))
+    fail(fmt::format("*INCLUDE: {}'{}' {}.", fs::exists(file) ? "" : "the file ", file.string(),
+                     fs::is_directory(file) ? "is a folder; name the file in it"
+                     : fs::exists(file)     ? "is not a regular file"
+                                            : "does not exist"));
   open(file);
 }
 
@@ -74,12 +78,20 @@ bool InpLines::next() {
       continue;
     }
     line_ = base::trim(line_);
-    if (!line_.empty() && !line_.starts_with("**")) return true;
+    // A single star is a comment in CalculiX.
+    if (line_.empty() || line_ == "*" || line_.starts_with("**")) continue;
+    if (!is_keyword() || upper(base::trim(line_.substr(1, line_.find(',') - 1))) != "INCLUDE") return true;
+    const std::string* name = keyword().find("INPUT");
+    include(name ? *name : "");
   }
   return false;
 }
 
 void InpLines::fail(const std::string& what) const { throw Error("{}: {}", place(), what); }
+
+void InpLines::fail_at(std::uint64_t mark, const std::string& what) const {
+  throw Error("{}: {}", place_of(mark), what);
+}
 
 std::uint64_t InpLines::mark() const {
   return std::uint64_t(number_.back()) << 40 | std::uint64_t(files_.back()->number());

@@ -16,6 +16,15 @@
 namespace couplet::mesh {
 namespace {
 
+constexpr std::size_t most_words = 20;  // in a message
+
+/// At most the first words, with the number of the others.
+std::string beginning_of(std::vector<std::string> words) {
+  const std::size_t n = words.size();
+  if (n > most_words) words.resize(most_words), words.push_back(fmt::format("{} more", n - most_words));
+  return base::join(words);
+}
+
 /// Mesh under construction from a deck.
 struct InpBody {
   InpLines& lines;
@@ -53,8 +62,6 @@ int number_in(std::vector<std::string>& names, std::map<std::string, int>& numbe
 
 using Corners = std::array<Index, 4>;
 constexpr Index none = -1;
-/// Patch name of the boundary without a surface or set.
-constexpr const char* rest = "rest";
 
 Corners key_of(std::span<const Index> points) {
   Corners key{none, none, none, none};
@@ -115,7 +122,7 @@ class InpPatches {
     const int patch = number_of(surface.name);
     std::vector<Index> points;
     for (const InpSurface::Part& part : surface.parts)
-      body_.visit(part.elements, body_.cell_of_element, [&](Index cell) {
+      body_.visit(part.elements.members, body_.cell_of_element, [&](Index cell) {
         const CellShape& shape = shape_of(raw_.cell_type[std::size_t(cell)]);
         if (part.face >= shape.n_faces)
           throw Error("{}: surface '{}': element {} has faces S1 to S{} only.",
@@ -130,7 +137,7 @@ class InpPatches {
         else
           assign(face, patch);
       });
-    if (!surface.nodes.empty()) take_nodes(surface.nodes, patch, true);
+    if (!surface.nodes.members.empty()) take_nodes(surface.nodes.members, patch, true);
   }
 
   /// Uses lower-dimensional elements, as meshers write them for groups of surfaces: by their smallest *ELSET,
@@ -146,21 +153,33 @@ class InpPatches {
         const auto found = deck_.point_of_node.find(deck_.elements.nodes[e.first_node + std::size_t(i)]);
         if (found != deck_.point_of_node.end()) points.push_back(found->second);
       }
-      const Index face = std::ssize(points) == corners ? outer_face(points) : none;
-      if (face != none) face_of_element.emplace(e.id, face);
+      if (std::ssize(points) < corners) continue;
+      inner_ += face_of_element.emplace(e.id, outer_face(points)).first->second == none;
     }
     if (face_of_element.empty()) return;
     std::vector<std::pair<std::size_t, const InpSet*>> by_size;
     for (const InpSet& set : deck_.element_sets.all) {
-      std::size_t n = set.is_given ? 0 : face_of_element.size();
-      body_.visit(set.members, face_of_element, [&](Index) { ++n; });
-      if (n > 0) by_size.emplace_back(n, &set);
+      std::size_t n = 0, inner = 0;
+      body_.visit(set.members, face_of_element, [&](Index face) { ++(face == none ? inner : n); });
+      if (n > 0) by_size.emplace_back(set.is_given ? n : n + face_of_element.size(), &set);
+      if (n == 0 && inner > 0) lose(set);
     }
     std::ranges::stable_sort(by_size, {}, &std::pair<std::size_t, const InpSet*>::first);
-    for (const auto& [n, set] : by_size)
+    for (const auto& [n, set] : by_size) {
+      bool is_used = false;
       body_.visit(set->members, face_of_element, [&](Index face) {
-        if (patch_of_face_[std::size_t(face)] == none) assign(face, number_of(set->name));
+        if (face == none || patch_of_face_[std::size_t(face)] != none) return;
+        assign(face, number_of(set->name));
+        is_used = true;
       });
+      if (!is_used) lose(*set);
+    }
+  }
+
+  /// Sets beside elements are named where there are no others, for gmsh writes one for each surface.
+  void lose(const InpSet& set) {
+    if (set.is_given || std::ranges::none_of(deck_.element_sets.all, &InpSet::is_given))
+      lost_.push_back(set.name);
   }
 
   /// Uses node sets, smaller ones first ("tip" within "top"). Skips a set of all points and one with the name
@@ -204,16 +223,20 @@ class InpPatches {
   /// Names the remaining faces and removes patches without faces.
   void name_rest() {
     for (Index f = 0; f < outer_.size(); ++f)
-      if (patch_of_face_[std::size_t(f)] == none) patch_of_face_[std::size_t(f)] = number_of(rest);
+      if (patch_of_face_[std::size_t(f)] == none) patch_of_face_[std::size_t(f)] = rest_of(raw_.patches);
     std::vector<int> renumbered(raw_.patches.size(), none);
     for (const int patch : patch_of_face_) renumbered[std::size_t(patch)] = 0;
     std::vector<std::string> kept;
     for (std::size_t p = 0; p < renumbered.size(); ++p) {
+      if (renumbered[p] == none) lost_.push_back(raw_.patches[p]);
       if (renumbered[p] == none) continue;
       renumbered[p] = static_cast<int>(kept.size());
       kept.push_back(raw_.patches[p]);
     }
     raw_.patches = std::move(kept);
+    if (!lost_.empty())
+      log::info("'{}': these name no patch, since no boundary face is left for them: {}.", body_.lines.name(),
+                beginning_of(lost_));
     for (int& patch : patch_of_face_) patch = renumbered[std::size_t(patch)];
     raw_.boundary_points = std::move(outer_);
     raw_.boundary_patch = std::move(patch_of_face_);
@@ -229,9 +252,8 @@ class InpPatches {
   Csr faces_of_point_;
   std::vector<int> marked_;  // per point: the last patch that marked it
   std::size_t inner_ = 0;
+  std::vector<std::string> lost_;  // names without a face of their own
 };
-
-constexpr std::size_t most_words = 20;  // in a message
 
 /// Converts a deck to cells, zones and patches.
 class InpMesh {
@@ -246,6 +268,7 @@ class InpMesh {
     make_cells();
     if (raw_.cell_type.empty())
       throw Error("{}: the deck has no solid elements (C3D4, C3D8, CPS4, ...).", lines_.name());
+    name_missing();
     drop_unused();
     find_zones();
     report(InpPatches(body_).name());
@@ -268,6 +291,7 @@ class InpMesh {
   void make_cells() {
     std::vector<Index> points;
     for (const auto& e : deck_.elements.all) {
+      if (!is_cell(e)) deck_.other_elements.emplace(e.id, 0);
       if (!is_cell(e)) continue;
       points.clear();
       for (int i = 0; i < e.type.shape().n_points; ++i)
@@ -278,6 +302,32 @@ class InpMesh {
       raw_.cell_points.push_row(points);
       body_.elements.push_back(&e);
     }
+  }
+
+  /// Names sets with listed members that the deck does not define.
+  void name_missing() {
+    std::vector<std::string> all;
+    const auto check = [&](const char* kind, const InpSets& sets, const auto&... indices) {
+      for (const InpSet& set : sets.all) {
+        std::int64_t n = 0, missing = 0, first = 0;
+        for (const InpRange& r : set.members) {
+          if (!set.is_given || r.is_generated) continue;
+          const std::int64_t count = (r.last - r.first) / r.step + 1;
+          std::int64_t found = 0;
+          (body_.visit({r}, indices, [&](Index) { ++found; }), ...);
+          n += count, missing += count - found;
+          for (std::int64_t id = r.first; first == 0 && found < count; id += r.step)
+            if (!(indices.contains(id) || ...)) first = id;
+        }
+        if (missing > 0)
+          all.push_back(
+              fmt::format("{} of {} of {} '{}' (the first is {})", missing, n, kind, set.name, first));
+      }
+    };
+    check("NSET", deck_.node_sets, deck_.point_of_node);
+    check("ELSET", deck_.element_sets, body_.cell_of_element, deck_.other_elements);
+    if (!all.empty())
+      log::warn("'{}': members of sets are not defined in the deck: {}.", lines_.name(), beginning_of(all));
   }
 
   /// Removes midside and reference nodes. The others keep their order.
@@ -299,9 +349,10 @@ class InpMesh {
   /// Sets zones by *SOLID SECTION, else by the ELSET of the *ELEMENT.
   void find_zones() {
     raw_.cell_zone.assign(raw_.cell_type.size(), -1);
-    for (const auto& [name, members] : deck_.sections) {
+    for (const InpSet& section : deck_.sections) {
+      const std::string& name = section.name;
       const int zone = number_in(raw_.zones, zones_, name);
-      body_.visit(members, body_.cell_of_element, [&](Index cell) {
+      body_.visit(section.members, body_.cell_of_element, [&](Index cell) {
         int& of_cell = raw_.cell_zone[std::size_t(cell)];
         if (of_cell >= 0 && of_cell != zone)
           throw Error("{}: element {} has two sections, '{}' and '{}'.",
@@ -326,11 +377,14 @@ class InpMesh {
     if (inner > 0)
       log::info("'{}': {} faces of surfaces lie between two cells and belong to no patch.", lines_.name(),
                 inner);
-    std::vector<std::string> words;
-    for (const auto& [word, n] : deck_.passed_over)
-      if (words.size() < most_words) words.push_back(word);
-    if (!words.empty())
-      log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), base::join(words));
+    const auto words = [](const std::set<std::string>& all) {
+      return beginning_of({all.begin(), all.end()});
+    };
+    if (!deck_.passed_over.empty())
+      log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), words(deck_.passed_over));
+    if (!deck_.connections.empty())
+      log::warn("'{}': parts of the mesh are connected by {}, which is not read.", lines_.name(),
+                words(deck_.connections));
   }
 
   InpLines& lines_;

@@ -6,13 +6,17 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <set>
 
+#include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {
 namespace {
 
-/// Names of physical groups by (dimension, tag), in the order of the file.
+/// Names of physical groups by (dimension, tag), in the order of the file. The dimension is -1 if gmsh read a
+/// file of version 2.0, which does not name it.
 using MshNames = std::vector<std::pair<std::pair<int, int>, std::string>>;
 
 /// Tag of a group without sign (negative if reversed). The smallest int has no counterpart and names no
@@ -25,7 +29,7 @@ class MshGroups {
  public:
   MshGroups(const MshNames& names, int dim) {
     for (const auto& [key, name] : names)
-      if (key.first == dim) number(key.second, name);
+      if (key.first == dim || key.first < 0) number(key.second, name);
   }
   int use(int tag) {
     const auto found = number_of_tag_.find(tag);
@@ -71,27 +75,48 @@ class MshGroups {
   int default_ = -1;
 };
 
-/// Supported type of elements.
+/// Type of elements. Those of higher order have nodes beside their corners.
 struct MshType {
-  int gmsh, dim, n_nodes;
-  const char* name;
+  int gmsh, n_nodes;
+  int dim = 0;
   CellType cell = CellType::triangle;  ///< for types that may be cells
+  /// Number of its corners, the first of its nodes.
+  int corners() const { return dim < 2 ? dim + 1 : shape_of(cell).n_points; }
 };
-constexpr std::array<MshType, 8> msh_types{{{1, 1, 2, "line"},
-                                            {2, 2, 3, "triangle", CellType::triangle},
-                                            {3, 2, 4, "quadrilateral", CellType::quadrilateral},
-                                            {4, 3, 4, "tetrahedron", CellType::tetrahedron},
-                                            {5, 3, 8, "hexahedron", CellType::hexahedron},
-                                            {6, 3, 6, "prism", CellType::prism},
-                                            {7, 3, 5, "pyramid", CellType::pyramid},
-                                            {15, 0, 1, "point"}}};
+
+/// Types of one shape, as pairs of gmsh's number and the number of nodes.
+struct MshShape {
+  int dim;
+  CellType cell;
+  std::vector<std::array<int, 2>> types;
+};
+const std::vector<MshType>& msh_types() {
+  static const std::vector<MshType> all = [] {
+    using enum CellType;
+    std::vector<MshType> types;
+    for (const auto& [dim, cell, of_shape] : std::initializer_list<MshShape>{
+             {0, triangle, {{15, 1}}},
+             {1, triangle, {{1, 2}, {8, 3}, {26, 4}, {27, 5}, {28, 6}}},
+             {2, triangle, {{2, 3}, {9, 6}, {20, 9}, {21, 10}, {22, 12}, {23, 15}, {24, 15}, {25, 21}}},
+             {2,
+              quadrilateral,
+              {{3, 4}, {10, 9}, {16, 8}, {36, 16}, {37, 25}, {38, 36}, {39, 12}, {40, 16}, {41, 20}}},
+             {3, tetrahedron, {{4, 4}, {11, 10}, {29, 20}, {30, 35}, {31, 56}}},
+             {3, hexahedron, {{5, 8}, {12, 27}, {17, 20}, {92, 64}, {93, 125}}},
+             {3, prism, {{6, 6}, {13, 18}, {18, 15}, {90, 40}, {91, 75}}},
+             {3, pyramid, {{7, 5}, {14, 14}, {19, 13}, {118, 30}, {119, 55}}}})
+      for (const auto& [gmsh, n_nodes] : of_shape) types.push_back({gmsh, n_nodes, dim, cell});
+    return types;
+  }();
+  return all;
+}
 
 const MshType& type_or_fail(const MshCursor& in, int gmsh) {
-  const auto found = std::ranges::find(msh_types, gmsh, &MshType::gmsh);
-  if (found != msh_types.end()) return *found;
+  const auto found = std::ranges::find(msh_types(), gmsh, &MshType::gmsh);
+  if (found != msh_types().end()) return *found;
   in.fail(fmt::format(
-      "Element type {} is not supported: expected a first-order line, triangle, quadrilateral, tetrahedron, "
-      "hexahedron, prism or pyramid. For curved elements, remesh with Mesh.ElementOrder = 1.",
+      "Element type {} is not supported: expected a line, triangle, quadrilateral, tetrahedron, hexahedron, prism "
+      "or pyramid.",
       gmsh));
 }
 
@@ -149,6 +174,11 @@ class MshReader {
   MeshBlock read() {
     make_cells();
     make_boundary();
+    if (curved_ > 0 && rank_ == 0)
+      log::info(
+          "'{}': {} elements of second or higher order are reduced to their corners; compensate with about half "
+          "the element size.",
+          in_.file().string(), curved_);
     return std::move(block_);
   }
 
@@ -162,14 +192,15 @@ class MshReader {
 
  private:
   void read_format() {
-    if (in_.at_end() || in_.next_section() != "MeshFormat")
+    std::string section = in_.at_end() ? "" : in_.next_section();
+    for (; section == "Comments"; section = in_.next_section()) in_.skip_section();
+    if (section != "MeshFormat")
       in_.fail("This is not a gmsh .msh file: it does not start with $MeshFormat.");
     const double version = in_.text_real();
     const long mode = in_.text_integer(), data_size = in_.text_integer();
     if (version != 2.2 && version != 4.1)
       in_.fail(fmt::format(
-          "Version {} of the .msh format is not supported. Save the mesh as version 4.1 (gmsh -format msh41) "
-          "or 2.2 (gmsh -format msh22).",
+          "Version {} of the .msh format is not read. Save the mesh as version 4.1 (gmsh -format msh41).",
           version));
     if (data_size != 8)
       in_.fail(fmt::format("Numbers of {} bytes are not supported; expected 8.", data_size));
@@ -345,14 +376,18 @@ class MshReader {
   void read_points_of(const ElementRun& e) {
     in_.skip(e.head, e.bytes);
     points_.clear();
-    for (int i = 0; i < e.type->n_nodes; ++i) points_.push_back(point_of(tag_of_node(e)));
+    for (int i = 0; i < e.type->corners(); ++i) points_.push_back(point_of(tag_of_node(e)));
+    in_.skip(std::size_t(e.type->n_nodes - e.type->corners()), e.bytes);
   }
 
   void make_cells() {
     MshGroups zones(names_, block_.dim);
     GlobalIndex total = 0;
     for (const ElementRun& e : elements_)
-      if (e.type->dim == block_.dim) total += GlobalIndex(e.count);
+      if (e.type->dim == block_.dim) {
+        total += GlobalIndex(e.count);
+        if (e.type->n_nodes > e.type->corners()) curved_ += e.count;
+      }
     block_.cell_shares = {total, ranks_};
     const GlobalIndex mine = block_.cell_shares.first(rank_), end = block_.cell_shares.first(rank_ + 1);
     GlobalIndex next = 0;
@@ -362,7 +397,8 @@ class MshReader {
       for (const int other : e.groups)
         if (zones.use(other) != zone)
           throw Error("{}: a {} is in two physical groups, '{}' and '{}'. A cell must be in exactly one.",
-                      in_.file().string(), e.type->name, zones.name(zone), zones.name(zones.use(other)));
+                      in_.file().string(), name_of(e.type->cell), zones.name(zone),
+                      zones.name(zones.use(other)));
       const GlobalIndex after = next + GlobalIndex(e.count);
       const GlobalIndex first = std::clamp(mine, next, after), last = std::clamp(end, next, after);
       if (first < last) go_to(e, std::size_t(first - next));
@@ -410,12 +446,47 @@ class MshReader {
   std::vector<ElementRun> elements_;
   GlobalIndex first_point_ = 0, end_point_ = 0;
   std::vector<GlobalIndex> points_;  // of the last element read
+  std::size_t curved_ = 0;
   MeshBlock block_;
 };
 
+/// Adds the boundary faces without an element as the patch `rest`.
+void add_rest(RawMesh& raw) {
+  std::set<std::vector<Index>> named;
+  const auto key_of_face = [](std::span<const Index> points) {
+    std::vector<Index> key(points.begin(), points.end());
+    std::ranges::sort(key);
+    return key;
+  };
+  for (Index e = 0; e < raw.boundary_points.size(); ++e) named.insert(key_of_face(raw.boundary_points[e]));
+  const Csr outer = outer_faces(raw);
+  for (Index f = 0; f < outer.size(); ++f) {
+    if (named.contains(key_of_face(outer[f]))) continue;
+    raw.boundary_points.push_row(outer[f]);
+    raw.boundary_patch.push_back(rest_of(raw.patches));
+  }
+}
+
 }  // namespace
 
-RawMesh read_msh(const std::filesystem::path& file) { return raw_of(MshReader(file, 0, 1).read()); }
+RawMesh read_msh(const std::filesystem::path& file) {
+  RawMesh raw = raw_of(MshReader(file, 0, 1).read());
+  add_rest(raw);
+  return raw;
+}
+
+bool is_converted(const std::filesystem::path& file) {
+  MshCursor in(file);
+  try {
+    std::string section = in.next_section();
+    for (; section == "Comments"; section = in.next_section()) in.skip_section();
+    if (section != "MeshFormat") return section == "NOD";
+    const double version = in.text_real();
+    return version != 2.2 && version != 4.1;
+  } catch (const Error&) {
+    return false;  // the reader tells what is wrong
+  }
+}
 
 MeshBlock read_msh_block(MPI_Comm comm, const std::filesystem::path& file, int holders) {
   const int rank = parallel::comm_rank(comm), ranks = parallel::comm_size(comm);

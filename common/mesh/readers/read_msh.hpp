@@ -84,6 +84,9 @@ class MshCursor {
 /// read_msh(). Throws Error with file and line. Collective.
 MeshBlock read_msh_block(MPI_Comm comm, const std::filesystem::path& file, int holders);
 
+/// Returns true if the .msh has a version that gmsh must convert. Throws Error if it cannot be opened.
+bool is_converted(const std::filesystem::path& file);
+
 /// Returns true if the file is a .msh with elements of this dimension.
 bool has_cells(const std::filesystem::path& file, int dim);
 

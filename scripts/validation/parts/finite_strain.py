@@ -153,7 +153,7 @@ def segregated(job):
 
 
 def pairs(job):
-    """The estimate of `output: {large-strain-estimate: true}` and what `kinematics: finite-strain` changes, 7 bodies."""
+    """The estimate of a linear static run and what `kinematics: finite-strain` changes, 7 bodies."""
     tests, _ = job.gtest("verification_solid_large_strain_estimate")
     found = {t.rsplit("/", 1)[-1]: (float(v["told"]), float(v["found"])) for t, v in tests.items() if "told" in v}
     text = "; ".join(f"{name.replace('_', ' ')}: {100 * told:.1f} of {100 * true:.1f} %" for name, (told, true) in found.items())

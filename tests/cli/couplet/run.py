@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, side_by_side, stop, wrong, kill, tell, gallery, python"""
+import json
 import os
 import pathlib
 import re
@@ -140,17 +141,41 @@ def stop(folder):
         with h5py.File(folder / f"a/out/{name}/{name}.h5") as series:
             last = max(float(step.attrs["time"]) for step in series["steps"].values())
         check(f"{name}: the fields of the last step are written", abs(last - saved) <= 1e-8 * saved, (last, saved))
-    shutil.copytree(folder / "a/out", folder / "stopped")
+    for copy in ("stopped", "copied", "hostile"):
+        shutil.copytree(folder / "a", folder / copy)
+    check("the record has no absolute path", str(folder) not in (folder / "a/out/job.json").read_text(), (folder / "a/out/job.json").read_text())
     refused = call(bin_, "resume", folder / "a/out", "--set", "participants.solid.material.density=2000 kg/m^3")
     check("a resume with another density is refused, and leaves no trace", refused.returncode not in (0, 3) and "density" in refused.stderr, f"{refused.returncode} {refused.stderr[-300:]}")
     resumed = call(bin_, "resume", folder / "a/out")
     check("resume goes on to the end", resumed.returncode == 0 and "done in" in resumed.stdout, resumed.stdout[-200:] + resumed.stderr)
     same = call(bin_, "compare", folder / "whole", folder / "a/out")
     check("to what the undisturbed run leaves, bit for bit", same.returncode == 0 and "equal bit for bit" in same.stdout, same.stdout)
-    others = call(bin_, "resume", folder / "stopped", "-n", "fluid=2,solid=2")
+    others = call(bin_, "resume", folder / "stopped/out", "-n", "fluid=2,solid=2")
     check("resume goes on on other ranks", others.returncode == 0 and "done in" in others.stdout, others.stdout[-200:] + others.stderr)
-    one, other = ([float(word) for word in (run / "solid/probes.csv").read_text().splitlines()[-1].split(",")] for run in (folder / "whole", folder / "stopped"))
+    one, other = ([float(word) for word in (run / "solid/probes.csv").read_text().splitlines()[-1].split(",")] for run in (folder / "whole", folder / "stopped/out"))
     check("to what the undisturbed run leaves, within the solvers' tolerance", len(one) == len(other) and max(abs(a - b) for a, b in zip(one, other)) <= 1e-5 * max(map(abs, one)), (one, other))
+    edited = folder / "copied/case.yaml"
+    edited.write_text(edited.read_text().replace("density: ", "density: 2", 1))
+    of_copy = call(bin_, "resume", folder / "copied/out")
+    check("a copy is resumed with its own case", of_copy.returncode not in (0, 3) and "density: was" in of_copy.stderr, of_copy.stderr[-300:])
+    shutil.move(folder / "copied/out", folder / "out")
+    alone = call(bin_, "resume", folder / "out")
+    check("results without their case are not resumed", alone.returncode == 2 and f"its case is not at {folder / 'case.yaml'}" in alone.stderr, alone.stderr)
+    touch = f"touch {folder / 'EXECUTED'}"
+    hostile = folder / "hostile/case.yaml"
+    hostile.write_text(hostile.read_text().replace("program: solid_solver", "program: own"))
+    (folder / "hostile/own.py").write_text(f"import os\nos.system('{touch}')\n")
+    foreign = call(bin_, "resume", folder / "hostile/out")
+    check("resume starts no program of a folder from elsewhere", foreign.returncode == 2 and "give its command again: --with solid=" in foreign.stderr, foreign.stderr)
+    record = json.loads((folder / "stopped/out/job.json").read_text())
+    (folder / "stopped/out/job.json").write_text(json.dumps({**record, "bin": str(folder), "with": {"fluid": ["sh", "-c", touch]}}))
+    foreign = call(bin_, "resume", folder / "stopped/out")
+    check("nor one that its record names", foreign.returncode == 2 and "--with fluid=" in foreign.stderr, foreign.stderr)
+    for program in ("/bin/sh", "../../bin/sh", "sh"):
+        hostile.write_text(f'note: "$({touch})"\nsimulation: {{end-time: 1 s, time-step: 1 s}}\nparticipants: {{solid: {{program: {program}}}}}\n')
+        for command in ("check", "explain", "watch", "plot", "stop"):
+            call(bin_, command, hostile)
+    check("nothing that a case names was started", not (folder / "EXECUTED").exists())
     again = start(bin_, "run", case, "--set", "simulation.checkpoint.interval=0", "--set", "participants.solid.material.density=2000 kg/m^3")
     check("another run in the same folder steps", until(lambda: (folder / "a/out/job.json").exists() and "2000" in (folder / "a/out/job.json").read_text()))
     subprocess.run(["pkill", "-9", "-f", f"^{bin_}/coupler {folder / 'a'}"], check=True)
@@ -188,7 +213,7 @@ def wrong(folder):
                         (("new", folder / "a"), "exists and is not empty"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
         result = ask(bin_, *words)
         check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
-    for name, content, said in (("binary", b"\x85\xff" * 99, "is not a text file"), ("three", b"{simulation: 3, participants: {a: {program: fluid_solver}}}", "simulation"), ("nobody", b"{participants: {a: }}", "participants.a: expected a mapping")):
+    for name, content, said in (("binary", b"\x85\xff" * 99, "binary.yaml:1:1: the byte 0x85 is not text in UTF-8"), ("three", b"{simulation: 3, participants: {a: {program: fluid_solver}}}", "simulation"), ("nobody", b"{participants: {a: }}", "participants.a: expected a mapping")):
         (folder / f"{name}.yaml").write_bytes(content)
         for command in ("run", "check", *(("explain",) if name != "three" else ())):
             result = ask(bin_, command, folder / f"{name}.yaml")

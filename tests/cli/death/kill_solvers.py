@@ -8,11 +8,10 @@ import sys
 from jobs import Suite, mpmd
 
 source = pathlib.Path(sys.argv[3])
-meshes = []
 
 
 def prepare(folder):
-    for file in [*source.glob("*.yaml"), *source.glob("*.geo"), *source.glob("*.cache.msh"), *meshes]:
+    for file in [*source.glob("*.yaml"), *source.glob("*.geo")]:
         shutil.copy(file, folder)
 
 

@@ -113,7 +113,7 @@ def differences(a, b):
 def copy_case(source, folder):
     folder.mkdir()
     for file in source.iterdir():
-        if file.suffix in (".yaml", ".geo") or file.name.endswith(".cache.msh"):
+        if file.suffix in (".yaml", ".geo"):
             shutil.copy(file, folder)
 
 
@@ -147,8 +147,6 @@ def main():
         if job.process.returncode != 0:
             sys.exit(f"the undisturbed run failed:\n{text}")
         wanted = final_state(folder)
-        for mesh in folder.glob("*.cache.msh"):
-            shutil.copy(mesh, scratch)
         run = 0
         for strike in range(count):
             folder = scratch / f"run-{run}"
@@ -157,8 +155,6 @@ def main():
                 restart = any((s / "set.txt").exists() for s in (folder / "out/checkpoints").glob("step-*"))
             else:
                 copy_case(source, folder)
-                for mesh in scratch.glob("*.cache.msh"):
-                    shutil.copy(mesh, folder)
             job = Job(binaries, folder, restart)
             which = SIGNALS[strike % len(SIGNALS)]
             moment = dice.uniform(0.3, 0.7 * whole)

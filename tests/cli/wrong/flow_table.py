@@ -29,7 +29,7 @@ coupling:
 def cases(fluid, RUN):
     return [
     fluid("viscosity of the other kind", """
-case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' is not convertible to Pa s; expected Pa s or a unit convertible to it.
+case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' is not convertible to Pa s. Expected Pa s or a unit convertible to it.
 """, ("1e-3 Pa s", "1e-6 m^2/s")),
     fluid("boundary of a fluid without type", """
 case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, partial-slip, slip, symmetry, periodic, interface, body).
@@ -86,7 +86,7 @@ case.yaml:12:7: participants.fluid.boundaries.right.slip-length: this required k
 case.yaml:12:35: participants.fluid.boundaries.right.slip-length: 0 m is out of range; expected a value above 0 m.
 """, ("{type: outlet, pressure: 0}", "{type: partial-slip, slip-length: 0}")),
     fluid("component with a wrong unit", """
-case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' is not convertible to m/s; expected m/s or a unit convertible to it.
+case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' is not convertible to m/s. Expected m/s or a unit convertible to it.
 """, ("0 m/s]", "0 Pa]")),
     fluid("parabola of a velocity that is given", """
 case.yaml:11:14: participants.fluid.boundaries.left.type: 'profile: parabolic' requires 'mean-speed'; use 'mean-speed', or remove 'profile'.

@@ -42,7 +42,7 @@ case.yaml:6:5: participants.plate.mesh: give either 'mesh' (of the mid-surface) 
 [plate 0] error: The mesh 'square.msh' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the .geo it was made from.
 """, ("    mesh: square.msh\n", "    mesh: square.msh\n    mesh-parameters: {n: 3}\n"), **run),
         plate("mesh of a plate of another kind", """
-[plate 0] error: The mesh file 'case.yaml' is not a .msh, .geo, .unv, .med or .cgns file.
+[plate 0] error: The mesh file 'case.yaml' is not a .msh, .geo, .unv, .med, .exo or .cgns file.
 """, ("    mesh: square.msh\n", "    mesh: case.yaml\n"), **run),
         plate("plate without thickness", """
 case.yaml:6:5: participants.plate.mesh: a plate needs 'thickness' above 0.

@@ -106,7 +106,7 @@ SIMULATION = [
 case.yaml:2:1: simulation.end-time: this required key is missing (end time of the run: number in s).
 """, ("end-time: 1 s, ", "")),
     solid("unit of another quantity", """
-case.yaml:2:14: simulation.end-time: '1 m': the unit 'm' is not convertible to s; expected s or a unit convertible to it.
+case.yaml:2:14: simulation.end-time: '1 m': the unit 'm' is not convertible to s. Expected s or a unit convertible to it.
 """, ("end-time: 1 s", "end-time: 1 m")),
     solid("unknown unit", """
 case.yaml:2:14: simulation.end-time: '1 sec': unknown unit 'sec'. Expected s or a unit convertible to it.
@@ -176,7 +176,7 @@ case.yaml:4:3: participants.solid.material: give either 'material' (of the whole
 """, ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
                                       "      poissons-ratio: 0.3\n", "")),
     solid("modulus in kilograms", """
-case.yaml:11:7: participants.solid.material.youngs-modulus: '1 kg': the unit 'kg' is not convertible to Pa; expected Pa or a unit convertible to it.
+case.yaml:11:7: participants.solid.material.youngs-modulus: '1 kg': the unit 'kg' is not convertible to Pa. Expected Pa or a unit convertible to it.
 """, ("1 MPa", "1 kg")),
     solid("misspelt unit", """
 case.yaml:11:7: participants.solid.material.youngs-modulus: '1 Mpa': unknown unit 'Mpa'. Did you mean 'MPa'? Expected Pa or a unit convertible to it.
@@ -401,7 +401,7 @@ COMMAND_LINE = [
 --set simulation.end-time.s=3: 'simulation.end-time' is a single value, so 's' cannot be set below it.
 """, **with_set("simulation.end-time.s=3")),
     solid("set to a wrong value", """
---set simulation.end-time=2 kg: simulation.end-time: '2 kg': the unit 'kg' is not convertible to s; expected s or a unit convertible to it.
+--set simulation.end-time=2 kg: simulation.end-time: '2 kg': the unit 'kg' is not convertible to s. Expected s or a unit convertible to it.
 """, **with_set("simulation.end-time=2 kg")),
     solid("set of a misspelt key", """
 --set simulation.endtime=2 s: simulation.endtime: unknown key. Did you mean 'end-time'?

@@ -84,6 +84,16 @@ TEST_F(Checkpoints, the_one_that_has_gone_furthest_is_taken_not_the_newest_file)
   EXPECT_EQ(saved_time(find_checkpoint(folder)), 4);
 }
 
+TEST_F(Checkpoints, the_last_one_of_the_latest_run_is_taken_not_a_later_time_of_an_earlier_run) {
+  run_to(4, 9);
+  run_to(2, 9);
+  EXPECT_TRUE(fs::exists(folder / "step-00000004/set.txt"));
+  EXPECT_EQ(find_checkpoint(folder), folder / "step-00000002");
+  EXPECT_EQ(find_checkpoint(folder / "step-00000004"), folder / "step-00000004");
+  run_to(3, 9, folder / "step-00000002");
+  EXPECT_EQ(find_checkpoint(folder), folder / "step-00000003");
+}
+
 TEST_F(Checkpoints, only_those_of_this_run_are_deleted) {
   run_to(3, 9);
   fs::create_directories(folder / "step-by-step/notes");

@@ -71,7 +71,7 @@ std::string error_of(const char* text, const char* unit) {
 
 TEST(Units, what_does_not_convert_is_refused_with_what_was_expected) {
   EXPECT_EQ(error_of("5 kg", "Pa"),
-            "'5 kg': the unit 'kg' is not convertible to Pa; expected Pa or a unit convertible to it.");
+            "'5 kg': the unit 'kg' is not convertible to Pa. Expected Pa or a unit convertible to it.");
   EXPECT_EQ(error_of("5 MPaa", "Pa"),
             "'5 MPaa': unknown unit 'MPaa'. Did you mean 'MPa'? Expected Pa or a unit convertible to it.");
   EXPECT_EQ(error_of("5 furlong", "m"),

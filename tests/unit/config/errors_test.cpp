@@ -27,7 +27,7 @@ const Case cases[] = {
      "large, load, gravity, times, patches, divisions, limit, damping, boundaries, probes."},
     {"interval: -1 ms", "3:1: interval: -0.001 s is out of range; expected a value at least 0 s."},
     {"interval: 5 m",
-     "3:1: interval: '5 m': the unit 'm' is not convertible to s; expected s or a unit convertible to it."},
+     "3:1: interval: '5 m': the unit 'm' is not convertible to s. Expected s or a unit convertible to it."},
     {"interval: 5 sec",
      "3:1: interval: '5 sec': unknown unit 'sec'. Expected s or a unit convertible to it."},
     {"interval: often", "3:1: interval: 'often' is not a number; expected a number in s or with its unit."},
@@ -45,7 +45,7 @@ const Case cases[] = {
     {"analysis: modal", "3:1: analysis: 'modal' is not one of: static, dynamic."},
     {"analysis: [static]", "3:1: analysis: expected one of: static, dynamic, found a list."},
     {"load: 5 m/s",
-     "3:1: load: '5 m/s': the unit 'm/s' is not convertible to Pa; expected Pa or a unit convertible to it."},
+     "3:1: load: '5 m/s': the unit 'm/s' is not convertible to Pa. Expected Pa or a unit convertible to it."},
     {"load: [1]",
      "3:1: load: expected a number in Pa, with its unit, or an expression in x, y, z, t that yields Pa, found "
      "a list."},

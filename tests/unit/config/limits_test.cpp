@@ -30,6 +30,14 @@ TEST(Limits, control_characters_are_refused_with_their_place) {
   EXPECT_EQ(error_of("a: \"two\\nlines\\tand a tab\"\n"), "");
 }
 
+TEST(Limits, what_is_not_utf8_is_refused_with_its_place) {
+  EXPECT_EQ(error_of("a: 1\nH\xf6he: 2\n"),
+            "case.yaml:2:2: the byte 0xf6 is not text in UTF-8; save the file in this encoding.");
+  for (const char* text : {"a: \x80", "a: \xc0\xaf", "a: \xe2\x82", "a: \xff\xfe", "a: \xf5\x80\x80\x80"})
+    EXPECT_THAT(error_of(text), HasSubstr("case.yaml:1:4: the byte")) << text;
+  EXPECT_EQ(error_of("H\xc3\xb6he: \xe2\x82\xac \xf0\x9f\x98\x80\n"), "");
+}
+
 TEST(Limits, brackets_in_units_are_counted) {
   EXPECT_EQ(base::parse_unit("((m))").factor, 1);
   EXPECT_THROW(base::parse_unit(std::string(19000, '(') + "m" + std::string(19000, ')')), Error);

@@ -10,7 +10,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 struct Quantities {
-  double temperature = 290, difference = 10, angle = 0, speed = 0, density = 1000, modulus = 1e9;
+  double temperature = 290, difference = 10, angle = 0, speed = 0, rate = 0, density = 1000, modulus = 1e9;
   Vec3 gravity = Vec3::Zero();
   std::vector<double> lengths;
   config::ExpressionText load, hot;
@@ -22,6 +22,7 @@ void declare(config::Section& s, Quantities& q) {
   s.value("difference", q.difference).unit("K difference").plausible(0.1, 500);
   s.value("angle", q.angle).unit("rad").any_magnitude("it turns for ever");
   s.value("speed", q.speed).unit("rad/s");
+  s.value("rate", q.rate).unit("1/s");
   s.value("density", q.density).unit("kg/m^3").plausible(1, 25000).positive();
   s.value("modulus", q.modulus).unit("Pa").plausible(1e3, 2e12).positive();
   s.value("gravity", q.gravity).unit("m/s^2").plausible(1e-3, 2000);
@@ -86,7 +87,10 @@ TEST(Quantities, nothing_is_colder_than_absolute_zero) {
 }
 
 TEST(Quantities, a_frequency_is_no_speed_of_rotation) {
-  EXPECT_THAT(judge("speed: 10 Hz").errors, ElementsAre(HasSubstr("1 Hz is 6.2832 rad/s")));
+  for (const std::string text :
+       {"speed: 10 Hz", "speed: 60 1/min", "speed: 2 1/s", "speed: 50 %", "angle: 50 %"})
+    EXPECT_THAT(judge(text).errors, ElementsAre(HasSubstr("(a turn is 6.2832 rad or 360 deg)"))) << text;
+  EXPECT_THAT(judge("rate: 3 rad/s").errors, ElementsAre(HasSubstr("'rad/s' is not convertible to 1/s")));
   EXPECT_NEAR(judge("speed: 60 deg/s").values.speed, 1.0471975511966, 1e-12);
 }
 
@@ -115,6 +119,10 @@ TEST(Quantities, lists_tables_and_vectors_of_expressions_are_judged_expressions_
   EXPECT_THAT(judge("load: {of: t, at: [0, 1], values: [0, 3e12]}").doubts,
               ElementsAre(HasSubstr("3e+12 Pa")));
   EXPECT_THAT(judge("load: {of: t, at: [1e12, 2e12], values: [0, 3]}").doubts, IsEmpty());
+  EXPECT_THAT(judge("load: 'table(t, 1e12, 0, 2e12, 3)'").doubts, IsEmpty());
+  EXPECT_THAT(judge("load: 'table(t, error, 1e12, 0, 2e12, 3)'").doubts, IsEmpty());
+  EXPECT_THAT(judge("load: 'table(t, 1, 0, 2, 3e12)'").doubts, ElementsAre(HasSubstr("3e+12 Pa")));
+  EXPECT_THAT(judge("load: 'table(max(t, 1e12), 1, 0, 2, 3)'").doubts, IsEmpty());
   EXPECT_THAT(judge("traction: [1e12, 0]").doubts, ElementsAre(HasSubstr("1e+12 Pa")));
   EXPECT_THAT(judge("traction: [1e3, 1e-9]").doubts, IsEmpty());
   EXPECT_THAT(judge("load: 1e12*sin(t)").doubts, IsEmpty());

@@ -56,6 +56,35 @@ TEST(Expression, names_key_column_and_known_variables_of_an_error) {
   EXPECT_THAT(message_of(""), ::testing::HasSubstr("cannot parse"));
 }
 
+TEST(Expression, refuses_what_would_be_read_in_another_way) {
+  for (const char* text : {"1,5*x", "1,000,000", "(0,5)*x", "t < 1 ? 1,5 : 0", "sin(x) + 2,5", "2*(1,5 + x)"})
+    EXPECT_THAT(message_of(text), ::testing::HasSubstr("write a decimal point")) << text;
+  for (const char* text : {"y = 0.1", "x = 0 && y > 1", "t = 2 ? 1 : 0", "max(x = 1, 2)"})
+    EXPECT_THAT(message_of(text), ::testing::HasSubstr("'=' does not compare")) << text;
+  for (const char* text :
+       {"0.05 < y < 0.1", "0 <= x <= 1 ? 1 : 0", "x == y == z", "t > 1 && 0 < y < 1", "max(0 < x < 1, 2)"})
+    EXPECT_THAT(message_of(text), ::testing::HasSubstr("comparisons in a row")) << text;
+  for (const char* text : {"0 < x && x < 1 || y >= 2", "x < 1 ? y < 2 : z != 3", "max(x < 1, y < 2)",
+                           "(x < 1) == (y < 2)", "atan2(y, max(x, 1))", "x <= 1"})
+    EXPECT_EQ(problem_of(config::ExpressionText{text}), "") << text;
+}
+
+TEST(Expression, refuses_values_outside_the_range_of_its_key) {
+  const auto value = [](const char* text, const config::KeyFacts& key, double t) {
+    return support::error_of([&] {
+      Expression(config::ExpressionText{text, key}, "coefficient")(Vec3::Zero(), t);
+    });
+  };
+  const config::KeyFacts film{.unit = "W/(m^2 K)", .lowest = 0}, kelvin{.unit = "K", .lowest = 0},
+      ratio{.highest = 0.5};
+  EXPECT_THAT(value("10 - t", film, 5), ::testing::Not(::testing::HasSubstr("it must be")));
+  EXPECT_THAT(value("10 - t", film, 20),
+              ::testing::HasSubstr(
+                  "yields -10 W/(m^2 K) at x = 0, y = 0, z = 0, t = 20; it must be at least 0 W/(m^2 K)"));
+  EXPECT_THAT(value("table(t, 0, 300, 1, -20)", kelvin, 1), ::testing::HasSubstr("it must be at least 0 K"));
+  EXPECT_THAT(value("0.3 + 0.4", ratio, 0), ::testing::HasSubstr("it must be at most 0.5"));
+}
+
 TEST(Expression, refuses_values_that_are_not_finite) {
   const Expression f(config::ExpressionText{"1/x"}, "value");
   EXPECT_EQ(f(Vec3(2, 0, 0), 0), 0.5);

@@ -149,10 +149,48 @@ TEST(Table, a_header_in_other_units_is_not_read_as_si) {
               ThrowsMessage<Error>(HasSubstr("the values are in 'bar'")));
   EXPECT_THAT([&] { value_of(fmt::format("({})", of("1000*t", "p")), Vec3::Zero(), 5e-3); },
               ThrowsMessage<Error>(HasSubstr("the values are in 'bar'")));
-  // Said by the scene, or of no unit that could be taken for another.
   EXPECT_DOUBLE_EQ(value_of(fmt::format("1e5*{}", of("1000*t", "p")), Vec3::Zero(), 5e-3), 4e5);
   EXPECT_DOUBLE_EQ(value_of(of("1000*t", "u"), Vec3::Zero(), 5e-3), 1.5);
-  EXPECT_DOUBLE_EQ(value_of(of("1000*t", "n"), Vec3::Zero(), 5e-3), 1);
+  EXPECT_THAT([&] { value_of(of("1000*t", "n"), Vec3::Zero(), 5e-3); },
+              ThrowsMessage<Error>(HasSubstr("the values are in 'cells'")));
+  EXPECT_DOUBLE_EQ(value_of("1 + 0*t + " + of("1000*t", "n"), Vec3::Zero(), 5e-3), 2);
+}
+
+TEST(Table, a_heading_is_in_the_unit_that_is_read_or_refused) {
+  struct Case {
+    const char *axis, *heading, *unit;
+    bool is_taken;
+  };
+  for (const Case& c : {
+           Case{"t", "t,p", "Pa", true},
+           {"t", "t [s],p [Pa]", "Pa", true},
+           {"t", "t [s],p [N/m^2]", "Pa", true},
+           {"t", "t [s],p [-]", "Pa", true},
+           {"t", "t [s],p [psi]", "Pa", false},
+           {"t", "t [s],p [mmHg]", "Pa", false},
+           {"t", "t [s],p [Mpa]", "Pa", false},
+           {"t", "t [s],p [Bar]", "Pa", false},
+           {"t", "t [s],p [kPa]", "Pa", false},
+           {"t", "t [s],p [m]", "Pa", false},
+           {"t", "t [s],p [m]", "", true},
+           {"t", "t [s],p [1]", "1", true},
+           {"t", "t [s],T [degC]", "K", false},
+           {"t", "t [s],n [1/min]", "rad/s", false},
+           {"t", "t [msec],p [Pa]", "Pa", false},
+           {"t", "t [sec],p [Pa]", "Pa", false},
+           {"t", "t [hours],p [Pa]", "Pa", false},
+           {"t/1000", "t [msec],p [Pa]", "Pa", true},
+           {"sqrt(x^2 + y^2)", "r [mm],p [Pa]", "Pa", false},
+           {"z", "z [inch],p [Pa]", "Pa", false},
+           {"t", "t [s],p (psi)", "Pa", false},
+           {"t", "t (msec),p", "Pa", false},
+       }) {
+    const CsvFile file(std::string(c.heading) + "\n0,1\n10,2\n");
+    const config::ExpressionText text{fmt::format("table({}, \"{}\")", c.axis, file.path()),
+                                      {.unit = c.unit}};
+    EXPECT_EQ(problem_of(text).empty(), c.is_taken)
+        << c.heading << " of " << c.axis << ": " << problem_of(text);
+  }
 }
 
 TEST(Table, a_header_of_another_quantity_is_no_axis) {
@@ -204,7 +242,10 @@ TEST(Property, is_a_number_or_a_table_of_the_temperature) {
   const Property alpha({"table(T, clamp, 300, 1e-5, 400, 2e-5)"}, "alpha");
   EXPECT_DOUBLE_EQ(alpha(350), 1.5e-5);
   EXPECT_DOUBLE_EQ(alpha.integral(300, 400), 1.5e-3);
-  EXPECT_DOUBLE_EQ(alpha.lowest(), 1e-5);
+  const config::KeyFacts ratio{.lowest = -0.99, .highest = 0.49999};
+  EXPECT_EQ(problem_of_property({"table(T, clamp, 300, 0.3, 400, 0.49)", ratio}), "");
+  EXPECT_THAT(problem_of_property({"table(T, clamp, 300, 0.3, 400, 0.7)", ratio}),
+              HasSubstr("0.7 is out of range in a table; expected a value from -0.99 to 0.49999"));
   for (const char* wrong : {"2*T", "table(t, 0, 1, 1, 2)", "table(T, 0, 1, 1, 2) + 1", "x"})
     EXPECT_THAT([&] { Property({wrong}, "material.conductivity"); },
                 ThrowsMessage<Error>(HasSubstr("neither a number nor a table of the temperature")))

@@ -67,7 +67,7 @@ TEST_F(CutMesh, of_another_version_is_refused) {
   on_first_rank([&] {
     io::hdf5::Handle out = io::hdf5::create_file(MPI_COMM_SELF, file);
     io::hdf5::write_attribute(out, "cut-mesh-version", 2);
-    io::hdf5::close_file(out);
+    io::hdf5::close_file(MPI_COMM_SELF, out, file);
   });
   EXPECT_THAT(error_of_opening(), ::testing::HasSubstr("it is of version 2; this program reads version 1"));
 }

@@ -156,14 +156,29 @@ TEST(FieldWriter, a_series_goes_on_on_another_number_of_ranks) {
   MPI_Barrier(world);
 }
 
-TEST(FieldWriter, a_restart_on_another_mesh_is_refused_on_every_rank) {
-  const support::SharedFolder scratch;
-  const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals);
-  const LoadedMesh other = make_mesh(BoxCells::quadrilaterals, 5);
-  { FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, nan_time); }
-  EXPECT_THAT(support::error_of(
-                  [&] { FieldWriter(other.mesh, other.geometry.points, scratch / "", "fluid", true, 0.5); }),
-              HasSubstr("written on another mesh"));
+// Outputs of another mesh, a file whose end was never written, and what is no HDF5 file keep no run from resuming.
+TEST(FieldWriter, sets_aside_a_file_that_cannot_be_continued) {
+  for (const int cut : {0, 200, 1 << 20}) {
+    const support::SharedFolder scratch;
+    const auto [mesh, geometry] = make_mesh(BoxCells::quadrilaterals, cut == 0 ? 5 : 4);
+    {
+      const auto [first, places] = make_mesh(BoxCells::quadrilaterals);
+      FieldWriter writer(first, places.points, scratch / "", "fluid", true, nan_time);
+      write(writer, first, places, 0.25);
+    }
+    const auto size = std::filesystem::file_size(scratch / "fluid.h5");
+    MPI_Barrier(world);
+    if (parallel::comm_rank(world) == 0)
+      std::filesystem::resize_file(scratch / "fluid.h5", size - std::min<std::uintmax_t>(cut, size));
+    MPI_Barrier(world);
+    FieldWriter writer(mesh, geometry.points, scratch / "", "fluid", true, 0.5);
+    write(writer, mesh, geometry, 0.75);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "fluid.h5.aside")) << cut;
+    const hdf5::Reader file(scratch / "fluid.h5", "output");
+    EXPECT_EQ(file.members("steps").size(), 1u) << cut;
+    EXPECT_EQ(file.number("steps/000000", "time"), 0.75) << cut;
+    MPI_Barrier(world);
+  }
 }
 
 TEST(FieldWriter, a_field_of_the_wrong_size_is_refused) {

@@ -3,7 +3,10 @@
 
 #include "common/mesh/entries.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/topology.hpp"
+#include "common/mesh/touching_faces.hpp"
 #include "support.hpp"
+#include "tests/support/box.hpp"
 
 namespace couplet::distributed_test {
 using namespace mesh;
@@ -178,6 +181,35 @@ TEST(BlocksShared, alike_in_every_call) {
   EXPECT_EQ(share(), first);
 }
 
+TEST(BlocksShared, boundary_faces_without_a_name_are_numbered_alike_on_any_ranks) {
+  RawMesh raw = make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Vec3(3, 3, 3));
+  const RawMesh whole = raw;
+  raw.boundary_points = {}, raw.boundary_patch = {};
+  for (Index e = 0; e < whole.boundary_points.size(); ++e) {
+    if (e % 3 == 1) continue;
+    raw.boundary_points.push_row(whole.boundary_points[e]);
+    raw.boundary_patch.push_back(whole.boundary_patch[e]);
+  }
+  /// Number and center of each owned face of the patch `rest`, of all ranks.
+  const auto rest_of_mesh = [](const LoadedMesh& loaded) {
+    std::vector<std::array<double, 4>> faces;
+    const Patch* rest = loaded.mesh.find_patch("rest");
+    for (Index f = rest->first; f < rest->first + rest->count; ++f) {
+      const Vec3& x = loaded.geometry.face_centre[f];
+      faces.push_back({double(loaded.mesh.boundary_id[f - loaded.mesh.n_interior]), x[0], x[1], x[2]});
+    }
+    faces = all_gather(MPI_COMM_WORLD, faces);
+    std::ranges::sort(faces);
+    return faces;
+  };
+  const auto faces = rest_of_mesh(distribute(MPI_COMM_WORLD, raw));
+  ASSERT_EQ(faces.size(), 18u);
+  for (std::size_t i = 0; i < faces.size(); ++i) EXPECT_EQ(faces[i][0], double(36 + i));
+  EXPECT_EQ(rest_of_mesh(distribute(MPI_COMM_WORLD, even_block(raw))), faces);
+  EXPECT_EQ(rest_of_mesh(distribute(MPI_COMM_SELF, raw)).size(),
+            18u * std::size_t(comm_size(MPI_COMM_WORLD)));
+}
+
 /// The words about the same mistake, found on rank 0 alone and in even blocks.
 void expect_same_error(const RawMesh& raw, const std::string& words) {
   const std::string whole = support::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
@@ -189,13 +221,6 @@ RawMesh box() { return make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Ve
 
 TEST(BlocksOfWrongMeshes, are_refused_in_the_words_of_rank_0_alone) {
   RawMesh raw = box();
-  raw.boundary_points = {};
-  for (Index e = 0; e + 4 < Index(raw.boundary_patch.size()); ++e)
-    raw.boundary_points.push_row(box().boundary_points[e]);
-  raw.boundary_patch.resize(raw.boundary_patch.size() - 4);
-  expect_same_error(raw, "4 boundary faces are in no patch");
-
-  raw = box();
   raw.boundary_points.push_row(box().boundary_points[7]);
   raw.boundary_patch.push_back((raw.boundary_patch[7] + 1) % 6);
   expect_same_error(raw, "is in two patches");
@@ -276,6 +301,79 @@ TEST(BlocksOfWrongMeshes, with_fewer_cells_than_ranks_are_refused) {
   if (comm_size(MPI_COMM_WORLD) == 1) GTEST_SKIP();
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {1, 1, 0}, Vec3::Zero(), Vec3(1, 1, 0));
   expect_same_error(raw, "Start fewer processes");
+}
+
+/// A box whose halves on both sides of x = 0 share no points, but touch.
+RawMesh torn_box(BoxCells cells) {
+  RawMesh raw = make_box(cells, {4, 3, 2}, {-1, 0, 0}, {1, 1, 1});
+  const auto n = Index(raw.points.size());
+  std::map<Index, Index> copy;
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    double x = 0;
+    for (const Index v : raw.cell_points[c]) x += raw.points[v][0];
+    for (Index i = raw.cell_points.offset[c]; x > 0 && i < raw.cell_points.offset[c + 1]; ++i) {
+      Index& v = raw.cell_points.index[i];
+      if (std::abs(raw.points[v][0]) > 1e-9) continue;
+      const auto [at, is_new] = copy.try_emplace(v, Index(raw.points.size()));
+      if (is_new) raw.points.push_back(Vec3(raw.points[v]));
+      v = at->second;
+    }
+  }
+  raw.patches = {"skin", "left", "right"};
+  raw.boundary_points = outer_faces(raw);
+  raw.boundary_patch.clear();
+  for (Index f = 0; f < raw.boundary_points.size(); ++f) {
+    const auto points = raw.boundary_points[f];
+    const bool inside =
+        std::ranges::all_of(points, [&](Index v) { return std::abs(raw.points[v][0]) < 1e-9; });
+    raw.boundary_patch.push_back(!inside ? 0 : points[0] < n ? 1 : 2);
+  }
+  return raw;
+}
+
+LoadedMesh load(const RawMesh& raw, bool tie) {
+  MeshBlock block = even_block(raw);
+  block.tie = tie;
+  return load_block(MPI_COMM_WORLD, std::move(block), "torn", 1);
+}
+
+/// Pairs of touching patches as "left right 6 alike at (0, 0.5, 0.5)", one per line.
+std::string touching(const LoadedMesh& loaded) {
+  std::string text;
+  for (const TouchingFaces& t : find_touching_faces(loaded.mesh, loaded.geometry))
+    text += fmt::format("{} {} {}{}\n", t.patch, t.other, t.count, t.alike ? " alike" : "");
+  return text;
+}
+
+TEST(TouchingFaces, are_found_and_tied_on_all_cells) {
+  for (const test::Box& box : test::boxes()) {
+    SCOPED_TRACE(box.name);
+    const RawMesh raw = torn_box(box.cells);
+    const auto faces = std::ranges::count(raw.boundary_patch, 1);
+    EXPECT_EQ(touching(load(raw, false)), fmt::format("left right {} alike\n", faces));
+    const LoadedMesh tied = load(raw, true);
+    const RawMesh whole = make_box(box.cells, {4, 3, 2}, {-1, 0, 0}, {1, 1, 1});
+    EXPECT_EQ(touching(tied), "");
+    EXPECT_EQ(tied.mesh.points.n_global(), std::ssize(whole.points));
+    EXPECT_EQ(tied.mesh.boundary.n_global(), std::ssize(whole.boundary_patch));
+    EXPECT_EQ(touching(load(whole, false)), "");
+  }
+}
+
+/// Two squares side by side, `gap` apart, the second one with n cells per side.
+RawMesh two_squares(int n, double gap) {
+  return testing::beside(make_box(BoxCells::quadrilaterals, {4, 4, 1}, {0, 0, 0}, {1, 1, 0}),
+                         make_box(BoxCells::quadrilaterals, {n, n, 1}, {1 + gap, 0, 0}, {2 + gap, 1, 0}));
+}
+
+TEST(TouchingFaces, are_found_where_the_meshes_differ_but_not_across_a_gap) {
+  for (const bool tie : {false, true}) {
+    EXPECT_THAT(touching(load(two_squares(8, 0), tie)), ::testing::MatchesRegex("xmin xmax [0-9]+\n"));
+    EXPECT_THAT(touching(load(two_squares(5, 0), tie)), ::testing::MatchesRegex("xmin xmax [0-9]+\n"));
+    EXPECT_EQ(touching(load(two_squares(4, 1e-3), tie)), "");
+  }
+  EXPECT_EQ(touching(load(two_squares(4, 0), false)), "xmin xmax 4 alike\n");
+  EXPECT_EQ(touching(load(two_squares(4, 0), true)), "");
 }
 
 }  // namespace couplet::distributed_test

@@ -15,6 +15,8 @@ class LoadMesh : public ::testing::Test {
     std::string name = own_.path.string();
     broadcast(MPI_COMM_WORLD, name);
     folder = name;
+    caches = folder / "cache";
+    setenv("XDG_CACHE_HOME", caches.c_str(), 1);
   }
   ~LoadMesh() override { MPI_Barrier(MPI_COMM_WORLD); }
   std::filesystem::path write(const std::string& name, const std::string& text) {
@@ -22,17 +24,16 @@ class LoadMesh : public ::testing::Test {
     MPI_Barrier(MPI_COMM_WORLD);
     return folder / name;
   }
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      names.push_back(entry.path().filename());
-    return names;
+  static std::size_t files_in(const std::filesystem::path& of) {
+    const std::filesystem::directory_iterator all(of);
+    return std::size_t(
+        std::count_if(begin(all), end(all), [](const auto& e) { return e.is_regular_file(); }));
   }
   static std::string error(const std::filesystem::path& file, int dim) {
     return support::error_of([&] { load_mesh(MPI_COMM_WORLD, file, dim); });
   }
 
-  std::filesystem::path folder;
+  std::filesystem::path folder, caches;
 
  private:
   test::TemporaryFolder own_;
@@ -56,13 +57,37 @@ TEST_F(LoadMesh, meshes_a_geo_once_even_if_all_ask_at_the_same_time) {
   const auto geo = write("square.geo", "h = 0.3;\n" + square);
   const auto first = mesh_geo(geo, 2);
   MPI_Barrier(MPI_COMM_WORLD);
-  const auto time = std::filesystem::last_write_time(first);
-  EXPECT_EQ(files().size(), 2u) << "the .geo and one mesh, nothing temporary";
+  EXPECT_EQ(files_in(folder), 1u) << "only the .geo";
+  EXPECT_EQ(files_in(caches / "couplet/meshes"), 1u) << "nothing temporary";
+  ::testing::internal::CaptureStdout();
   EXPECT_EQ(mesh_geo(geo, 2), first);
-  EXPECT_EQ(std::filesystem::last_write_time(first), time) << "not meshed again";
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "") << "not meshed again";
   EXPECT_THAT(first.filename().string(), ::testing::MatchesRegex("square\\.[0-9a-f]+\\.cache\\.msh"));
   const auto [mesh, geometry] = load_mesh(MPI_COMM_WORLD, geo, 2);
   EXPECT_NE(mesh.find_patch("around"), nullptr);
+}
+
+TEST_F(LoadMesh, meshes_used_long_ago_are_removed_beyond_4_gigabytes) {
+  const auto kept = caches / "couplet/meshes";
+  if (comm_rank(MPI_COMM_WORLD) == 0) {
+    std::filesystem::create_directories(kept);
+    int days = 3;
+    for (const char* name : {"oldest.msh", "newer.msh", "other.txt"}) {
+      std::ofstream(kept / name) << "x";
+      std::filesystem::resize_file(kept / name, std::uintmax_t(3) << 30);  // sparse
+      std::filesystem::last_write_time(
+          kept / name, std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * days--));
+    }
+  }
+  const auto mesh = [&](const char* name) {
+    load_mesh(MPI_COMM_WORLD, write(name, "h = 0.5;\n" + square), 2);
+    MPI_Barrier(MPI_COMM_WORLD);
+  };
+  mesh("one.geo");
+  EXPECT_FALSE(std::filesystem::exists(kept / "oldest.msh"));
+  EXPECT_TRUE(std::filesystem::exists(kept / "newer.msh"));
+  EXPECT_TRUE(std::filesystem::exists(kept / "other.txt"));
+  EXPECT_EQ(files_in(kept), 3u);
 }
 
 /// A machine that went down while it wrote: no fault of the user's, who has nothing to mend.
@@ -186,7 +211,7 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
               HasSubstr("bad.msh:1: Expected a section such as $Nodes here"));
 }
 
-TEST_F(LoadMesh, reads_unv_by_gmsh_with_its_groups_as_patches_and_scales_lengths) {
+TEST_F(LoadMesh, reads_unv_with_its_groups_as_patches_and_scales_lengths) {
   const std::filesystem::path copy = folder / "millimetres.unv";
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::copy(test::data / "millimetres.unv", copy);
   MPI_Barrier(MPI_COMM_WORLD);
@@ -204,8 +229,46 @@ TEST_F(LoadMesh, reads_unv_by_gmsh_with_its_groups_as_patches_and_scales_lengths
               HasSubstr("'mesh-parameters' cannot change it"));
 }
 
+TEST_F(LoadMesh, a_msh_of_another_version_is_converted_by_gmsh) {
+  std::ifstream in(test::data / "plane_22_ascii.msh");
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  text.replace(text.find("2.2 0 8"), 7, "2 0 8");
+  for (const char* name : {"1 11 \"", "1 12 \"", "1 13 \"", "2 14 \"", "2 15 \""})
+    text.erase(text.find(name), 2);  // the dimension
+  const std::string oldest =
+      "$NOD\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$ENDNOD\n"
+      "$ELM\n3\n1 3 1 1 4 1 2 5 4\n2 3 1 1 4 2 3 6 5\n3 1 7 7 2 4 1\n$ENDELM\n";
+  const auto of_file = [&](const std::string& name, const std::string& content) {
+    const auto [mesh, geometry] = load_mesh(MPI_COMM_SELF, write(name, content), 2);
+    std::map<std::string, double> lengths;
+    for (const Patch& patch : mesh.patches)
+      for (Index f = patch.first; f < patch.first + patch.count; ++f)
+        lengths[patch.name] += geometry.face_area[f].norm();
+    return std::pair(mesh.cells.n_global(), lengths);
+  };
+  const auto [cells, lengths] = of_file("version-2.msh", text);
+  EXPECT_EQ(cells, 18);
+  EXPECT_EQ(lengths.size(), 3u);
+  EXPECT_DOUBLE_EQ(lengths.at("inlet"), 1);
+  const auto [two, sides] = of_file("version-1.msh", oldest);
+  EXPECT_EQ(two, 2);
+  EXPECT_EQ(sides, (std::map<std::string, double>{{"physical_7", 1}, {"rest", 5}}));
+}
+
+TEST_F(LoadMesh, elements_of_second_order_are_reduced_to_their_corners) {
+  const auto geo = write("second.geo", "h = 0.3;\n" + square + "Mesh.ElementOrder = 2;\n");
+  const auto [mesh, geometry] = load_mesh(MPI_COMM_SELF, geo, 2);
+  const auto first = load_mesh(MPI_COMM_SELF, write("first.geo", "h = 0.3;\n" + square), 2);
+  EXPECT_EQ(mesh.cells.n_global(), first.mesh.cells.n_global());
+  EXPECT_EQ(mesh.points.n_global(), first.mesh.points.n_global());
+  double area = 0;
+  for (const double v : geometry.volume) area += v;
+  EXPECT_NEAR(area, 1, 1e-12);
+  EXPECT_EQ(mesh.find_patch("around")->count, first.mesh.find_patch("around")->count);
+}
+
 TEST_F(LoadMesh, a_format_that_this_gmsh_was_built_without_is_refused_before_gmsh_takes_it_for_a_script) {
-  const std::string text = error(write("mesh.med", "SystemCall \"touch intruder\";"), 2);
+  const std::string text = error(write("mesh.cgns", "SystemCall \"touch intruder\";"), 2);
   EXPECT_FALSE(text.empty());
   EXPECT_FALSE(std::filesystem::exists("intruder"));
 }
@@ -218,7 +281,7 @@ TEST_F(LoadMesh, tells_what_gmsh_did_not_understand) {
       << "the user's name of it, not that of the copy";
   EXPECT_THAT(text, HasSubstr("line 2"));
   MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_EQ(files().size(), 1u) << "nothing temporary is left";
+  EXPECT_EQ(files_in(folder) + files_in(caches / "couplet/meshes"), 1u) << "nothing temporary is left";
 }
 
 TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {

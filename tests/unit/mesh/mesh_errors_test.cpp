@@ -13,21 +13,30 @@ std::string error_of(const RawMesh& raw) {
   return support::error_of([&] { distribute(MPI_COMM_SELF, raw); });
 }
 
-TEST(MeshErrors, boundary_face_without_patch_is_named_by_its_centre) {
+TEST(MeshErrors, boundary_faces_without_patch_are_the_patch_rest) {
   RawMesh raw = squares();
   raw.boundary_points.offset.pop_back();
   raw.boundary_points.index.resize(raw.boundary_points.index.size() - 2);
   raw.boundary_patch.pop_back();
-  EXPECT_EQ(
-      error_of(raw),
-      "1 boundary face is in no patch, with centre (1.5, 1). Every boundary face must be in exactly one "
-      "patch: add the curve (Physical Curve) to a physical group (for a location inside the domain: the "
-      "mesh has two coincident points there that should be one).");
+  const auto rest_of_mesh = [&] {
+    ::testing::internal::CaptureStdout();
+    const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+    const Patch* rest = mesh.find_patch("rest");
+    const std::string log = ::testing::internal::GetCapturedStdout();
+    double area = 0;
+    for (Index f = rest->first; f < rest->first + rest->count; ++f) area += geometry.face_area[f].norm();
+    return std::pair(area, log);
+  };
+  auto [area, log] = rest_of_mesh();
+  EXPECT_DOUBLE_EQ(area, 1);
+  EXPECT_THAT(log, HasSubstr("1 boundary face in no group forms the patch 'rest', at (1.5, 1) ("));
   raw = make_box(BoxCells::hexahedra, {2, 1, 1}, {0, 0, 0}, {2, 1, 1});
   raw.boundary_points = {};
   raw.boundary_patch = {};
-  EXPECT_THAT(error_of(raw), HasSubstr("10 boundary faces are in no patch, with centres (0.5, 0.5, 0), (0.5, "
-                                       "0, 0.5), (0, 0.5, 0.5), ...."));
+  std::tie(area, log) = rest_of_mesh();
+  EXPECT_DOUBLE_EQ(area, 10);
+  EXPECT_THAT(log, HasSubstr("10 boundary faces in no group form the patch 'rest', at (0.5, 0.5, 0), "
+                             "(0.5, 0.5, 1), (0.5, 0, 0.5), ..."));
 }
 
 TEST(MeshErrors, boundary_face_in_two_patches_is_named_with_both) {
@@ -50,6 +59,20 @@ TEST(MeshErrors, patch_between_cells_is_refused) {
       error_of(raw),
       "Patch 'ymax' has a face at (1, 0.5) that lies between two cells. A patch must lie on the boundary; "
       "remove the inner surface from the physical group (or the mesh contains every cell twice).");
+}
+
+TEST(MeshErrors, a_cell_in_two_groups_is_named) {
+  RawMesh raw = squares();
+  raw.zones = {"low", "all"};
+  for (Index c = 0; c < 2; ++c) {
+    const auto row = raw.cell_points[c];
+    raw.cell_points.push_row(std::vector<Index>(row.begin(), row.end()));
+    raw.cell_type.push_back(raw.cell_type[0]);
+    raw.cell_zone.push_back(1);
+  }
+  EXPECT_THAT(error_of(raw), HasSubstr("is in two groups, 'low' and 'all'. A cell must be in exactly one."));
+  raw.cell_zone = {0, 0, 0, 0};
+  EXPECT_THAT(error_of(raw), HasSubstr("The mesh has the quadrilateral at (1, 0.5) twice."));
 }
 
 TEST(MeshErrors, patch_off_the_cells_is_refused) {
@@ -109,13 +132,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"empty", "", ":1: This is not a gmsh .msh file: it does not start with $MeshFormat."},
         BadFile{
             "other_version", "$MeshFormat\n4 0 8\n$EndMeshFormat\n",
-            ":2: Version 4 of the .msh format is not supported. Save the mesh as version 4.1 (gmsh -format "
-            "msh41) or 2.2 (gmsh -format msh22)."},
+            ":2: Version 4 of the .msh format is not read. Save the mesh as version 4.1 (gmsh -format msh41)."},
         BadFile{
-            "second_order", head + nodes + "$Elements\n1\n1 9 2 1 1 1 2 3 4 5 6\n$EndElements\n",
-            ":12: Element type 9 is not supported: expected a first-order line, triangle, quadrilateral, "
-            "tetrahedron, hexahedron, prism or pyramid. For curved elements, remesh with Mesh.ElementOrder "
-            "= 1."},
+            "polygon", head + nodes + "$Elements\n1\n1 34 2 1 1 1 2 3 4 5 6\n$EndElements\n",
+            ":12: Element type 34 is not supported: expected a line, triangle, quadrilateral, tetrahedron, "
+            "hexahedron, prism or pyramid."},
         BadFile{"unknown_node", head + nodes + "$Elements\n1\n1 2 2 1 1 1 2 4\n$EndElements\n",
                 ":12: An element uses node 4, which is not in $Nodes."},
         BadFile{"node_twice", head + "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", ":7: Duplicate node 1."},

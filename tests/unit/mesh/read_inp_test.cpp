@@ -116,7 +116,56 @@ TEST_F(ReadInp, included_files_lie_in_the_folder) {
   EXPECT_THAT(error("*INCLUDE, INPUT=/etc/passwd\n"), HasSubstr("outside the folder"));
   EXPECT_THAT(error("*INCLUDE, INPUT=none.txt\n"), HasSubstr("does not exist"));
   EXPECT_THAT(error("*INCLUDE\n"), HasSubstr("names no file"));
+  EXPECT_THAT(error("*INCLUDE, INPUT=parts\n"), HasSubstr("is a folder"));
   EXPECT_THAT(error("*INCLUDE, INPUT=deck.inp\n"), HasSubstr("is nested deeper than 8 files"));
+}
+
+TEST_F(ReadInp, data_lines_may_come_from_other_files) {
+  write("parts/high.txt", "20, 5,6,7,8,15,16,17,18\n");
+  write("parts/floor.txt", "1, 2\n*\n3\n");
+  const RawMesh raw = read(two_cubes +
+                           "*ELEMENT, TYPE=C3D8, ELSET=low\n10, 1,2,3,4,5,6,7,8\n"
+                           "*ELEMENT, TYPE=C3D8, ELSET=high, INPUT=parts/high.txt\n"
+                           "*NSET, NSET=floor\n*include, input=parts/floor.txt\n4\n");
+  EXPECT_THAT(raw.zones, ElementsAre("low", "high"));
+  EXPECT_EQ(raw.cell_type.size(), 2u);
+  EXPECT_EQ(area_of(raw, "floor"), Vec3(0, 0, -1));
+}
+
+TEST_F(ReadInp, sets_may_follow_what_refers_to_them) {
+  std::string nodes = two_cubes;
+  nodes.replace(nodes.find("1, 0,0,0"), 8, "1");
+  const RawMesh raw =
+      read("*SOLID SECTION, ELSET=b\n*SURFACE, NAME=lid\nBoth, S2\n*ELSET, ELSET=both\na, b\n" + nodes +
+           "*ELEMENT, TYPE=C3D8\n10, 1,2,3,4,5,6,7,8\n20, 5,6,7,8,15,16,17,18\n*\n*ELSET, ELSET=a\n10\n"
+           "*ELSET, ELSET=b\n20\n*SOLID SECTION, ELSET=a\n");
+  EXPECT_THAT(raw.zones, ElementsAre("b", "a"));
+  EXPECT_THAT(raw.cell_zone, ElementsAre(1, 0));
+  EXPECT_EQ(area_of(raw, "lid"), Vec3(0, 0, 1));
+  EXPECT_EQ(area_of(raw, "rest"), Vec3(0, 0, -1));
+  EXPECT_THAT(error("*ELSET, ELSET=a\nb\n*ELSET, ELSET=b\na\n"),
+              AllOf(HasSubstr("deck.inp:4:"), HasSubstr("sets contain each other")));
+  EXPECT_THAT(error("*SOLID SECTION, ELSET=a\n"),
+              AllOf(HasSubstr("deck.inp:1:"), HasSubstr("'a' is neither")));
+}
+
+TEST_F(ReadInp, what_is_not_read_is_named) {
+  const auto log_of = [&](const std::string& text) {
+    ::testing::internal::CaptureStdout();
+    read(two_cubes + cubes + text);
+    return ::testing::internal::GetCapturedStdout();
+  };
+  EXPECT_THAT(log_of("*NSET, NSET=a\n1, 2, 3, 101, 102\n"),
+              HasSubstr("2 of 5 of NSET 'a' (the first is 101)"));
+  EXPECT_THAT(log_of("*ELEMENT, TYPE=MASS\n7, 1\n*ELSET, ELSET=e\n7, 10, 11\n"),
+              AllOf(HasSubstr("1 of 3 of ELSET 'e' (the first is 11)"), HasSubstr("skipped: MASS")));
+  EXPECT_THAT(log_of("*NSET, NSET=a, GENERATE\n1, 90\n"), ::testing::Not(HasSubstr("not defined")));
+  EXPECT_THAT(log_of("*NSET, NSET=a, WEIGHT=2\n1\n"),
+              HasSubstr("deck.inp:18: the parameter WEIGHT of *NSET is not read"));
+  EXPECT_THAT(log_of("*NSET, NSET=a\n5, 6, 7, 8\n"), HasSubstr("no boundary face is left for them: a."));
+  EXPECT_THAT(log_of("*TIE, NAME=t\na, b\n*MATERIAL, NAME=m\n"),
+              AllOf(HasSubstr("connected by *TIE, which is not read"), HasSubstr("skipped: *MATERIAL")));
+  EXPECT_THAT(error(two_cubes + cubes + "*NSET, NSET=a, ELSET=low\n"), HasSubstr("list the nodes"));
 }
 
 TEST_F(ReadInp, mistakes_are_told_with_file_and_line) {
@@ -143,7 +192,7 @@ TEST_F(ReadInp, mistakes_are_told_with_file_and_line) {
   EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\n10, S7\n"), HasSubstr("'beam, S3'"));
   EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\n10\n"), HasSubstr("'beam, S3'"));
   EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\nnone, S1\n"),
-              HasSubstr("nor the name of an earlier ELSET"));
+              AllOf(HasSubstr("deck.inp:19:"), HasSubstr("nor the name of an ELSET")));
   EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\n10, S1\n*SURFACE, NAME=b\n10, S1\n"),
               AllOf(HasSubstr("(0.5, 0.5, 0)"), HasSubstr("two surfaces, 'a' and 'b'")));
   EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=C3D4, ELSET=e\n1, 1,2,4,5\n*SURFACE, NAME=a\ne, S5\n"),

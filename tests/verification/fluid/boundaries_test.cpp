@@ -2,6 +2,7 @@
 // What the boundaries promise: profiles, ramps, outlets, periodic pairs, and a body force in balance.
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
+#include "tests/support/apart.hpp"
 #include "tests/support/observed_run.hpp"
 
 namespace couplet::fluid::test::boundaries_test {
@@ -107,6 +108,33 @@ TEST(Outlet, backflow_pays_its_head) {
 
 /// The Taylor-Green array that travels through a doubly periodic box returns after a period as if it had not
 /// moved (nu = 0.01).
+// Without an outlet the pressure of a part has any level beside that of the others.
+TEST(Parts, of_a_fluid_that_no_cell_connects_need_an_outlet_each) {
+  const auto told = [](int apart, const std::string& last, FluidParameters p) {
+    RawMesh raw = quads(4, 4, 1);
+    for (int i = 1; i <= apart; ++i)
+      support::add_apart(
+          raw, make_box(BoxCells::quadrilaterals, {3, 4, 1}, Vec3(2 * i, 0, 0), Vec3(2 * i + 1, 1, 1)));
+    p.boundaries["xmin"] = boundary(BoundaryType::no_slip);
+    raw.patches.push_back("last");
+    for (Index b = 0; b < raw.boundary_points.size(); ++b) {
+      bool right = true;
+      for (const Index v : raw.boundary_points[b]) right = right && raw.points[v][0] == 2 * apart + 1;
+      if (right) raw.boundary_patch[b] = int(raw.patches.size()) - 1;
+    }
+    p.boundaries["last"] = p.boundaries[last];
+    return support::error_of([&] { FluidCase<2>(MPI_COMM_WORLD, raw, p); });
+  };
+  FluidParameters closed = duct(), open = duct();
+  closed.boundaries["xmax"] = boundary(BoundaryType::no_slip);
+  EXPECT_EQ(told(0, "xmin", closed), "");
+  EXPECT_THAT(told(1, "xmin", closed),
+              ::testing::HasSubstr("has 2 parts that no cell connects, and 2 of them have no outlet"));
+  EXPECT_EQ(told(2, "xmax", open), "");
+  EXPECT_THAT(told(2, "xmin", open),
+              ::testing::HasSubstr("has 3 parts that no cell connects, and 1 of them have no outlet"));
+}
+
 TEST(Periodic, travelling_vortices_keep_second_order) {
   double error[2];
   for (int i = 0; i < 2; ++i) {

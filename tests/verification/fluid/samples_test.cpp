@@ -125,6 +125,22 @@ TEST(RotatingInlet, adds_omega_cross_r_and_a_ring_between_turning_walls_carries_
   EXPECT_THROW(Boundary<2>(mesh, geometry, p), Error);
 }
 
+/// omega x r with the speed that is given, whatever the length of the axis.
+TEST(RotatingInlet, has_an_axis_of_any_length) {
+  FluidParameters p = fluid_of(1, 0.1, 1e-12);
+  all_sides(p, 3, boundary(BoundaryType::moving_wall));
+  p.boundaries["zmax"].rotation = RotationParameters{{"2*t"}, Vec3(0.5, 0.25, 0), Vec3(3, 0, 4)};
+  const auto [mesh, geometry] =
+      distribute(MPI_COMM_WORLD, make_box(BoxCells::hexahedra, {3, 3, 2}, Vec3::Zero(), Vec3::Ones()));
+  const Boundary<3> walls(mesh, geometry, p);
+  Vectors<3> w(mesh.boundary.n_owned(), Vec3::Zero());
+  const auto at = make_placement<3>(mesh, geometry);
+  walls.velocity_at(0.5, at->boundary_centre, w);
+  const Patch& lid = *mesh.find_patch("zmax");
+  for (Index b = lid.first - mesh.n_interior; b < lid.first - mesh.n_interior + lid.count; ++b)
+    EXPECT_LT((w[b] - Vec3(0.6, 0, 0.8).cross(at->boundary_centre[b] - Vec3(0.5, 0.25, 0))).norm(), 1e-14);
+}
+
 /// What passes a wall that turns about the middle of a box is round-off on faces whose normals are no axes: it was
 /// refused as a closed fluid that is let in more than out.
 TEST(RotatingInlet, walls_of_a_closed_ring_may_turn) {

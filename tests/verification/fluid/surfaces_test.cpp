@@ -162,6 +162,23 @@ TEST(Fluxes, of_a_flow_that_is_exact_on_the_mesh) {
   for (const double rest : sums(fluxes, 2)) EXPECT_NEAR(rest, 0, 1e-9);
 }
 
+/// Of a uniform flow of 1 m/s through a mesh that goes along with 0.3 m/s, 0.7 of it pass.
+TEST(Fluxes, are_relative_to_a_mesh_that_moves) {
+  FluidParameters p = channel();
+  p.output.surfaces.clear();
+  for (const char* side : {"xmin", "ymin", "ymax"})
+    p.boundaries[side] = boundary(BoundaryType::inlet, {"1", "0"});
+  p.initial_velocity = {{"1"}, {"0"}};
+  p.motion.emplace().translation = {{"0.3*t"}, {"0.1*t"}};
+  const Columns fluxes = Written(p, "moved-fluxes", 3, squares(8, 4)).csv("fluxes.csv");
+  const std::map<std::string, double> wanted{
+      {"xmin", -0.7}, {"xmax", 0.7}, {"ymin", 0.1 * length}, {"ymax", -0.1 * length}};
+  for (const auto& [patch, volume] : wanted) {
+    EXPECT_NEAR(fluxes.at(patch + " volume [m^3/s]").back(), volume, 1e-11) << patch;
+    EXPECT_NEAR(fluxes.at(patch + " momentum x [N]").back(), rho * volume, 1e-9) << patch;
+  }
+}
+
 TEST(Fluxes, of_a_plane_channel_balance_and_its_walls_carry_the_pressure_drop) {
   FluidParameters p = channel();
   p.viscosity = 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What conduction must reproduce to round-off on any mesh.
+#include "common/mesh/distributed/mesh_block.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::exactness_test {
@@ -183,6 +184,24 @@ TEST(LayeredSlab, the_flux_through_layers_is_exact) {
     ::testing::Test::RecordProperty(fmt::format("relative_error_{}", int(cells)),
                                     fmt::format("{:.3e}", error));
     EXPECT_LT(error, 1e-10);
+  }
+}
+
+// Two bars of 1 m with 10 W/(m K) and 100 K between their ends: 500 W.
+TEST(TouchingBars, conduct_heat_where_they_are_tied) {
+  MeshBlock block =
+      block_of(MPI_COMM_WORLD, beside(make_box(BoxCells::hexahedra, {2, 2, 2}, {0, 0, 0}, {1, 1, 1}),
+                                      make_box(BoxCells::hexahedra, {2, 2, 2}, {1, 0, 0}, {2, 1, 1})));
+  block.tie = true;
+  HeatParameters p = steady();
+  p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "300");
+  p.boundaries["xmax"] = heat_boundary(HeatType::temperature, "400");
+  HeatCase scene(load_block(MPI_COMM_WORLD, std::move(block), "two bars", 1), {{1000, 10.0, 500.0}}, p);
+  scene.step(1);
+  EXPECT_LT(scene.largest_error([](const Vec3& x) { return 300 + 50 * x[0]; }), 1e-8);
+  for (const PatchHeat& patch : scene.heat->patch_heat()) {
+    if (patch.patch == "xmin") EXPECT_NEAR(patch.heat, -500, 1e-7);
+    if (patch.patch == "xmax") EXPECT_NEAR(patch.heat, 500, 1e-7);
   }
 }
 

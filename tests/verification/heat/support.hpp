@@ -34,7 +34,9 @@ struct HeatCase {
 
   HeatCase(const mesh::RawMesh& raw, const std::vector<HeatProperties>& materials, const HeatParameters& p,
            MPI_Comm comm = MPI_COMM_WORLD)
-      : loaded(std::make_unique<mesh::LoadedMesh>(mesh::distribute(comm, raw))),
+      : HeatCase(mesh::distribute(comm, raw), materials, p) {}
+  HeatCase(mesh::LoadedMesh body, const std::vector<HeatProperties>& materials, const HeatParameters& p)
+      : loaded(std::make_unique<mesh::LoadedMesh>(std::move(body))),
         heat(std::make_unique<Heat>(mesh(), geometry(), materials, p, std::vector<std::string>{})) {}
 
   const mesh::Mesh& mesh() const { return loaded->mesh; }

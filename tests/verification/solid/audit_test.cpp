@@ -55,6 +55,31 @@ TEST(Audit, is_silent_on_cook_with_the_symmetric_gradient_and_at_nu_one_third) {
   EXPECT_FALSE(audit_of(*sound).is_doubtful());
 }
 
+/// Stresses and displacements that are zero, or round-off, err by nothing.
+TEST(RelativeErrors, have_a_floor_where_a_column_ends_and_where_a_body_only_moves) {
+  SolidParameters p = box_parameters(3);
+  p.material = {2000, 50e6, 0.3};
+  p.gravity = {0, 0, -9.81};
+  p.boundaries["zmin"] = boundary(Type::roller);
+  for (const char* side : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[side] = boundary(Type::symmetry);
+  p.probes["ground"] = {Vec3(5, 5, 50), {"stress"}};
+  const RawMesh raw = make_box(BoxCells::hexahedra, {4, 4, 10}, Vec3::Zero(), Vec3(10, 10, 50));
+  const auto column = make_solid(raw, p);
+  const auto standing = support::observe(*column, 1, 1);
+  const auto stress_error = [](const Solid& solid) {
+    return reported_stresses(solid.body(), solid.fields(), solid.view().output.probes(), 0)[0].error;
+  };
+  EXPECT_THAT(standing.doubts(), ::testing::IsEmpty());
+  EXPECT_LT(stress_error(*column), 1e-6);
+  p = box_parameters(3);
+  p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0.3", "0.1", "-0.2"});
+  p.probes["ground"] = {Vec3(5, 5, 50), {"stress"}};
+  const auto body = make_solid(raw, p);
+  const auto moved = support::observe(*body, 1, 1);
+  EXPECT_THAT(moved.doubts(), ::testing::IsEmpty());
+  EXPECT_LT(stress_error(*body), 0.1);
+}
+
 TEST(Audit, fires_on_two_long_tetrahedra_across_a_slender_beam) {
   const auto wrong = beam(BoxCells::tetrahedra, {16, 2, 2}, 40, FaceGradient::corrected);
   report("tetrahedra two across 40:1, corrected", audit_of(*wrong));

@@ -96,6 +96,45 @@ TEST(LoadedColumn, swings_more_slowly_and_in_tension_faster) {
   EXPECT_THROW(first(1.2), SolveFailure);
 }
 
+std::vector<double> squared_frequencies(const RawMesh& raw, const SolidParameters& p, int n) {
+  const auto solid = stepped(raw, p);
+  return preloaded_modes(solid->body(), prestress_of(solid->body(), solid->fields(), 1), n).eigenvalue;
+}
+
+/// A square beam turns about the z axis: the load of the displaced beam lowers omega^2 in the plane of rotation by that of
+/// the rotation, and leaves it across the plane.
+TEST(RotatingBeam, swings_more_slowly_in_the_plane_of_rotation) {
+  SolidParameters p = column(3, 0);
+  constexpr double rotation = 50;
+  p.body_force = {{fmt::format("7800*{}*(x + 0.3)", rotation * rotation)},
+                  {fmt::format("7800*{}*(y - 0.025)", rotation * rotation)},
+                  {"0"}};
+  const std::vector<double> found = squared_frequencies(bar(BoxCells::hexahedra, 20, 2, 0.05), p, 2);
+  EXPECT_NEAR((found[1] - found[0]) / (rotation * rotation), 1, 0.01);
+}
+
+/// A cube of 1 m on springs in a liquid that reaches to its middle: the water plane adds rho g A to the stiffness of the
+/// motion up and down. Without potential a body force belongs to the body and adds nothing.
+TEST(FloatingCube, is_held_by_its_water_plane) {
+  SolidParameters p = box_parameters(3);
+  p.material = {1000, modulus, 0.3};
+  p.boundaries["zmin"] = p.boundaries["zmax"] = sprung("1e5");
+  for (const char* wet : {"xmin", "xmax", "ymin", "ymax"}) {
+    p.boundaries[wet] = boundary(Type::hydrostatic_pressure);
+    p.boundaries[wet].load.density = 5000;
+    p.boundaries[wet].load.gravity = {0, -10, 0};
+    p.boundaries[wet].load.level = {"0.5"};
+  }
+  const RawMesh cube = make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Vec3(1, 1, 1));
+  // Among the six rigid motions.
+  const auto near = [](double value) { return ::testing::Contains(::testing::DoubleNear(value, 0.1)); };
+  EXPECT_THAT(squared_frequencies(cube, p, 6), ::testing::AllOf(near(200), near(250)));
+  p.body_force = {{"0"}, {"1000*100*x"}, {"0"}};
+  EXPECT_THAT(squared_frequencies(cube, p, 6), ::testing::AllOf(near(200), near(250)));
+  p.body_force = {{"1000*100*x"}, {"0"}, {"0"}};
+  EXPECT_THAT(squared_frequencies(cube, p, 6), ::testing::AllOf(near(100), near(250)));
+}
+
 /// Ring of mean radius 1 m, t thick, in plane strain; a quarter of it. [timoshenko1961]: 3 E I / ((1 - nu^2) R^3) under a pressure
 /// that follows, 4 E I / ((1 - nu^2) R^3) under a radial load that keeps its direction.
 double ring(bool follows) {

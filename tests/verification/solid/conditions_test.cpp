@@ -3,6 +3,7 @@
 // mesh.
 #include <Eigen/Geometry>
 
+#include "tests/support/apart.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::conditions_test {
@@ -366,6 +367,37 @@ TEST(SolidSupports, a_moving_support_carries_a_free_body_along) {
   EXPECT_LT(parallel::max(MPI_COMM_WORLD, error), 1e-10);
 }
 
+TEST(SolidBoundaries, that_contradict_each_other_at_common_points_are_refused) {
+  const RawMesh square = make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  const auto refusal = [&](const std::function<void(SolidParameters&)>& change) {
+    SolidParameters p = box_parameters(2);
+    p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"1e-3*y", "0"});
+    change(p);
+    return support::error_of([&] { stepped(square, p); });
+  };
+  const auto with = [](const char* patch, const SolidBoundary& b) {
+    return [patch, b](SolidParameters& p) { p.boundaries[patch] = b; };
+  };
+  SolidBoundary along_y, roller;
+  along_y.type = Type::fixed_displacement, along_y.components[1] = {"2e-3"};
+  roller.type = Type::roller, roller.normal = Vec3::UnitX(), roller.along = {"1e-3"};
+  EXPECT_THAT(refusal(with("ymax", boundary(Type::fixed_displacement, {"1e-3*t", "1e-4*x"}))), "");
+  EXPECT_THAT(refusal(with("ymax", roller)), "");
+  EXPECT_THAT(refusal(with("ymin", boundary(Type::symmetry))), "");
+  EXPECT_THAT(refusal(with("ymax", boundary(Type::frictionless))), "");
+  EXPECT_EQ(
+      refusal(with("ymax", boundary(Type::fixed_displacement, {"0", "0"}))),
+      "boundaries: 'xmin' and 'ymax' prescribe different displacements at (0, 1), a common point: (0.001, 0) m "
+      "and (0, 0) m at t = 1 s. Prescribe the same there, or leave the component free on one of the patches.");
+  EXPECT_THAT(refusal(with("ymax", along_y)), HasSubstr("(0, 0) m and (0, 0.002) m"));
+  EXPECT_THAT(refusal(with("ymin", roller)), HasSubstr("'xmin' and 'ymin'"));
+  EXPECT_THAT(refusal([&](SolidParameters& p) {
+                p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "1e-3"});
+                p.boundaries["ymin"] = boundary(Type::symmetry);
+              }),
+              HasSubstr("(0, 0.001) m and (0, 0) m"));
+}
+
 TEST(SolidBoundaries, a_part_without_faces_is_refused) {
   SolidParameters p = box_parameters(2);
   p.boundaries["xmin"] = clamped(2);
@@ -443,22 +475,8 @@ TEST_F(FreeMotions, springs_hold_however_soft) {
 }
 
 TEST_F(FreeMotions, of_bodies_that_do_not_hang_together_are_told_apart) {
-  RawMesh raw = box(2), other = make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3(5, 0, 0), Vec3(6, 1, 0));
-  const auto shift = static_cast<Index>(raw.points.size());
-  raw.points.insert(raw.points.end(), other.points.begin(), other.points.end());
-  const auto append = [shift](Csr& to, const Csr& from) {
-    for (Index i = 0; i < from.size(); ++i) {
-      std::vector<Index> row(from[i].begin(), from[i].end());
-      for (Index& p : row) p += shift;
-      to.push_row(row);
-    }
-  };
-  append(raw.cell_points, other.cell_points);
-  append(raw.boundary_points, other.boundary_points);
-  raw.cell_type.insert(raw.cell_type.end(), other.cell_type.begin(), other.cell_type.end());
-  raw.cell_zone.insert(raw.cell_zone.end(), other.cell_zone.begin(), other.cell_zone.end());
-  raw.boundary_patch.insert(raw.boundary_patch.end(), other.boundary_patch.begin(),
-                            other.boundary_patch.end());
+  RawMesh raw = box(2);
+  support::add_apart(raw, make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3(5, 0, 0), Vec3(6, 1, 0)));
   SolidParameters p = with(2, {{"xmin", clamped(2)}});
   EXPECT_EQ(message(p, raw), "held");
   SolidBoundary left;

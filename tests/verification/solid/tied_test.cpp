@@ -182,7 +182,7 @@ TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
   std::vector<double> pressure;
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     pressure.push_back(body.elastic().at(f).is_free() ? geometry.face_centre[f][0] : 0);
-  prestress.pressure = pressure_stiffness(mesh, geometry, pressure);
+  prestress.loads = pressure_stiffness(mesh, geometry, pressure);
   const std::size_t n = body.elastic().n_unknowns();
   const std::vector<double> u = any_motion(n, comm_rank(mesh.comm));
   std::vector<double> wanted(n), found(n);

@@ -195,4 +195,19 @@ TEST(Environment, correlations_have_the_values_of_their_formulae) {
   EXPECT_GT(side_film(OutsideParameters{}, 300, 20, 12, windy).coefficient, 2 * calm);
 }
 
+// A tank of D = 20 m and H = 12 m takes up what its projections D H and pi D^2 / 4 cut out of the beam.
+TEST(Environment, the_sun_warms_a_tank_by_what_its_shadow_lacks) {
+  Ambient dark, sunny;
+  sunny.dni = 800;
+  sunny.sun_height = 0.6;  // sine; 0.8 of the beam is level
+  const OutsideParameters p{.solar_absorptance = 0.5};
+  const auto gain = [](const Film& lit, const Film& unlit) {
+    return lit.coefficient * (lit.reference - unlit.reference);
+  };
+  const double side = gain(side_film(p, 300, 20, 12, sunny), side_film(p, 300, 20, 12, dark)),
+               roof = gain(roof_film(p, 300, 20, sunny), roof_film(p, 300, 20, dark));
+  EXPECT_NEAR(side * std::numbers::pi * 20 * 12, 0.5 * 800 * 0.8 * 20 * 12, 1e-6);
+  EXPECT_NEAR(roof, 0.5 * 800 * 0.6, 1e-9);
+}
+
 }  // namespace couplet::thermocline::conduction_test

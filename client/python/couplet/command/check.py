@@ -24,7 +24,7 @@ def ask(arguments, question):
     asked = {}
     for name in [*([COUPLER] if case.coupled else []), *case.participants]:
         program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
-        if name == COUPLER or case.program(name).exists() or case.program(name).name in OURS:
+        if name == COUPLER or program.name in OURS:  # anything else in that folder, such as a shell, might run the case
             expect(program.exists(), f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}")
             line = [program, case.file, question, *(["--participant", name] if name != COUPLER else []), *sets]
             asked[name] = subprocess.Popen(list(map(str, line)), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings())

@@ -11,14 +11,14 @@ BARE_NOT = ("K", "rad", "rad/s")  # as needs_unit() of common/base/units.hpp
 
 
 def symbols(source):
-    """{name: (takes a prefix, dimension (kg, m, s, K))} of common/base/units.cpp."""
-    found = re.findall(r'\{"([^"]+)", (true|false), make\([^,]+, (-?\d+), (-?\d+), (-?\d+), (-?\d+)', source)
+    """{name: (takes a prefix, dimension (kg, m, s, K, rad))} of common/base/units.cpp."""
+    found = re.findall(r'\{"([^"]+)", (true|false), make\([^,]+, (-?\d+), (-?\d+), (-?\d+), (-?\d+), (-?\d+)', source)
     return {name: (prefixed == "true", tuple(map(int, dimension))) for name, prefixed, *dimension in found}
 
 
 def dimension_of(unit, table):
     """Dimension of a unit of the keys, such as W/(m^2 K)."""
-    text, total, sign = unit.replace("K difference", "K"), [0, 0, 0, 0], 1
+    text, total, sign = unit.replace("K difference", "K"), [0] * 5, 1
     for slash, name, power in re.findall(r"(/)?\s*\(?\s*([A-Za-z%]+|1)\)?(?:\^(\d+))?", text):
         sign = -1 if slash else sign
         if name != "1":
@@ -43,7 +43,7 @@ def pattern_of(unit, table):
     """Regular expression for the text behind the number."""
     wanted, classes = dimension_of(unit, table), {}
     for name, (_, dimension) in table.items():
-        if not (unit == "K difference" and name == "degC") and not (unit == "rad/s" and name == "Hz"):
+        if not (unit == "K difference" and name == "degC"):
             classes.setdefault(dimension, []).append(name)
     written_as = {dimension: written(names, table) for dimension, names in classes.items()}
     found = []

@@ -6,7 +6,6 @@ import hashlib
 import json
 import pathlib
 import re
-import shutil
 import sys
 
 import yaml
@@ -29,21 +28,47 @@ def expect(condition, text):
         raise Wrong(text)
 
 
+DEEPEST, MOST_VALUES = 50, 1_000_000  # as Inspection of common/config/document.cpp
+
+
+def expect_bounded(text):
+    """Rejects nested levels and anchors that would take all time or memory, as the programs do, before anything is built."""
+    around, sizes = [(None, 0)], {}  # anchors and numbers of values
+    for event in yaml.parse(text, Loader=LOADER):
+        size = 1 if isinstance(event, yaml.ScalarEvent) else 0
+        if isinstance(event, yaml.CollectionStartEvent):
+            around.append((event.anchor, 1))
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, size = around.pop()
+            sizes[anchor] = size
+        elif isinstance(event, yaml.AliasEvent):
+            expect(event.anchor not in (name for name, _ in around), f"the anchor '&{event.anchor}' contains itself.")
+            size = sizes.get(event.anchor, 1)
+        around[-1] = (around[-1][0], around[-1][1] + size)
+        expect(len(around) <= DEEPEST + 1, f"nested deeper than {DEEPEST} levels.")
+        expect(around[-1][1] <= MOST_VALUES, f"more than {MOST_VALUES} values. Do anchors contain each other?")
+
+
 def load(text, file=None):
     """Content of a YAML text. Errors are reported with file and line."""
     try:
+        expect_bounded(text)
         return yaml.load(text, Loader=LOADER)
+    except Wrong as problem:
+        raise Wrong(f"{file or 'YAML'}:1:1: {problem}") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         raise Wrong(f"{file or 'YAML'}{f':{mark.line + 1}:{mark.column + 1}' if mark else ''}: {getattr(error, 'problem', None) or error}") from None
 
 
 def words_of(file):
-    """Text of a file that must be text."""
+    """Text of a file, which must be in UTF-8."""
+    content = file.read_bytes()
     try:
-        return file.read_text()
-    except UnicodeDecodeError:
-        raise Wrong(f"{file}: is not a text file.") from None
+        return content.decode()
+    except UnicodeDecodeError as error:
+        before = content[:error.start]
+        raise Wrong(f"{file}:{before.count(10) + 1}:{error.start - before.rfind(10)}: the byte 0x{content[error.start]:02x} is not text in UTF-8; save the file in this encoding.") from None
 
 
 def text_of(value):
@@ -140,11 +165,13 @@ class Case:
         entry = self.participants.get(participant)
         expect(participant in self.participants, f"{self.file}: there is no participant '{participant}'.")
         expect(isinstance(entry, dict), f"{self.file}: participants.{participant}: expected a mapping with at least the key 'program'.")
-        return self.build / "bin" / str(entry.get("program", "?"))
+        name = str(entry.get("program", "?"))
+        expect(name == pathlib.PurePath(name).name, f"{self.file}: participants.{participant}.program: '{name}' is a path; give the name of a program, and start one in another folder with --with {participant}='COMMAND ...'.")
+        return self.build / "bin" / name
 
     def guest(self, participant, played_by=None):
-        """Command of an external program, which does not read the case: the given one, else a file of that name beside the case or on the PATH, with
-        the participant's name. None for our programs."""
+        """Command of an external program, which does not read the case: the given one, else a file of that name beside the case, with the participant's
+        name. None for our programs."""
         if played_by and participant in played_by:
             return played_by[participant]
         program = self.program(participant)
@@ -154,8 +181,7 @@ class Case:
             beside = self.file.parent / name
             if beside.is_file():
                 return [*([sys.executable] if name.endswith(".py") else []), beside, participant]
-        found = shutil.which(program.name)
-        return [found, participant] if found else None
+        return None
 
     def command(self, changes, alone=None, ranks=None, raw=(), flags=(), played_by=None):
         """Command line. `alone` runs only this participant; `ranks` is {participant or coupler: number}; `raw` are further --set arguments; `flags`

@@ -4,6 +4,7 @@ import datetime
 import json
 import os
 import pathlib
+import re
 import signal
 import sys
 import time
@@ -76,17 +77,15 @@ def sets_since(folder, seconds):
 
 def checkpoint(folder):
     """Name of the complete checkpoint with the latest time that the recorded run wrote or started from; None if there is none. Those of another run
-    in the folder may belong to another case."""
+    in the folder may belong to another case. The id of a run begins with its start, which a copy of the folder keeps."""
     all_sets = pathlib.Path(folder).absolute() / "checkpoints"
-    sets = sets_since(folder, 0)
+    found = [(re.search("^run (.*)$", file.read_text(errors="replace"), re.M), file.parent.name) for file in all_sets.glob("step-*/set.txt")]
+    runs = sorted((run[1], name) for run, name in found if run and re.match("[0-9a-f]{12}-", run[1]))
     record = read_record(folder)
-    if "started" not in record:
-        return max(sets, default=None)
-    own = sets_since(folder, datetime.datetime.fromisoformat(record["started"]).timestamp())
-    begun = pathlib.Path(record["flags"][record["flags"].index("--restart") + 1]) if "--restart" in record["flags"] else None
-    if not own and begun in (all_sets, all_sets.parent):
-        return max(sets, default=None)
-    return max(own, default=begun.name if begun and begun.parent == all_sets and begun.name in sets else None)
+    begun = record["restart"] and pathlib.Path(os.path.normpath(all_sets.parent / record["restart"])) if "restart" in record else None
+    started = datetime.datetime.fromisoformat(record["started"]).timestamp() if "started" in record else 0
+    own = [name for run, name in runs if int(run[:12], 16) / 1000 >= started or begun in (all_sets, all_sets.parent)]
+    return own[-1] if own else next((name for _, name in runs if begun == all_sets / name), None)
 
 
 def warn_if_older(file):
@@ -107,7 +106,8 @@ def write_record(folder, record):
 
 
 def read_record(folder):
-    """Record written by `couplet run`: case, ranks, sets, flags. Empty if the job was started by hand."""
+    """Record written by `couplet run`: case and restart (relative to the folder, so that a copy refers to its own), ranks, sets, flags, alone, with. Empty if
+    the job was started by hand."""
     try:
         return json.loads((pathlib.Path(folder) / RECORD).read_text())
     except (OSError, ValueError):

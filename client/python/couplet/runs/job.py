@@ -8,6 +8,7 @@ import os
 import pathlib
 import selectors
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -20,6 +21,8 @@ from couplet.runs.process import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
 
 PATIENCE = 5.0  # [s] for mpirun to end before everything is killed; it does not listen while it launches many processes
+NOBODY_LEFT = 20.0  # [s] that mpirun may stay without any program before it is taken for stuck
+LEAST_TEMPORARY = 256 << 10  # bytes that MPI needs for its own files
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PR_SET_PDEATHSIG = 1
 
@@ -64,7 +67,7 @@ class Job:
         for name in [alone] if alone else known:
             program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
             expect(program.exists() or case.guest(name, self.played_by),
-                   f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}, not beside the case and not on the PATH. "
+                   f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent} and not beside the case. "
                    f"Give its command: --with {name}='COMMAND ...'")
         self.output = output_of(case, self.sets)
         self.last, self.asked, self.asked_at, self.started, self.limit = collections.deque(maxlen=60), 0, None, None, float("inf")
@@ -74,8 +77,11 @@ class Job:
         return shlex.join(self.command)
 
     def record(self):
-        return {"case": self.case.file.absolute(), "bin": self.case.build / "bin", "ranks": self.ranks, "sets": self.sets, "flags": self.flags, "alone": self.alone,
-                "with": self.played_by, "command": self.command, "started": datetime.datetime.fromtimestamp(time.time() - (time.monotonic() - self.started), datetime.timezone.utc).isoformat()}
+        """How the job was started, without absolute paths: a copied or moved folder refers to the files in its new place."""
+        flags, at = self.flags, self.flags.index("--restart") if "--restart" in self.flags else None
+        return {"case": os.path.relpath(self.case.file, self.output), "restart": None if at is None else os.path.relpath(flags[at + 1], self.output),
+                "ranks": self.ranks, "sets": [s for s in self.sets if not s.startswith("simulation.output.folder=")], "flags": flags if at is None else flags[:at] + flags[at + 2:],
+                "alone": self.alone, "with": self.played_by, "started": datetime.datetime.fromtimestamp(time.time() - (time.monotonic() - self.started), datetime.timezone.utc).isoformat()}
 
     # -- while it runs ------------------------------------------------------------------------------------------------
     def on_signal(self, number, _):
@@ -123,7 +129,7 @@ class Job:
         with selectors.DefaultSelector() as selector:
             for pipe, to in ((self.process.stdout, sys.stdout), (self.process.stderr, sys.stderr)):
                 selector.register(pipe, selectors.EVENT_READ, to)
-            look = 0.0
+            look, busy = 0.0, time.monotonic()
             while selector.get_map():
                 for key, _ in selector.select(0.1):
                     data = os.read(key.fd, 65536)
@@ -142,6 +148,12 @@ class Job:
                 if not self.recorded and time.monotonic() > look:
                     self.note()
                     look = time.monotonic() + 0.1
+                if self.command[0] == "mpirun" and time.monotonic() > busy + NOBODY_LEFT / 4:
+                    alone = folders.session(self.process.pid) == [self.process.pid]
+                    busy = busy if alone else time.monotonic()
+                    if alone and time.monotonic() > busy + NOBODY_LEFT:
+                        self.say("mpirun has no program left and does not end; it is ended")
+                        self.end_all()
                 if time.monotonic() > self.limit:
                     self.end_all()
                 if self.process.poll() is not None and not selector.select(0):
@@ -151,6 +163,8 @@ class Job:
         """Runs the job and returns its exit code. `shown` receives its output (terminal.Plain forwards it unchanged)."""
         expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {shlex.quote(str(self.output))}), or "
                "give this one another folder: --set simulation.output.folder=...")
+        temporary = os.environ.get("TMPDIR") or "/tmp"
+        expect(self.command[0] != "mpirun" or not os.path.isdir(temporary) or shutil.disk_usage(temporary).free >= LEAST_TEMPORARY, f"{temporary} is full, and mpirun needs it for files of its own. Make room there, or set TMPDIR to another folder")
         self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
         former, began = folders.read_record(self.output) if "--restart" in self.flags else {}, time.time()
         self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),

@@ -34,9 +34,9 @@ def environment():
 def last_words(text):
     """Last output of a program without MPI's messages."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
-    # "error:" has priority, because the error estimate is written at the end of a failed run, too.
-    named = [line for line in lines if "error:" in line.lower()] or [line for line in lines if "error" in line.lower()]
-    return (named or lines or [""])[-1] if named else " / ".join(lines[-3:])
+    # A line of the watch over the job says why it ends; the error estimate is written at the end of a failed run, too.
+    named = [line for line in lines if line.startswith("couplet: ")] or [line for line in lines if "error:" in line.lower()]
+    return named[-1] if named else " / ".join(lines[-3:])
 
 
 def launch(command, log, folder=None, timeout=3600, env=None):

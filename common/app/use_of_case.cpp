@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/use_of_case.hpp"
+
+#include <fmt/format.h>
+
+#include "common/fv/use.hpp"
+#include "common/io/checkpoint.hpp"
+
+namespace couplet::app {
+namespace {
+
+using fv::Use;
+
+constexpr double least_unseen = 0.5;  // of the largest value that the steps see
+constexpr double margin = 0.01;       // of the range of a table of a material, beyond its ends
+
+class UseOfCase final : public diagnostics::Diagnostic {
+ public:
+  explicit UseOfCase(MPI_Comm comm) : comm_(comm) {}
+  void look(diagnostics::Report& report) override {
+    for (const auto& [name, use] : together()) {
+      if (use.kind != Use::Kind::effect || !use.key.plausible || !use.is_used()) continue;
+      const auto [least, most] = *use.key.plausible;
+      const bool is_cold = use.key.unit == "K" && use.lowest < least;
+      if (is_cold || use.largest() > most)
+        report.findings.push_back(
+            {.id = "questionable-key",
+             .sentence = fmt::format(
+                 "{}: {} yields {:.6g} {} (usual: {:g} to {:g} {}): implausible; an expression yields {}",
+                 name, use.given, is_cold ? use.lowest : use.largest(), use.key.unit, least, most,
+                 use.key.unit, use.key.unit),
+             .subject = name});
+    }
+  }
+  void conclude(diagnostics::Report& report) override {
+    const std::map<std::string, Use> all = together();
+    const auto energy = all.find("energy");
+    const bool is_at_rest = energy != all.end() && energy->second.largest() == 0;
+    for (const auto& [name, use] : all) {
+      if (use.is_used()) judge(report, name, use);
+      // A part that never acted is then the reason.
+      if (is_at_rest && use.kind == Use::Kind::effect && !report.findings.empty() &&
+          report.findings.back().id == "given-without-effect")
+        report.findings.back().severity = base::Severity::wrong;
+    }
+  }
+  void visit(io::Archive& archive) override {
+    std::map<std::string, Use> all = together();
+    archive.common("uses", all);
+    if (archive.reads())
+      for (const auto& [name, before] : all)
+        if (const auto now = fv::uses().find(name); now != fv::uses().end() && before.is_used()) {
+          now->second.note(before.lowest);
+          now->second.note(before.highest);
+          if (before.unseen > now->second.unseen)
+            now->second.unseen = before.unseen, now->second.unseen_at = before.unseen_at;
+        }
+  }
+
+ private:
+  /// Uses over all ranks.
+  std::map<std::string, Use> together() const {
+    std::map<std::string, Use> all = fv::uses();
+    std::vector<double> most;
+    for (const auto& [name, use] : all) most.insert(most.end(), {-use.lowest, use.highest, use.unseen});
+    MPI_Allreduce(MPI_IN_PLACE, most.data(), int(most.size()), MPI_DOUBLE, MPI_MAX, comm_);
+    std::size_t i = 0;
+    for (auto& [name, use] : all)
+      use.lowest = -most[i], use.highest = most[i + 1], use.unseen = most[i + 2], i += 3;
+    return all;
+  }
+
+  static void judge(diagnostics::Report& report, const std::string& name, const Use& use) {
+    const auto find = [&](const char* id, double number, double limit, std::string sentence) {
+      report.findings.push_back(
+          {.id = id, .number = number, .limit = limit, .sentence = std::move(sentence), .subject = name});
+    };
+    const bool is_left = use.lowest < use.from - margin * (use.to - use.from) ||
+                         use.highest > use.to + margin * (use.to - use.from);
+    switch (use.kind) {
+      case Use::Kind::energy:
+        if (use.largest() == 0)
+          find("given-without-effect", 0, 0,
+               "the run is at rest: nothing in the case loads or moves anything");
+        break;
+      case Use::Kind::effect:
+        if (use.largest() == 0)
+          find("given-without-effect", 0, 0,
+               fmt::format(
+                   "{}: {} never acted, at no place and no time: check its place, its times and its units",
+                   name, use.given));
+        else if (use.unseen > least_unseen * use.largest())
+          find(
+              "unseen-between-steps", use.unseen / use.largest(), least_unseen,
+              fmt::format(
+                  "{}: {} goes {:.3g} beyond the values at the steps around t = {:g} s, {:.2g} of its largest: the steps do not see it; shorten 'time-step'",
+                  name, use.given, use.unseen, use.unseen_at, use.unseen / use.largest()));
+        break;
+      case Use::Kind::table:
+        if (use.highest < use.from || use.lowest > use.to)
+          find(
+              "given-without-effect", 0, 0,
+              fmt::format(
+                  "{}: it covers {:g} to {:g}, but was only read from {:g} to {:g}, where its end value holds",
+                  name, use.from, use.to, use.lowest, use.highest));
+        break;
+      case Use::Kind::property:
+        if (is_left)
+          find(
+              "table-left", use.highest, use.to,
+              fmt::format(
+                  "{}: its table covers {:.6g} to {:.6g} K, but was read from {:.6g} to {:.6g} K; beyond its ends the end values hold: extend it",
+                  name, use.from, use.to, use.lowest, use.highest));
+    }
+  }
+
+  MPI_Comm comm_;
+};
+
+}  // namespace
+
+diagnostics::Made use_of_case(MPI_Comm comm) { return std::make_shared<UseOfCase>(comm); }
+
+}  // namespace couplet::app

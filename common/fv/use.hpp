@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "common/config/section.hpp"
+
+namespace couplet::fv {
+
+/// What a part of the case (an expression, a table, a body, an inlet) did in this run, on this rank.
+struct Use {
+  /// effect: it acts if it is ever other than 0. time_table: read over a variable of the scene. property: read
+  /// over the temperature. energy: that of the state, which is 0 at rest.
+  enum class Kind { effect, table, property, energy } kind = Kind::effect;
+  std::string given;        ///< its text, for messages
+  config::KeyFacts key{};   ///< of an expression
+  double from = 0, to = 0;  ///< range of a table
+  // Smallest and largest effect; of a table, of its variable.
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  /// Largest amount by which values between two times exceed those at both, and where.
+  double unseen = 0, unseen_at = 0;
+
+  void note(double value) {
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+  bool is_used() const { return lowest <= highest; }
+  double largest() const { return std::max(-lowest, highest); }
+  /// Archives what the run did.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(lowest, highest, unseen, unseen_at);
+  }
+};
+
+/// Uses of this process by the name of the part. Each rank of a program has the same parts.
+std::map<std::string, Use>& uses();
+
+}  // namespace couplet::fv
