@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts a weather file to the CSV that a thermocline reads (docs/formats.md): EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS as CSV,
+"""Converts a weather file to the CSV that a thermocline reads (docs/input-data.md): EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS as CSV,
 and tables with other column names, units or separators. All may be compressed (.gz). The format is recognized by the first lines. 29 February
 is dropped, several records per hour are averaged, codes for missing values become gaps, and without humidity the dew point is used. PVGIS
 gives instantaneous values in UTC, which become hourly means on the standard time of the longitude. Ranges, order and gaps of the result

@@ -18,7 +18,7 @@ from couplet.runs.gallery import entries
 TUTORIALS = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
              "docs/tutorials/own-coupled.md", "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
 REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in ("fluid_solver", "solid_solver", "plate_modal", "thermocline", "mesh_mover", "coupler")),
-             "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/expressions.md", "docs/quantities.md",
+             "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/meshes.md", "docs/input-data.md", "docs/expressions.md", "docs/quantities.md",
              "docs/plots.md", "docs/checkpoints.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
 EXPLANATION = ("docs/theory.md", "docs/coupling.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
 LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
