@@ -15,8 +15,8 @@ def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}")
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="changes a value, such as simulation.end-time='10 s'")
-    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant, which is given again")
-    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
+    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="command that starts an external participant; give it again, because a resumed run starts only programs of Couplet")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
     parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
     parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
 
