@@ -48,13 +48,12 @@ class UseOfCase final : public diagnostics::Diagnostic {
     std::map<std::string, Use> all = together();
     archive.common("uses", all);
     if (archive.reads())
-      for (const auto& [name, before] : all)
-        if (const auto now = fv::uses().find(name); now != fv::uses().end() && before.is_used()) {
-          now->second.note(before.lowest);
-          now->second.note(before.highest);
-          if (before.unseen > now->second.unseen)
-            now->second.unseen = before.unseen, now->second.unseen_at = before.unseen_at;
-        }
+      for (auto& [name, before] : all) {
+        Use& now = fv::uses()[name];  // a new one: of what only the start of a run reads
+        if (now.given != before.given && !now.given.empty()) continue;  // changed since
+        before.key = now.key;
+        now = before;
+      }
   }
 
  private:
@@ -89,7 +88,8 @@ class UseOfCase final : public diagnostics::Diagnostic {
                fmt::format(
                    "{}: {} never acted, at no place and no time: check its place, its times and its units",
                    name, use.given));
-        else if (use.unseen > least_unseen * use.largest())
+        else if (use.unseen > least_unseen * use.largest() &&
+                 !name.starts_with("motion."))  // also used at trial times
           find(
               "unseen-between-steps", use.unseen / use.largest(), least_unseen,
               fmt::format(

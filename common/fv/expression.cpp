@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -91,8 +90,6 @@ struct Expression::State {
   double constant = 0;
   // In the run: null while the text is only checked.
   Use* use = nullptr;
-  double last_time = std::numeric_limits<double>::quiet_NaN();
-  Vec3 place = Vec3::Zero();     // of the largest value
   std::vector<double> instants;  // at which it may jump
 
   State() = default;
@@ -134,13 +131,13 @@ struct Expression::State {
     }
   }
 
-  /// Looks for values between the last time and `t` that no step sees: a pulse, or a period near the step. They
+  /// Looks for values between the latest time and `t` that no step sees: a pulse, or a period near the step. They
   /// are looked for at the place of the largest value.
   void look_between(double t) {
-    const double before = std::exchange(last_time, t);
-    if (!(t > before)) return;
+    const double before = std::exchange(use->last_time, t);
+    if (std::isnan(before)) return;
     const auto value_at = [&](double time) {
-      xyzt = {place[0], place[1], place[2], time};
+      xyzt = {use->place[0], use->place[1], use->place[2], time};
       return parser.Eval();
     };
     constexpr int n = 7;
@@ -191,12 +188,12 @@ struct Expression::State {
   }
 
   double at(const Vec3& x, double t) {
-    if (use && uses_time && t != last_time) look_between(t);
+    if (use && uses_time && !(t <= use->last_time)) look_between(t);
     xyzt = {x[0], x[1], x[2], t};
     const double value = parser.Eval();
     require_possible(value);
     if (use) {
-      if (!use->is_used() || std::abs(value) > use->largest()) place = x;
+      if (!use->is_used() || std::abs(value) > use->largest()) use->place = x;
       use->note(value);
     }
     return value;

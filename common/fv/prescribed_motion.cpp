@@ -124,12 +124,13 @@ std::vector<Vec3> PrescribedMotion::places(std::span<const Vec3> reference, doub
   std::vector<Vec3> moved(reference.begin(), reference.end());
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const double s = share(reference[i]);
-    use_->note(s);
+    use_->note(0);
     if (s == 0) continue;
     Vec3 shift = translation;
     if (!field.empty()) shift += field[i];
     if (angle != 0) moved[i] = centre + Eigen::AngleAxisd(s * angle, axis) * (reference[i] - centre);
     moved[i] += s * shift;
+    use_->note((moved[i] - reference[i]).norm());
   }
   return moved;
 }

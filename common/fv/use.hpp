@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "common/base/types.hpp"
 #include "common/config/section.hpp"
 
 namespace couplet::fv {
@@ -22,6 +23,8 @@ struct Use {
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   /// Largest amount by which values between two times exceed those at both, and where.
   double unseen = 0, unseen_at = 0;
+  double last_time = std::numeric_limits<double>::quiet_NaN();  ///< latest at which it was evaluated [s]
+  Vec3 place = Vec3::Zero();                                    ///< of the largest value
 
   void note(double value) {
     lowest = std::min(lowest, value);
@@ -32,7 +35,10 @@ struct Use {
   /// Archives what the run did.
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(lowest, highest, unseen, unseen_at);
+    int what = int(kind);
+    numbers(what, given, from, to, lowest, highest, unseen, unseen_at, last_time, place[0], place[1],
+            place[2]);
+    kind = Kind(what);
   }
 };
 

@@ -89,12 +89,13 @@ Opinion neglected_geometry(const P& p, const Deformation& d,
                            large_strain   ? "; " + large_strain->text()
                            : is_estimated ? fmt::format("; the buckling shape would grow by {:.2g}", share)
                                           : ""),
-       .advice =
-           !std::isnan(buckling_factor) ? "lateral motion grows as the load nears the buckling load: use "
-                                          "'kinematics: finite-strain'"
-           : !is_estimated && d.gradient < 0.1 ? "expect errors of a few per cent"
-                                               : "the result holds for linear theory, not for the body: use "
-                                                 "'kinematics: finite-strain'",
+       .advice = !std::isnan(buckling_factor)
+                     ? "lateral motion grows as the load nears the buckling load: use "
+                       "'kinematics: finite-strain'"
+                 : large_strain     ? "use 'kinematics: finite-strain'"
+                 : d.gradient < 0.1 ? "expect errors of a few per cent"
+                                    : "the result holds for linear theory, not for the body: use "
+                                      "'kinematics: finite-strain'",
        .share = share});
 }
 

@@ -319,7 +319,7 @@ TEST_F(CraftedGeo, the_sandbox_changes_no_mesh) {
   std::sort(files.begin(), files.end());
   for (std::size_t i = 0; i < files.size(); i += count() < 500 ? 10 : 1) {
     const auto mesh = [&](bool trusted) {
-      run_gmsh({"-1"}, files[i], trusted, folder() / "same.0.msh", "mesh");
+      run_gmsh({"-2"}, files[i], trusted, folder() / "same.0.msh", "mesh");
       return read_file(folder() / "same.0.msh");
     };
     EXPECT_EQ(mesh(false), mesh(true)) << files[i];

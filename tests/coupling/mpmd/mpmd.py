@@ -70,7 +70,7 @@ with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as othe
         check(f"restart from the latest checkpoint: {file} bit for bit", text(third, file) == want)
     run(third, sets=["simulation.end-time=1"])
     output = run(third, restart="out/checkpoints", sets=["simulation.end-time=3"])
-    check("that of an earlier run that has gone further is taken, and said", "step-00000020, from an earlier run" in output)
+    check("the last one of the latest run is taken, and that an earlier run went further is said", "step-00000010, the last one of the latest run" in output and "step-00000020 of an earlier run" in output, output[-500:])
     run(other)
     run(other, restart="out/checkpoints/step-00000015")
     for file, want in zip(files, wanted):

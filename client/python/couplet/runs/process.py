@@ -36,7 +36,10 @@ def last_words(text):
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
     # A line of the watch over the job says why it ends; the error estimate is written at the end of a failed run, too.
     named = [line for line in lines if line.startswith("couplet: ")] or [line for line in lines if "error:" in line.lower()]
-    return named[-1] if named else " / ".join(lines[-3:])
+    if not named:
+        return " / ".join(lines[-3:])
+    at = len(lines) - 1 - lines[::-1].index(named[-1])
+    return " / ".join(lines[at:at + 2]) if named[-1].endswith(":") else named[-1]
 
 
 def launch(command, log, folder=None, timeout=3600, env=None):
