@@ -26,14 +26,24 @@ Driving::Driving(const FluidParameters& parameters) {
   }
   for (const auto& [patch, b] : parameters.boundaries)
     if (condition_of(b).velocity == GivenBy::structure) return;
+  for (const auto& [patch, b] : parameters.boundaries)
+    by_mover_ = by_mover_ || (condition_of(b).velocity == GivenBy::motion && !parameters.motion);
   for (const auto& text : parameters.body_force) add(text);
+  if (const auto& motion = parameters.motion) {
+    for (const auto* texts : {&motion->translation, &motion->displacement})
+      for (const auto& text : *texts) add(text);
+    add(motion->angle);
+  }
   for (const auto& [patch, b] : parameters.boundaries) {
     for (const auto& text : b.velocity) add(text);
     add(b.pressure);
   }
 }
 
-bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt) const {
+bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt,
+                   std::span<const double> mesh_flux) const {
+  const auto moves = [](double flux) { return flux != 0; };
+  if (by_mover_ && parallel::any(comm, std::ranges::any_of(mesh_flux, moves))) return true;
   double change = 0;  // largest of the expressions, each over its own largest value
   const std::size_t stride = 1 + places.size() / places_looked_at;
   for (const fv::Expression& e : timed_) {

@@ -226,8 +226,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     if (!(steps_.size() > 0)) return sum;
     std::vector<Vec3> places;
     for (const Vec3& x : fluid_.state().placement->boundary_centre) places.push_back(x);
-    const bool acts =
-        driving_.is_possible() && driving_.acts(fluid_.mesh().comm, places, fluid_.state().time, dt_old_);
+    const bool acts = driving_.is_possible() && driving_.acts(fluid_.mesh().comm, places, fluid_.state().time,
+                                                              dt_old_, fluid_.state().mesh_flux);
     if (acts) return carried_ <= hardly * changed_ ? std::min(sum, left_of_late_ / steps_.size()) : sum;
     return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
   }
