@@ -3,8 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::app {
 namespace {
@@ -57,15 +62,28 @@ class UseOfCase final : public diagnostics::Diagnostic {
   }
 
  private:
+  struct Seen {
+    double lowest, highest, unseen, unseen_at, last_time;
+    Vec3 place;
+  };
   /// Uses over all ranks.
   std::map<std::string, Use> together() const {
     std::map<std::string, Use> all = fv::uses();
-    std::vector<double> most;
-    for (const auto& [name, use] : all) most.insert(most.end(), {-use.lowest, use.highest, use.unseen});
-    MPI_Allreduce(MPI_IN_PLACE, most.data(), int(most.size()), MPI_DOUBLE, MPI_MAX, comm_);
-    std::size_t i = 0;
-    for (auto& [name, use] : all)
-      use.lowest = -most[i], use.highest = most[i + 1], use.unseen = most[i + 2], i += 3;
+    std::vector<Seen> mine;
+    for (const auto& [name, use] : all)
+      mine.push_back({use.lowest, use.highest, use.unseen, use.unseen_at, use.last_time, use.place});
+    const std::vector<Seen> seen = parallel::all_gather(comm_, mine);
+    for (std::size_t i = 0; i < seen.size(); i += mine.size()) {
+      std::size_t j = i;
+      for (auto& [name, use] : all) {
+        const Seen& there = seen[j++];
+        if (std::max(-there.lowest, there.highest) > use.largest()) use.place = there.place;
+        if (there.unseen > use.unseen) use.unseen = there.unseen, use.unseen_at = there.unseen_at;
+        use.lowest = std::min(use.lowest, there.lowest);
+        use.highest = std::max(use.highest, there.highest);
+        use.last_time = std::fmax(use.last_time, there.last_time);
+      }
+    }
     return all;
   }
 
