@@ -16,7 +16,7 @@ from couplet.runs.gallery import entries
 BEGIN = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
          "docs/tutorials/own-coupled.md", "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
 GUIDES = ("docs/coupling.md", "docs/precice.md", "docs/studies.md", "docs/plots.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/theory.md", "docs/stability.md")
-REFERENCE = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/findings.md", "docs/quantities.md", "docs/expressions.md", "docs/formats.md", "docs/glossary.md", "docs/protocol.md")
+REFERENCE = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/quantities.md", "docs/expressions.md", "docs/formats.md", "docs/glossary.md", "docs/protocol.md")
 LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
 CONFIG = """site_name: Couplet
 docs_dir: {docs}
