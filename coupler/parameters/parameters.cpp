@@ -164,7 +164,7 @@ void declare_predictor(config::Section& section, CouplingParameters& p) {
             .doc(
                 "initial guess of a step: 0 the last displacement; 1 with the last velocity; 2 with the "
                 "last two, which keeps the semi-implicit scheme second order; data without a velocity by a "
-                "polynomial of this order. Default 2, but 0 in an explicit exchange");
+                "polynomial of this order. Default 2, but 1 in explicit coupling and 0 in an explicit exchange");
         s.check(
             [&p] {
               const double order = p.predictor_order.value_or(0);

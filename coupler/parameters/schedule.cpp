@@ -21,7 +21,7 @@ int Schedule::sub_steps_of(const std::string& name) const {
 
 int predictor_order_of(const CouplingParameters& p) {
   const bool one_pass = p.scheme == coupling::Scheme::explicit_;
-  return int(p.predictor_order.value_or(p.exchange && one_pass ? 0 : 2));
+  return int(p.predictor_order.value_or(!one_pass ? 2 : p.exchange ? 0 : 1));
 }
 
 Schedule schedule_of(const CouplingParameters& p) {

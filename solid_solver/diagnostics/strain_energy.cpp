@@ -74,10 +74,9 @@ struct WithinCells {
 
 WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
   WithinCells within;
-  if (!body.kernel().is_symmetric()) return within;
   const elastic::ElasticOperator& rows = body.elastic();
   within.recovered.emplace(mesh, rows);
-  if (is_strained(body)) return within;
+  if (!body.kernel().is_symmetric() || is_strained(body)) return within;
   if (InnerVariation::is_needed(mesh, rows)) within.variation.emplace(mesh, rows);
   // In a dynamic run, high modes would dominate.
   if (!body.is_dynamic() && SmoothEnergy::is_of_use(mesh)) within.smooth.emplace(mesh, rows);

@@ -27,10 +27,10 @@ struct StrainAudit {
   double inner_variation = 0;
   /// SmoothEnergy::missed() of static triangle meshes, else 0.
   double smooth_difference = 0;
-  /// RecoveredStrain::missed() of the symmetric gradient, scaled likewise.
+  /// RecoveredStrain::missed(), scaled likewise.
   std::optional<double> recovered_difference;
-  /// Error of the stiffness, and so of the displacement, due to the mesh: the largest of these. In 3-D at
-  /// most the square of the gradient difference; with other gradients, only that difference.
+  /// Error of the stiffness, and so of the displacement, due to the mesh: the largest of these. In 3-D the recovered
+  /// strains count at most as the square of the gradient difference.
   double missed_by_mesh(int dim) const;
   /// Relative difference of strain energy and work; zero for a symmetric operator.
   double mismatch() const;
