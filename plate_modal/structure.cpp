@@ -269,7 +269,9 @@ coupling::StepReport Structure::accept_step() {
   std::swap(displacement_, trial_displacement_);
   Energies& e = state_.energies;
   e.largest = std::max(e.largest, e.own());
-  return {.dt = step_.dt, .iterations = oscillators_->newton_iterations(), .energy = e.total()};
+  coupling::StepReport report{.dt = step_.dt, .iterations = oscillators_->newton_iterations()};
+  if (parameters_.analysis == Parameters::Analysis::dynamic) report.energy = e.total();
+  return report;
 }
 
 void Structure::save(io::CheckpointWriter& file) const {
