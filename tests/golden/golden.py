@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Golden file of the shipped cases: what each ends with, so that a change of the code that should change no answer can prove it.
 
-  golden.py record  [--bin FOLDER] [CASE ...]   runs the cases and writes golden.json
+  golden.py record  [--bin FOLDER] [CASE ...]   runs the cases and writes them to golden.json; others stay
   golden.py compare [--bin FOLDER] [CASE ...]   runs them and lists what differs from golden.json
   golden.py resume  [--bin FOLDER] [CASE ...]   runs them whole, and again from a checkpoint in their middle; lists what differs
 
@@ -111,7 +111,7 @@ def whole(case, binaries, folder, checkpoints=False):
 
 
 def record(args):
-    golden = {}
+    golden = {case: one for case, one in (json.loads(args.file.read_text()) if args.file.is_file() else {}).items() if case in set(cases())}
     for case in args.cases:
         with tempfile.TemporaryDirectory() as folder:
             golden[case] = whole(case, args.bin, folder)[0]
