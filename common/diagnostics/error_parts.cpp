@@ -155,26 +155,15 @@ double total_error(const std::vector<NamedErrors>& participants) {
 std::optional<Finding> worthless(const std::vector<NamedErrors>& participants) {
   const double total = total_error(participants);
   if (!(total >= questionable_error)) return {};
-  double largest = 0;
-  for (const Part& p : largest_parts(participants))
-    if (!p.is(&ErrorParts::model)) largest = std::max(largest, p.value);
-  if (total < as_large_as_the_solution)
-    return Finding{
-        .id = "error-estimate",
-        .severity = base::Severity::warning,
-        .number = total,
-        .limit = questionable_error,
-        .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result questionable",
-                                total, questionable_error),
-        .advice = "refine the dominant part"};
-  return Finding{
-      .id = "error-estimate",
-      .severity = largest >= as_large_as_the_solution ? base::Severity::wrong : base::Severity::warning,
-      .number = total,
-      .limit = as_large_as_the_solution,
-      .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result not reliable",
-                              total, as_large_as_the_solution),
-      .advice = "refine the dominant part"};
+  const bool is_wrong = total >= as_large_as_the_solution;
+  const double limit = is_wrong ? as_large_as_the_solution : questionable_error;
+  return Finding{.id = "error-estimate",
+                 .severity = is_wrong ? base::Severity::wrong : base::Severity::warning,
+                 .number = total,
+                 .limit = limit,
+                 .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result {}",
+                                         total, limit, is_wrong ? "not reliable" : "questionable"),
+                 .advice = "refine the dominant part"};
 }
 
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {

@@ -17,7 +17,7 @@ TEST(ErrorPartsTest, its_text_is_read_again) {
   EXPECT_THROW(ErrorParts::of("mesh much"), Error);
 }
 
-TEST(ErrorPartsTest, one_part_as_large_as_the_solution_proves_an_answer_useless_less_warns) {
+TEST(ErrorPartsTest, errors_as_large_as_the_solution_prove_an_answer_useless_less_warns) {
   EXPECT_FALSE(worthless({{"solid", {.mesh = 0.1, .step = 0.04}}}).has_value());
   const auto some = worthless({{"solid", {.mesh = 0.1, .step = 0.06}}});
   ASSERT_TRUE(some.has_value());
@@ -25,7 +25,7 @@ TEST(ErrorPartsTest, one_part_as_large_as_the_solution_proves_an_answer_useless_
   EXPECT_DOUBLE_EQ(some->limit, 0.15);
   const auto sum = worthless({{"solid", {.mesh = 0.6, .step = 0.5}}});
   ASSERT_TRUE(sum.has_value());
-  EXPECT_EQ(sum->severity, base::Severity::warning);
+  EXPECT_EQ(sum->severity, base::Severity::wrong);
   EXPECT_EQ(worthless({{"fluid", {.mesh = 0.1}}, {"solid", {.mesh = 1.1, .step = 0.1}}})->severity,
             base::Severity::wrong);
 }
