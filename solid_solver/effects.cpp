@@ -36,7 +36,7 @@ const std::array cards{
         [](const P& p) { return when(has_finite_strain(p), "kinematics: finite-strain"); },
         "per face F and the derivatives of the material law, Newton's method; `type: segregated` uses the "
         "updated-Lagrangian method of the thesis instead, at 9 to 17 times the solution time",
-        "largest displacement gradient, 0.02"},
+        "estimated change of the displacement, 0.05; where that is not estimated, the largest displacement gradient, 0.02"},
     SolidCard{"yielding", "not available here", [](const P&) { return std::string(); }, "",
               "where `yield-strength` is given: equivalent stress over it, 1"},
     SolidCard{

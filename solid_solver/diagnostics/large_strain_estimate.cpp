@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -26,6 +27,8 @@ constexpr double probe_gradient = 0.01;
 constexpr double steeper = 1.1;
 /// Change of the displacement below which small strain is not in question.
 constexpr double harmless = 0.02;
+/// Part of the work from which loads along a component count, and part of the displacement from which the component does.
+constexpr double least_work = 1e-9, least_component = 0.1;
 
 struct Displacement {
   Values unknowns, known;
@@ -101,6 +104,14 @@ LargeStrainEstimate summed(const mesh::Mesh& mesh, const mesh::Geometry& geometr
     return (x - 1) * u1[i] + x * x / (1 - e.ratio) * u2[i] + x * x * x * (rest(i) - e.cubic * u1[i]);
   };
   e.change = std::sqrt(dot(change, change) / size);
+  for (int a = 0; a < mesh.dim; ++a) {
+    const auto along = [&](const auto& values) {
+      return [&, a](std::size_t i) { return i % std::size_t(mesh.dim) == std::size_t(a) ? values(i) : 0; };
+    };
+    const double part = dot(along(first), along(first)), moved = dot(along(change), along(change));
+    if (!(part > least_component * least_component * size)) continue;
+    if (const double of = std::sqrt(moved / part); !(of <= e.change)) e.change = of, e.component = a;
+  }
   return e;
 }
 
@@ -110,7 +121,9 @@ std::string LargeStrainEstimate::text() const {
   if (!is_known())
     return "large strain: the expansion about the linear solution has no equilibrium under the full load; "
            "the body would snap or buckle, or the load is far too large for linear theory";
-  return fmt::format("large strain would change the displacement by about {:.3g} %", 100 * change);
+  return fmt::format("large strain would change the displacement{} by about {:.3g} %",
+                     component < 0 ? "" : fmt::format(" along {}", "xyz"[std::size_t(component)]),
+                     100 * change);
 }
 
 std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, SolutionMethod& method,
@@ -143,7 +156,23 @@ std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, 
   const elastic::ElasticField field{unknowns, known};
   const double work =
       parallel::sum(mesh.comm, body.kernel().product(elastic::ElasticPart::stiffness, field, field));
-  if (steepest + (std::abs(dot(q, u1.unknowns)) + std::abs(dot(c, u1.unknowns))) / work < harmless) return {};
+  // The parts of u1 in Q and C over its work: of the whole displacement, and of each component that loads move, since a strip
+  // that is pulled hard is stiffer across though its work along hides it.
+  const auto dim = std::size_t(mesh.dim);
+  double share = 0;
+  for (std::size_t a = 0; a <= dim; ++a) {
+    std::array<double, 3> sums{};
+    for (std::size_t i = 0; i < n; ++i) {
+      if (a < dim && i % dim != a) continue;
+      sums[0] += (8 * odd[i] - odd2[i]) / (6 * s) * u1.unknowns[i];
+      sums[1] += q[i] * u1.unknowns[i];
+      sums[2] += c[i] * u1.unknowns[i];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+    const double of = a == dim ? work : std::abs(sums[0]);
+    if (of > least_work * work) share = std::max(share, (std::abs(sums[1]) + std::abs(sums[2])) / of);
+  }
+  if (steepest + share < harmless) return {};
   const auto solve = [&](const Values& b) {
     Values u(n, 0);
     method.solve(b, u);

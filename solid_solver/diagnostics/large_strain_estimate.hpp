@@ -19,16 +19,18 @@ namespace couplet::solid {
 /// - a x^3 = 1:
 ///   u = x u1 + x^2 u2/(1 - r) + x^3 (w - a u1), for example a < 0 in a held beam that stretches.
 struct LargeStrainEstimate {
-  /// |u - u1|/|u1|, root mean square over the cells; NaN without equilibrium (r >= 1 or a > 4/27).
+  /// |u - u1|/|u1|, root mean square over the cells, of the displacement or, if larger, of a component of at least a tenth of
+  /// it; NaN without equilibrium (r >= 1 or a > 4/27).
   double change = 0;
-  double ratio = 0;  ///< r
-  double cubic = 0;  ///< a
+  int component = -1;  ///< to which `change` belongs; -1: to the displacement
+  double ratio = 0;    ///< r
+  double cubic = 0;    ///< a
   bool is_known() const { return change == change; }
   /// Describes the change in one sentence.
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(change, ratio, cubic);
+    numbers(change, component, ratio, cubic);
   }
 };
 
