@@ -9,6 +9,7 @@
 
 #include "common/base/disjoint_sets.hpp"
 #include "common/base/point_tree.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::mesh {
@@ -154,6 +155,13 @@ void tie_touching_faces(MPI_Comm comm, MeshBlock& block) {
       if (!pairs.empty()) is_tied[e] = is_tied[std::size_t(other)] = true;
       for (const auto& [a, b] : pairs) sets.join(numbers.place(a), numbers.place(b));
     }
+  const auto tied = std::ranges::count(is_tied, true);
+  if (tied == 0)
+    log::warn(
+        "touching-faces: tie: no two faces in groups of the mesh lie on each other, within {:g} of their size",
+        touching);
+  else
+    log::info("{} faces of parts that touch are tied in pairs", tied);
   std::map<GlobalIndex, GlobalIndex> moved;
   for (Index i = 0; i < Index(numbers.numbers().size()); ++i)
     if (const Index to = sets.find(i); to != i)

@@ -85,6 +85,13 @@ void check_touching(const mesh::LoadedMesh& body, const SolidParameters& paramet
     const auto heat = parameters.heat->boundaries.find(patch);
     return heat == parameters.heat->boundaries.end() || heat->second.type == HeatBoundary::Type::adiabatic;
   };
+  const bool ties = parameters.touching_faces == SolidParameters::TouchingFaces::tie;
+  for (const mesh::Patch& patch : body.mesh.patches)
+    if (ties && parallel::sum(body.mesh.comm, double(patch.count)) == 0 && !is_free(patch.name))
+      throw Error(
+          "boundaries.{}: all faces of this patch are tied to other faces ('touching-faces: tie'), so that its condition "
+          "acts nowhere. Make it 'free' and without heat, or set 'touching-faces: apart'.",
+          patch.name);
   for (const mesh::TouchingFaces& found : mesh::find_touching_faces(body.mesh, body.geometry)) {
     if (found.patch != found.other && !is_free(found.patch) && !is_free(found.other)) continue;
     throw Error(
@@ -93,7 +100,8 @@ void check_touching(const mesh::LoadedMesh& body, const SolidParameters& paramet
         "crack, set 'touching-faces: apart'.",
         found.count, found.count == 1 ? "" : "s", found.patch, text_of(found.where, body.mesh.dim),
         found.count == 1 ? "es" : "", found.patch == found.other ? "the same patch" : "'" + found.other + "'",
-        found.alike
+        found.alike && ties ? "Only faces in a group of the mesh are tied: put both sides into groups."
+        : found.alike
             ? "Merge the double points of the mesh, or set 'touching-faces: tie'."
             : "The faces of the two sides have other corners, so 'touching-faces: tie' cannot join them: "
               "mesh both sides alike, or as one body.");

@@ -85,6 +85,8 @@ MISTAKES = [
      {"message": "the load passes from part to part", "run": True, "files": {"parts.inp": TOUCHING}}),
     ("parts that touch and are tied, but with other points", "solid", TWO_PARTS + [("dimension: 2", "dimension: 2\n    touching-faces: tie")], "refused",
      {"message": "so 'touching-faces: tie' cannot join them", "run": True, "files": {"parts.inp": TOUCHING.replace("8, 1, 1", "8, 1, 0.8")}}),
+    ("a load on faces that are tied", "solid", [TWO_PARTS[0], (TWO_PARTS[1][0], TWO_PARTS[1][1] + "      joint: {type: pressure, value: 1 MPa}\n"), ("dimension: 2", "dimension: 2\n    touching-faces: tie")], "refused",
+     {"message": "boundaries.joint: all faces of this patch are tied to other faces", "run": True, "files": {"parts.inp": TOUCHING + "*NSET, NSET=joint\n2, 3\n"}}),
     ("geometry that is not closed", "solid", [("square.msh", "open.geo")], "refused",
      {"message": "gmsh could not mesh 'open.geo'", "run": True, "files": {"open.geo": OPEN}}),
     ("interface on the wrong side", "coupled", [("bottom: {type: fixed-displacement, value: [0, 0]}", "bottom: {type: interface}"),
