@@ -54,10 +54,11 @@ class UseOfCase final : public diagnostics::Diagnostic {
     archive.common("uses", all);
     if (archive.reads())
       for (auto& [name, before] : all) {
-        Use& now = fv::uses()[name];  // a new one: of what only the start of a run reads
-        if (now.given != before.given && !now.given.empty()) continue;  // changed since
-        before.key = now.key;
-        now = before;
+        const auto [now, is_new] =
+            fv::uses().try_emplace(name, before);                   // new: only the start of a run reads it
+        if (is_new || now->second.given != before.given) continue;  // other given since
+        before.key = now->second.key, before.from = now->second.from, before.to = now->second.to;
+        now->second = before;
       }
   }
 

@@ -157,9 +157,7 @@ void tie_touching_faces(MPI_Comm comm, MeshBlock& block) {
     }
   const auto tied = std::ranges::count(is_tied, true);
   if (tied == 0)
-    log::warn(
-        "touching-faces: tie: no two faces in groups of the mesh lie on each other, within {:g} of their size",
-        touching);
+    log::warn("touching-faces: tie: no two faces in groups of the mesh lie on each other");
   else
     log::info("{} faces of parts that touch are tied in pairs", tied);
   std::map<GlobalIndex, GlobalIndex> moved;
