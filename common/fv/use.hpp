@@ -11,10 +11,10 @@
 
 namespace couplet::fv {
 
-/// What a part of the case (an expression, a table, a body, an inlet) did in this run, on this rank.
+/// Record on this rank of the effect that a part of the case (an expression, a table, a body, an inlet) had in this run.
 struct Use {
-  /// effect: it acts if it is ever other than 0. time_table: read over a variable of the scene. property: read
-  /// over the temperature. energy: that of the state, which is 0 at rest.
+  /// An effect acts if it is ever other than 0. A table is read over a variable of the scene, a property over the
+  /// temperature. The energy of the state is 0 at rest.
   enum class Kind { effect, table, property, energy } kind = Kind::effect;
   std::string given;        ///< its text, for messages
   config::KeyFacts key{};   ///< of an expression

@@ -45,9 +45,9 @@ class StressRecovery {
   /// Stress [Pa], the mean of the cells around on each side of a joint. `wanted`: flags of local points, empty: all;
   /// others may hold anything. Collective.
   SidedTensors at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
-  /// What the fits leave of the stress at the `wanted` points, over its size there or least_scale() [1]: the quadratics of
-  /// the cells one ring on, continued to the point, differ from the stress there by so much, in the median. NaN: of other
-  /// points, and where there is no such cell.
+  /// Returns the error of the stress at the `wanted` points, over its size there or least_scale() [1]: the median of its
+  /// differences from the quadratics of the cells one ring on, continued to the point. NaN at other points, and where there
+  /// is no such cell.
   /// It does not see what is wrong with the displacement as a whole. `sides`: at_points() of them, for each of which there
   /// is an entry. Collective.
   std::vector<std::vector<double>> left_at_points(const DiscreteStress& found,

@@ -129,7 +129,7 @@ std::string StrainAudit::text() const {
 
 namespace {
 
-/// What the strain of the body is compared with. Over all ranks.
+/// Energies with which that of the body is compared, over all ranks.
 struct Scales {
   double energy = 0, size = 0;  ///< of free thermal strain e: e : C : e / 2 and mu |e|^2 [J]
   double load = 0;              ///< mu (|u|/L)^2 with the size L of the body [J]

@@ -399,7 +399,7 @@ TEST_P(Wave, an_absorbing_inlet_keeps_its_flow_at_any_mean_pressure) {
   EXPECT_NEAR(pressures(d).mean, 400, 0.1);
 }
 
-// What the inlet gives compresses the volume upstream and the closed duct alike: p = rho c^2 Q/(V_0 + V).
+// Fluid from the inlet compresses the volume upstream and the closed duct alike: p = rho c^2 Q/(V_0 + V).
 TEST_P(Wave, a_volume_upstream_and_a_closed_duct_share_what_flows_in) {
   FluidParameters p = air(GetParam());
   p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"1 - cos(50*pi*t)", "0"});

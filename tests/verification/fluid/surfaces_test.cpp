@@ -162,7 +162,7 @@ TEST(Fluxes, of_a_flow_that_is_exact_on_the_mesh) {
   for (const double rest : sums(fluxes, 2)) EXPECT_NEAR(rest, 0, 1e-9);
 }
 
-/// Of a uniform flow of 1 m/s through a mesh that goes along with 0.3 m/s, 0.7 of it pass.
+/// The mesh moves at 0.3 m/s along a uniform flow of 1 m/s, so that 0.7 of it pass.
 TEST(Fluxes, are_relative_to_a_mesh_that_moves) {
   FluidParameters p = channel();
   p.output.surfaces.clear();
