@@ -44,7 +44,7 @@ std::vector<double> three_steps(AccelerationParameters::Type type, MPI_Comm comm
 TEST(Accelerators, do_not_depend_on_the_ranks) {
   using Type = AccelerationParameters::Type;
   const int rank = parallel::comm_rank(MPI_COMM_WORLD), ranks = parallel::comm_size(MPI_COMM_WORLD);
-  for (const Type type : {Type::aitken, Type::iqn_ils, Type::iqn_mvj}) {
+  for (const Type type : {Type::aitken, Type::iqn_ils}) {
     const auto alone = three_steps(type, MPI_COMM_SELF, 0, 30);
     // The last rank holds nothing where there are three.
     const int parts = ranks > 2 ? ranks - 1 : ranks;
