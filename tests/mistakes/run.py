@@ -44,7 +44,7 @@ def problems(binaries, mistake):
     with tempfile.TemporaryDirectory(prefix="couplet-mistakes-") as folder:
         folder = pathlib.Path(folder)
         prepare(folder, mistake)
-        how = [] if mistake.run else ["--check"]
+        how = [*([] if mistake.run else ["--check"]), *(f"--set=participants.{mistake.base}.{word}" for word in mistake.set)]
         code, text = call(binaries, folder, mistake, how)
         if mistake.twice is not None:
             if code != 0:

@@ -16,6 +16,7 @@ class Mistake:
     base: str  # NAME.yaml beside this file, with the edits
     outcome: str  # refused: exit code 2 (1 once it runs); flagged: a warning, and --strict fails; right: nothing is wrong, for a reason
     edits: list = field(default_factory=list)  # (old, new)
+    set: list = field(default_factory=list)  # of keys of the participant; without a value: it is removed
     message: str = ""  # part of what is said; of what is right: why it is
     run: bool = False  # else --check
     files: dict = field(default_factory=dict)
@@ -24,4 +25,4 @@ class Mistake:
 
 
 MISTAKES = {group: [Mistake(**row) for row in yaml.safe_load((pathlib.Path(__file__).parent / f"table/{group}.yaml").read_text(encoding="utf-8"))["mistakes"]]
-            for group in ("numbers", "flow", "scene", "reliability")}
+            for group in ("numbers", "flow", "scene", "reliability", "rules")}
