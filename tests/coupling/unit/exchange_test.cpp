@@ -192,13 +192,8 @@ TEST(Links, data_not_yet_given_are_left_out) {
 }
 
 TEST(Links, what_does_not_fit_is_named) {
-  const auto message = [](const std::vector<Side>& s) -> std::string {
-    try {
-      const Links links(MPI_COMM_SELF, s, nearest());
-      return "";
-    } catch (const Error& e) {
-      return e.what();
-    }
+  const auto message = [](const std::vector<Side>& s) {
+    return support::error_of([&] { const Links links(MPI_COMM_SELF, s, nearest()); });
   };
   auto wrong = sides();
   wrong[1].interface.takes.push_back({"pressure", "Pa", Place::faces, 1});

@@ -475,8 +475,8 @@ TEST_F(FreeMotions, springs_hold_however_soft) {
 }
 
 TEST_F(FreeMotions, of_bodies_that_do_not_hang_together_are_told_apart) {
-  RawMesh raw = box(2);
-  support::add_apart(raw, make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3(5, 0, 0), Vec3(6, 1, 0)));
+  const RawMesh raw =
+      support::beside(box(2), make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3(5, 0, 0), Vec3(6, 1, 0)));
   SolidParameters p = with(2, {{"xmin", clamped(2)}});
   EXPECT_EQ(message(p, raw), "held");
   SolidBoundary left;
