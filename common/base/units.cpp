@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <vector>
 
 #include "common/base/error.hpp"

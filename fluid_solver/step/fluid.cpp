@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/step/fluid.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/csv/csv_reader.hpp"
 #include "solid_solver/effects.hpp"

@@ -2,9 +2,7 @@
 // Free vibrations and buckling in SolidOutput.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"

@@ -2,7 +2,6 @@
 #include "thermocline/plant/report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>

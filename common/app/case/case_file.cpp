@@ -2,7 +2,6 @@
 #include "common/app/case/case_file.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 #include "common/app/case/case_roles.hpp"
