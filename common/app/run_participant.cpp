@@ -122,6 +122,7 @@ class Observed final : public coupling::Participant {
   }
   void write_output(double time, int number) override {
     inner_.write_output(time, number);
+    const log::ScopedTimer timer(log::timers(), "diagnostics");
     diagnostics_.look();
   }
   void write_monitors(double time) override { inner_.write_monitors(time); }
