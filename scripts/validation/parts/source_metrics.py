@@ -4,7 +4,6 @@ Every measure returns (what it found, whether the limit is met)."""
 import importlib
 import json
 import os
-import pathlib
 import re
 import resource
 import shutil
@@ -99,11 +98,15 @@ TEN = (("cook", (".mesh-parameters={n: 64, shape: 0}",), True), ("elliptic-plate
 
 
 def share_of_diagnostics(job, most, most_of_static):
-    """By the timer that every run has; of a coupled job the participant with the largest share."""
+    """By the timer that every run has, over the processor time of its process; of a coupled job the participant with the largest share. The timer also
+    counts while other processes run, hence the least of three runs, and over the time on the clock if that is longer."""
     found = {}
     for case, keys, is_static in TEN:
-        reports = [json.loads(f.read_text()) for f in pathlib.Path(job.case(case, keys).folder).glob("*/run.json")]
-        found[case] = (max(r["phases"].get("diagnostics", 0) / r["processor"] for r in reports), most_of_static if is_static else most)
+        runs = [job.case(case, (*keys, f"simulation.name={case}-{i}")) for i in range(3)]
+        reports = [[json.loads(f.read_text()) for f in run.folder.glob("*/run.json")] for run in runs]
+        spent = lambda r: max(r["processor"], r["wall"] - r["phases"].get("waiting for the coupler", 0))
+        share = min(max(r["phases"].get("diagnostics", 0) / spent(r) for r in some) for some in reports)
+        found[case] = (share, most_of_static if is_static else most)
     text = ", ".join(f"{case} {100 * share:.1f} %" for case, (share, _) in found.items())
     return text, all(share <= limit for share, limit in found.values())
 
