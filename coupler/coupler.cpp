@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -80,6 +81,7 @@ std::string Coupler::run() {
     load();
     restart_time = app::read_run_state(folders_.restart).time;
   }
+  base::release_files();
   known_->record.open(folders_.output, simulation_.end_time, restart_time);
   const auto write = [&](double time, int output) {
     pass_.ask_all({coupling::Op::write_output, {}, {}, time, output, ""});

@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/numbers.hpp"
+#include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
@@ -143,7 +144,7 @@ coupling::Interface Structure::initialise() {
                      {"velocity", "m/s", coupling::Interface::Place::vertices}};
   if (parameters_.surface_density)
     interface.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
-  results_->write_start();
+  base::when_started([this] { results_->write_start(); });
   return interface;
 }
 

@@ -12,6 +12,7 @@
 #include "common/app/run_report.hpp"
 #include "common/app/use_of_case.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/coupling/serve.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/error_parts.hpp"
@@ -66,8 +67,17 @@ class Bookkeeping {
   void received(const coupling::Command& command) {
     since_ = Clock::now();
     processor_since_ = RunReport::processor_seconds();
+    // The first command after the start shows that all participants have accepted the run.
+    if (command.op == coupling::Op::begin_step || command.op == coupling::Op::write_output ||
+        command.op == coupling::Op::finalise)
+      release();
     if (command.op == coupling::Op::begin_step) job_.watch->set_time(command.step.time);
     job_.enter(phase_of(command.op));
+  }
+  /// Until the files are there, an error is one of the start.
+  void release() {
+    job_.watch->enter(Phase::initialise);
+    base::release_files();
   }
   void done(const coupling::Command& command) {
     const double seconds = seconds_since(since_);

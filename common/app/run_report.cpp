@@ -78,8 +78,10 @@ double RunReport::peak_memory() {
 
 RunReport::RunReport(const Job& job, bool with_steps) : job_(job) {
   if (job.rank != 0) return;
-  std::error_code ignored;
-  std::filesystem::remove(job.output_folder / summary_file, ignored);
+  base::when_started([file = job.output_folder / summary_file] {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  });
   if (with_steps && job.simulation.output_steps)
     steps_.emplace(
         job.output_folder / "steps.csv",

@@ -57,7 +57,7 @@ void copy_rows(csv::LineReader& old, std::size_t n_columns, double restart_time,
 
 Series::Series(const std::filesystem::path& file, const std::vector<std::string>& columns,
                double restart_time)
-    : n_columns_(columns.size()) {
+    : name_(file), n_columns_(columns.size()) {
   for (const std::string& name : columns)
     if (name.find_first_of(",\"") != std::string::npos)
       throw Error(
@@ -71,18 +71,16 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   if (const auto old = std::isnan(restart_time) ? nullptr : rows_of(file, head))
     copy_rows(*old, n_columns_, restart_time, text);
   base::write_file(file, text.view());
-  file_.open(file, std::ios::app);
-  if (!file_)
-    throw Error("Cannot write the series '{}'. Does the folder exist, with write permission?", file.string());
 }
 
 void Series::row(std::span<const double> values) {
   if (values.size() != n_columns_)
     throw Error("A series row has {} values, but its header has {} columns.", values.size(), n_columns_);
+  if (!file_.is_open()) file_.open(name_, std::ios::app);
   // The default format is the shortest text that restores the same number.
   file_ << fmt::format("{}\n", fmt::join(values, ","));
   file_.flush();
-  if (!file_) throw Error("Cannot write a series row. Is the disk full?");
+  if (!file_) throw Error("Cannot write a row of '{}'. Is the disk full?", name_.string());
 }
 
 }  // namespace couplet::io

@@ -166,7 +166,7 @@ class Job:
         temporary = os.environ.get("TMPDIR") or "/tmp"
         expect(self.command[0] != "mpirun" or not os.path.isdir(temporary) or shutil.disk_usage(temporary).free >= LEAST_TEMPORARY, f"{temporary} is full, and mpirun needs it for files of its own. Make room there, or set TMPDIR to another folder")
         self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
-        former, began = folders.read_record(self.output) if "--restart" in self.flags else {}, time.time()
+        former, began = folders.read_record(self.output), time.time()
         self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),
                                         start_new_session=True, preexec_fn=ends_with_us)
         before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
@@ -180,7 +180,9 @@ class Job:
         self.seconds = time.monotonic() - self.started
         if not self.recorded and code == 0 and (self.output / folders.LOCK).exists():  # may precede the next poll
             folders.write_record(self.output, self.record())
-        if self.recorded and former and code not in (0, 3, 4) and not folders.sets_since(self.output, began):  # rejected, for example for a --set: the next resume must not use it
+        started = any(file.stat().st_mtime >= began for file in self.output.glob("*/effective.yaml"))
+        if self.recorded and former and code not in (0, 3, 4) and not (started if "--restart" not in self.flags else folders.sets_since(self.output, began)):
+            # Rejected, for example for a --set: the record of the results that are there remains, and the next resume does not use this one.
             folders.write_record(self.output, former)
         return code if code >= 0 else 128 - code
 
