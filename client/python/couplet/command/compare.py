@@ -23,7 +23,7 @@ def declare(parser):
     parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
     parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another run")
     parser.add_argument("--tolerance", type=share, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (default: 0)")
-    parser.add_argument("--all", action="store_true", help="also lists equal values")
+    parser.add_argument("--all", action="store_true", help="also lists values that are equal or within the tolerance")
 
 
 def flat(node, name=""):
@@ -140,7 +140,7 @@ def run(arguments):
     found = list(differences(*runs, arguments.tolerance))
     expect(found, f"{runs[0]} and {runs[1]}: have no tables and fields to compare; did the runs fail?")
     apart_ones = [(name, words) for name, words, _ in found if words != "equal"]
-    for name, words in [(n, w) for n, w, _ in found] if arguments.all else apart_ones:
+    for name, words in [(n, w) for n, w, far in found if far or arguments.all]:
         print(f"{name}: {words}")
     beyond = sum(far for _, _, far in found)
     told = "equal bit for bit" if not apart_ones else f"{len(apart_ones)} differ" + (f", {beyond} by more than {arguments.tolerance:g}" if arguments.tolerance else "")
