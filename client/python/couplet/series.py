@@ -18,10 +18,11 @@ class FieldSeries:
         kind = int(self.file.attrs["kind"])
         flat = self.file["mesh/cells"][...]
         if kind:
-            self.cells = list(flat)
+            self.cells, self.codes = list(flat), [kind] * len(flat)  # kinds of cells, by XDMF code
         else:
-            self.cells, at = [], 0
+            self.cells, self.codes, at = [], [], 0
             while at < len(flat):
+                self.codes.append(int(flat[at]))
                 width = WIDTH[int(flat[at])]
                 self.cells.append(flat[at + 1 : at + 1 + width])
                 at += 1 + width

@@ -23,7 +23,7 @@ SUBCOMMANDS = {
     "compare": ("command.compare", "lists the differences of two runs"),
     "study": ("study.main", "runs the study of a case: variants, error against time, optimization"),
     "mesh": ("command.mesh", "writes and checks partitionable meshes for very large cases"),
-    "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
+    "export": ("command.export", "writes results for VTK and meshio, or a case for CalculiX or OpenFOAM"),
     "weather": ("command.weather", "converts a weather file to the CSV that a tank reads"),
     "validate": ("command.validate", "measures the acceptance tests of the project (in a checkout)"),
     "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
