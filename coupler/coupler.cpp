@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -157,6 +158,8 @@ void Coupler::finalise(const std::string& problem) {
   enter_(app::Phase::finalise, {});
   Monitor& monitor = known_->record.monitor();
   log::info("{}", monitor.summary(loop_.halvings()));
+  diagnostics::set_result(
+      {"coupling iterations per step, mean and most", "1", monitor.iterations_per_step()});
   if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
     log::info("{}", waiting);
   for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);
@@ -174,6 +177,8 @@ void Coupler::finalise(const std::string& problem) {
   }
   if (const std::string where = diagnostics::position_sentence(position()); !where.empty())
     log::info("{}", where);
+  if (problem.empty())
+    log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, diagnostics::verdict(parts)));
 }
 
 std::vector<diagnostics::Coordinate> Coupler::position() const {

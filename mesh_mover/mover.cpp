@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/cut_mesh.hpp"
 #include "common/log/log.hpp"
@@ -280,6 +281,12 @@ void Mover::write_monitors(double time) {
   const Worst& worst = now.worst[MeshState::scaled_jacobian];
   row.insert(row.end(), {double(worst.cell), worst.place.x(), worst.place.y(), worst.place.z()});
   quality_->row(row);
+}
+
+std::vector<std::string> Mover::finish() {
+  if (least_jacobian_ && parallel::comm_rank(mesh_.comm) == 0)
+    diagnostics::set_result({"least scaled Jacobian of the run", "1", {*least_jacobian_}});
+  return {};
 }
 
 void Mover::write_output(double time, int) {

@@ -298,5 +298,9 @@ void Structure::load(io::CheckpointReader& file) {
 
 void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
+std::vector<std::string> Structure::finish() {
+  results_->tell();
+  return {};
+}
 
 }  // namespace couplet::plate

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/results.hpp"
+#include "common/elasticity/vector_at.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
 #include "solid_solver/output/quantities.hpp"
@@ -50,6 +52,13 @@ std::vector<std::string> Solid::finish() {
   const SolidOutputParameters& chosen = body_.parameters().output;
   if (chosen.buckling > 0) output_.write_buckling();
   if (chosen.modes > 0 && !body_.is_dynamic()) output_.write_preloaded_modes();
+  const int dim = body_.mesh().dim;
+  const std::vector<double> u = fields_.point_displacement();
+  std::pair<double, Vec3> most{0, Vec3::Zero()};
+  for (Index v = 0; v < body_.mesh().points.n_owned(); ++v)
+    if (const double size = elastic::vector_at(u, v, dim).norm(); size > most.first)
+      most = {size, body_.geometry().points[v]};
+  diagnostics::set_largest(body_.mesh().comm, "largest displacement", "m", most.first, most.second);
   return {};
 }
 

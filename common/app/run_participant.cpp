@@ -17,6 +17,7 @@
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
@@ -150,8 +151,11 @@ struct Closing {
   bool has_failed = false;
 };
 
+/// Rows of the results, so that a run that ends shows them all on a terminal of 24 lines.
+constexpr std::size_t most_results = 14, most_of_participant = 5;
+
 void closing_words(const Job& job, coupling::Participant& participant, diagnostics::Diagnostics& diagnostics,
-                   const Closing& closing, double seconds) {
+                   const Closing& closing, double seconds, double time) {
   std::vector<std::string> sentences = participant.finish();
   for (std::string& line : diagnostics.conclude(closing.has_failed)) sentences.push_back(std::move(line));
   if (closing.has_failed)
@@ -173,6 +177,10 @@ void closing_words(const Job& job, coupling::Participant& participant, diagnosti
   log::info("{}", log::timers().table("time of '" + job.name + "'", seconds));
   log::info("peak memory of '{}': {:.0f} MB on the rank with the most, {:.0f} MB in total", job.name, most,
             all);
+  const bool judges = closing.is_alone && !closing.has_failed;
+  log::info("{}",
+            diagnostics::results_text(job.name, time, closing.is_alone ? most_results : most_of_participant,
+                                      judges ? diagnostics::verdict(errors) : std::vector<std::string>()));
 }
 
 /// Sends commands from the participant's own loop, with the bookkeeping of a coupled run.
@@ -280,7 +288,8 @@ int run_alone(const Job& job, coupling::Participant& participant, const Diagnose
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
-  closing_words(job, participant, diagnostics, {.has_failed = !problem.empty()}, console.seconds());
+  closing_words(job, participant, diagnostics, {.has_failed = !problem.empty()}, console.seconds(),
+                loop.time());
   run.finish(console.seconds(), problem, diagnostics.errors(), diagnostics.position());
   if (job.rank == 0) log::tell_where(job.output_folder.string(), job.name + ".log");
   if (problem.empty()) return 0;
@@ -303,7 +312,7 @@ int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& partici
     books.received(command);
     if (command.op != coupling::Op::finalise) return;
     closing_words(job, participant, diagnostics, {.is_alone = false, .has_failed = !command.folder.empty()},
-                  seconds_since(start));
+                  seconds_since(start), run.time());
     run.finish(seconds_since(start), "", diagnostics.errors(), diagnostics.position());
   };
   observer.last_word = [&] { return diagnostics.errors().text(); };

@@ -21,6 +21,7 @@ class Series {
 
  private:
   std::filesystem::path name_;
+  std::vector<double>* last_;  // row at the end, if the results of the run show it
   std::ofstream file_;
   std::size_t n_columns_;
 };

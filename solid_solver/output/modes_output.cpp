@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/modal_model.hpp"
 #include "common/parallel/collective.hpp"
@@ -66,6 +67,12 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
     series.row(row);
   }
   if (mesh.dim == 3) couplet::modes::write_modes(context_.output_folder / "modes.h5", model, "");
+  diagnostics::set_result(
+      {"free vibrations",
+       "Hz",
+       {model.frequency.begin(),
+        model.frequency.begin() + std::min<std::ptrdiff_t>(5, std::ssize(model.frequency))},
+       error});
   log::info(
       "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}; estimated error due "
       "to the mesh up to {:.2g} %",
@@ -113,6 +120,7 @@ void SolidOutput::write_buckling() {
                     std::numeric_limits<double>::quiet_NaN())
         .write(stepper_.state().time, geometry.points, fields);
   if (parallel::comm_rank(mesh.comm) == 0) {
+    if (!found.factor.empty()) diagnostics::set_result({"load factors of buckling", "1", found.factor});
     io::Series series(context_.output_folder / "buckling.csv", {"number", "load factor [-]"});
     for (std::size_t m = 0; m < found.factor.size(); ++m)
       series.row(std::vector<double>{double(m + 1), found.factor[m]});

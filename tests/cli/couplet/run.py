@@ -51,7 +51,7 @@ def by_hand(folder):
     check("--print shows the launch line alone", printed.returncode == 0 and printed.stdout.startswith("mpirun ") and not (folder / "a/out").exists(), printed.stderr)
     ran = call(bin_, "run", case)
     lines = ran.stdout.strip().splitlines()
-    check("a run ends with one line", ran.returncode == 0 and re.match(r"done in [\d.]+ s: results in \S+out, picture: couplet plot ", lines[-1]), lines[-1:])
+    check("a run ends with one line", ran.returncode == 0 and re.fullmatch(r"done in [\d.]+ s: results in \S+out", lines[-3]) and lines[-2].startswith("picture: couplet plot ") and lines[-1].startswith("more: couplet report "), lines[-3:])
     check("what the programs say is passed on", any("t=0.03/0.03 s" in line for line in lines))
     shutil.copytree(folder / "a/out", folder / "by-couplet")
     shutil.rmtree(folder / "a/out")

@@ -13,6 +13,7 @@ SUBCOMMANDS = {
     "resume": ("command.resume", "continues a stopped run"),
     "stop": ("command.stop", "stops a run after the current step and writes a checkpoint"),
     "watch": ("command.watch", "shows the progress of a run"),
+    "report": ("command.report", "shows results, errors, warnings and costs of a finished run"),
     "check": ("command.check", "reports all errors of a case without running it"),
     "explain": ("command.explain", "lists what a case computes and neglects, and its expected cost"),
     "new": ("command.new", "creates a case of your own from an example"),

@@ -166,13 +166,13 @@ def picture_of(job):
 
 
 def finish(job, code, picture):
-    """Prints the last line: where the results are, or what failed and what to do."""
+    """Prints the last lines: where the results are, or what failed and what to do."""
     out, took = shown(job.output), span(job.seconds)
     again = f"couplet resume {shlex.quote(out)}"
     if code == 0 or code == 4:
         look = picture_of(job) if picture else f"picture: {line_of_picture(job, out)}"
-        doubt = ", but the result is provably useless (above; docs/findings.md)" if code == 4 else ""
-        print(f"done in {took}{doubt}: results in {out}, {look}", flush=True)
+        doubt = ", but the result is useless" if code == 4 else ""
+        print(f"done in {took}{doubt}: results in {out}", look, f"more: couplet report {shlex.quote(out)}", sep="\n", flush=True)
         return code
     if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
         print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; continue: {again}", file=sys.stderr)
