@@ -145,7 +145,8 @@ void declare_scene(config::Section& s, SolidParameters& p) {
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
   s.choice("plane", p.plane,
            {{"strain", Plane::strain}, {"stress", Plane::stress}, {"axisymmetric", Plane::axisymmetric}})
-      .doc("assumption of a 2-D scene; axisymmetric: a body of revolution about the y axis, x is the radius");
+      .doc(
+          "assumption of a 2-D scene; axisymmetric: a body of revolution about the y axis, x is the radius; edges on the axis x = 0 need 'type: symmetry'");
   s.check(
       [&p] {
         return p.dimension == 3 && p.plane != Plane::strain ? "only for 2-dimensional scenes; remove this key"
@@ -156,10 +157,16 @@ void declare_scene(config::Section& s, SolidParameters& p) {
            {{"dynamic", Analysis::dynamic},
             {"static", Analysis::static_},
             {"thermal", Analysis::thermal},
+            {"modal", Analysis::modal},
             {"buckling", Analysis::buckling}})
       .doc(
-          "static neglects inertia; thermal conducts heat only; buckling is static with 'output: {buckling: "
+          "static neglects inertia; thermal conducts heat only; modal computes the free vibrations of 'output: "
+          "{modes: 10}', or the number given there, at the start: one step without loads is enough; buckling is static with 'output: {buckling: "
           "4}', or the number given there, and a factor below 1 is its answer");
+  if (p.analysis == Analysis::modal) {
+    p.analysis = Analysis::dynamic;
+    p.output.modes = 10;
+  }
   if (p.analysis == Analysis::buckling) {
     p.analysis = Analysis::static_;
     p.seeks_buckling = true;

@@ -167,7 +167,10 @@ case.yaml:3:1: participants: 2 participants are run by the program 'solid_solver
       for name, why in (("", "a participant needs a name"), ("coupler", "the coupler is not a participant; its keys are in `coupling`"),
                         ("checkpoints", OURS), ("run", OURS), ("a/b", NO_FOLDER), ("..", NO_FOLDER), ("-o", NO_FOLDER),
                         ("a" * 51, "the name has 51 characters; at most 50 are allowed"))],
-    coupler("no coupling", "case.yaml:1:1: the `coupling` section is missing, so the coupler has nothing to do.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
+    coupler("no coupling", "case.yaml:1:1: the `coupling` section is missing, so the coupler has nothing to do: add the section (docs/config.md), or run each participant alone, without the coupler.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
+    coupler("a structure without an interface", """
+case.yaml:25:5: participants.solid.boundaries: 'solid' is coupled, but none of its patches is an interface: set `type: interface` where it meets the other participant.
+""", ("top: {type: interface}", "top: {type: free}")),
 ]
 
 SOLID = [

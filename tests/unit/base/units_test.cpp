@@ -76,6 +76,8 @@ TEST(Units, what_does_not_convert_is_refused_with_what_was_expected) {
             "'5 MPaa': unknown unit 'MPaa'. Did you mean 'MPa'? Expected Pa or a unit convertible to it.");
   EXPECT_EQ(error_of("5 furlong", "m"),
             "'5 furlong': unknown unit 'furlong'. Expected m or a unit convertible to it.");
+  EXPECT_EQ(error_of("120 C", "K"),
+            "'120 C': unknown unit 'C'. Did you mean 'degC'? Expected K or a unit convertible to it.");
   EXPECT_EQ(error_of("soft", "Pa"), "'soft' is not a number; expected a number in Pa or with its unit.");
   EXPECT_EQ(error_of("5 s", ""), "'5 s' contains more than a number ('s'); expected a plain number.");
   EXPECT_EQ(error_of("1,5 m", "m"), "'1,5 m' has a decimal comma; use a decimal point.");
