@@ -92,13 +92,13 @@ class FieldSeries:
         return np.array([pair[0] for pair in count.values() if len(pair) == 1])
 
 
-SHAPES = "buckling.h5"  # shapes of load factors, beside the fields of a run
+SHAPES = ("buckling.h5", "mode-shapes.h5")  # beside the fields of a run
 
 
 def find_series(folder, name="*.h5"):
     """The .h5 field series in a participant's output folder: that of the run, not that of its shapes, unless they are named."""
     for file in sorted(pathlib.Path(folder).glob(name)):
-        if file.name == SHAPES != name:
+        if file.name in SHAPES and file.name != name:
             continue
         with h5py.File(file, "r") as f:
             if f.attrs.get("format") in (b"couplet fields", "couplet fields"):

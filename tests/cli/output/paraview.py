@@ -106,11 +106,12 @@ with tempfile.TemporaryDirectory(prefix="couplet-paraview-") as folder:
     folder = pathlib.Path(folder)
     shutil.copy(cases / "square.msh", folder)
     shutil.copy(cases / f"{name}.yaml", folder / "case.yaml")
-    subprocess.run([program, "case.yaml", "--accept", "error-estimate", "--set", "simulation.output.interval=0.5", "--set", f"participants.{name}.output.surfaces=[bottom]"],
+    more = ", modes: 2" if name == "solid" else ""
+    subprocess.run([program, "case.yaml", "--accept", "error-estimate", "--set", "simulation.output.interval=0.5", "--set", f"participants.{name}.output={{surfaces: [bottom]{more}}}"],
                    cwd=folder, check=True, capture_output=True)
     out = folder / "out" / name
     subprocess.run([sys.executable, cases.parents[2] / "scripts/couplet", "export", folder / "out", "--to", "vtk"], check=True, capture_output=True)
-    for file, wanted, least in ((name, 3, 6), ("surface-bottom", 2 if name == "fluid" else 3, 6)):
+    for file, wanted, least in ((name, 3, 6), ("surface-bottom", 2 if name == "fluid" else 3, 6), *([("mode-shapes", 1, 2)] if more else ())):
         pvd, counts = out / "vtk" / f"{file}.pvd", {}
         for python, index in ((of_vtu, pvd), (of_xdmf, out / f"{file}.xdmf")):
             if python:
