@@ -194,6 +194,9 @@ def stop(folder):
 def wrong(folder):
     """A bad case ends with exit code 2 and what to do, and leaves nothing."""
     case = case_in(folder / "a", bin_)
+    for change in ("participants.solid.program=plate_modal", "participants.solid={program: plate_modal}"):
+        line = ask(bin_, "run", case, "--print", "--set", change)
+        check(f"{change}: this program is started", "bin/plate_modal " in line.stdout and "solid_solver" not in line.stdout, line.stdout + line.stderr)
     for change, said in (("participants.solid.material.density=heavy", "'heavy' is not a number"), ("participants.fluid.densty=1", "densty")):
         for command in ("run", "check"):
             result = ask(bin_, command, case, "--set", change)

@@ -18,7 +18,7 @@ def declare(parser):
 
 def ask(arguments, question):
     """Yields (participant, exit code, answer, complaint) of all our programs of the case, asked concurrently."""
-    case = Case(arguments.case, build_of(arguments.bin))
+    case = Case(arguments.case, build_of(arguments.bin)).changed(arguments.set)
     expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
     sets = [word for s in arguments.set for word in ("--set", s)]
     asked = {}

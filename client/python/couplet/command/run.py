@@ -152,13 +152,12 @@ def line_of_picture(job, out):
     if not job.case.has_picture or (job.alone and job.case.coupled):
         return f"couplet plot {shlex.quote(out)}"
     elsewhere = job.output.absolute() != output_of(job.case, ()).absolute()
-    return f"couplet plot {shlex.quote(shown(job.case.file))}" + (f" --out {shlex.quote(out)}" if elsewhere else "")
+    return f"couplet plot {shlex.quote(shown(job.case.file))}" + (f" --out {shlex.quote(out)}" if elsewhere else "") + (" --allow-commands" if job.case.draws_itself else "")
 
 
 def picture_of(job):
     """Draws the picture of the case. Returns its part of the last line."""
-    done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file), *(["--out", str(job.output)] if "plot" in job.case.data else [])], capture_output=True, text=True, env={
-        **os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[2])})
+    done = subprocess.run([sys.executable, places.command(), "plot", str(job.case.file), "--allow-commands", *(["--out", str(job.output)] if "plot" in job.case.data else [])], capture_output=True, text=True)
     name = next((line.removeprefix("picture: ") for line in reversed(done.stdout.splitlines()) if line.endswith(".png")), None)
     if done.returncode != 0:
         return f"no picture ({(done.stderr.strip().splitlines() or ['couplet plot failed'])[-1]})"

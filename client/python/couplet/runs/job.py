@@ -16,7 +16,7 @@ import time
 
 from couplet import places
 from couplet.runs import folder as folders
-from couplet.runs.case import COUPLER, Case, expect, load, mapping_of
+from couplet.runs.case import COUPLER, OURS, Case, expect, load, mapping_of
 from couplet.runs.process import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
 
@@ -57,6 +57,7 @@ class Job:
     `played_by` is {participant: command of the external program}; `alone` runs only this participant."""
 
     def __init__(self, case: Case, ranks=None, sets=(), flags=(), alone=None, played_by=None):
+        case = case.changed(sets)
         self.case, self.ranks, self.sets, self.flags = case, dict(ranks or {}), list(sets), list(flags)
         self.alone, self.played_by = alone, dict(played_by or {})
         expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
@@ -66,7 +67,7 @@ class Job:
         self.command = [str(w) for w in case.command({}, alone, self.ranks, self.sets, self.flags, self.played_by)]
         for name in [alone] if alone else known:
             program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
-            expect(program.exists() or case.guest(name, self.played_by),
+            expect(program.name in OURS and program.exists() or case.guest(name, self.played_by),
                    f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent} and not beside the case. "
                    f"Give its command: --with {name}='COMMAND ...'")
         self.output = output_of(case, self.sets)
