@@ -6,7 +6,7 @@ import math
 import pathlib
 import re
 
-from couplet.runs.case import expect, load
+from couplet.runs.case import Wrong, expect, load
 from couplet.runs.results import Results, read_csv
 
 COST = re.compile(r"seconds|waiting|working|processor|clock|so far|iterations|residual")
@@ -64,9 +64,12 @@ def arrays(folder):
     for file in sorted(folder.glob("*/*.h5")):
         if file.parent.name == "checkpoints":
             continue
-        with h5py.File(file, "r") as series:
-            raw = {}
-            series.visititems(lambda name, item: raw.update({name: np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
+        raw = {}
+        try:
+            with h5py.File(file, "r") as series:
+                series.visititems(lambda name, item: raw.update({name: np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
+        except (OSError, RuntimeError) as error:
+            raise Wrong(f"{file}: cannot be read, and may be truncated ({error})") from None
         found.update({f"{file.relative_to(folder)}: {name}": values for name, values in by_number(raw).items()})
     return found
 
