@@ -48,7 +48,25 @@ def heat(name, edits, outcome, message, **more):
     return (name, "heat", edits, outcome, {"message": message, **more})
 
 
+def plate(name, edits, outcome, message, **more):
+    return (name, "plate", edits, outcome, {"message": message, **more})
+
+
+def mover(name, motion, outcome, message, **more):
+    """A wall of the mover's mesh with this motion."""
+    return (name, "mover", [("top: {type: fixed}", f"top: {{type: moving, motion: {motion}}}")], outcome, {"message": message, **more})
+
+
+def pushed(pressure):
+    return [("    initial-amplitudes: [1 mm]\n", f"    load: {{upper-pressure: {pressure}}}\n")]
+
+
 EXPRESSIONS = [
+    mover("decimal comma in the motion of a wall", '{translation: ["0,1*t", 0]}', "refused", POINT),
+    mover("assignment in the angle of a wall", '{angle: "t = 1 ? 0.1 : 0"}', "refused", ASSIGNS),
+    mover("comparisons in a row in the displacement of a wall", '{displacement: ["0 < x < 1 ? 0.1 : 0", 0]}', "refused", IN_A_ROW),
+    plate("decimal comma in a load of a plate", pushed('"1,5*t"'), "refused", POINT),
+    plate("comparisons in a row in a load of a plate", pushed('"0 < x < 0.5 ? 1e3 : 0"'), "refused", IN_A_ROW),
     fluid("decimal comma in an expression", [("velocity: [0.1 m/s, 0 m/s]", 'velocity: ["1,5*4*y*(1 - y)", 0]')], "refused", POINT),
     solid("commas between thousands", [(PULL, 'value: ["1,000,000", 0]')], "refused", POINT),
     heat("decimal comma in a source", [("      boundaries: {left", '      source: "t < 1 ? 0 : 1,5*x"\n      boundaries: {left')], "refused", POINT),
@@ -71,6 +89,12 @@ UNITS = [
         "f.csv": "time [sec],mass-flow [kg/s],inlet-temperature [degC]\n0,-100,390\n"}},),
     *(fluid(f"speed of rotation: {text}", [("top: {type: slip}", f"top: {{type: moving-wall, rotation: {{speed: {text}}}}}")], "refused", "a turn is 6.2832 rad or 360 deg")
       for text in ("60 1/min", "1 1/s", "1 Hz", "50 %")),
+    mover("angle of a wall without a unit", "{angle: 5}", "refused", "'5' has no unit, but one is required"),
+    mover("turns of a wall", "{angle: 5 turns}", "refused", "unknown unit 'turns'"),
+    mover("inches of a wall", "{translation: [1 in, 0]}", "refused", "unknown unit 'in'"),
+    mover("millimetres in a heading of a motion", "{translation: ['table(t, \"p.csv\")', 0]}", "refused", "the values are in 'mm', but a table's values are taken in m", files={"p.csv": "t [s],u [mm]\n0,0\n1,1\n"}),
+    plate("psi of a plate", pushed("1 psi"), "refused", "unknown unit 'psi'"),
+    plate("milliseconds in a heading of a load", pushed("{of: t, file: p.csv}"), "refused", "the first column is in 'ms', but 't' is in s", files={"p.csv": "t [ms],p [Pa]\n0,0\n1,1\n"}),
     ("radians for a rate", "solid", [("analysis: static", "analysis: dynamic"), ("    probes:", "    damping: {mass: 2 rad/s}\n    probes:")], "refused", {"message": "the unit 'rad/s' is not convertible to 1/s"}),
 ]
 VALUES = [
@@ -103,6 +127,8 @@ ACTS = [
           "flagged", "boundaries.right: the hydrostatic pressure never acted", run=True),
     heat("a flux between face centers", [(HOT, 'left: {type: flux, value: "abs(y - 0.5) < 0.1 ? 1e7 : 0"}')], "flagged", "heat.boundaries.left.value: 'abs(y - 0.5) < 0.1 ? 1e7 : 0' never acted", run=True),
     heat("a source that never begins", [("      boundaries: {left", '      source: "t > 3600 ? 1e3 : 0"\n      boundaries: {left')], "flagged", "heat.source: 't > 3600 ? 1e3 : 0' never acted", run=True),
+    plate("a load beside the plate", pushed('"x > 5 ? 1e3 : 0"'), "flagged", "never acted", run=True, code=4),
+    plate("a load that begins after the end", pushed('"t > 1 ? 1e3 : 0"'), "flagged", "never acted", run=True, code=4),
     ("gravity along a plate", "plate", [("    initial-amplitudes: [1 mm]\n", "    gravity: [0, -9.81, 0]\n")], "flagged", {"message": "motion in the plane neglected", "run": True}),
 ]
 TIMES = [
@@ -114,6 +140,8 @@ TIMES = [
     solid("a table that was over before the start", [(PULL, "value: [{of: t, at: [0, 0.5 s], values: [0, 1 MPa]}, 0]")], "flagged", "it covers 0 to 0.5, but was only read from 1 to 1", run=True),
     solid("a material beyond its table", [(MATERIAL, MATERIAL + "      youngs-modulus-table: {of: T, at: [20 degC, 100 degC], values: [210 GPa, 200 GPa]}\n"), ("    probes:", "    temperature: 900 degC\n    probes:")],
           "flagged", "its table covers 293.15 to 373.15 K, but was read from 1173.15 to 1173.15 K", run=True),
+    plate("a load of a plate whose period is the step", pushed('"1e3*(1 + 5*sin(2*pi*1000*t))"') + [("end-time: 1 ms", "end-time: 5 ms")], "flagged", "the steps do not", run=True),
+    plate("a table of a plate that starts after the end", pushed("{of: t, at: [2 s, 3 s], values: [0, 1 kPa]}"), "flagged", "it covers 2 to 3, but was only read", run=True, code=4),
     tank("a schedule in seconds as hours", "0,-100,390\n1800,0,390\n", "flagged", "flow.rows[1] starts at 6.48e+06 s, after the end of the run; of 2 rows 1 ran"),
     tank("a schedule that ends early", "0,-100,390\n0.01,-100,390\n", "flagged", "the last row, flow.rows[1], starts at 36 s and its flow went on"),
 ]

@@ -21,7 +21,7 @@ os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"
 def prepare(folder, mistake):
     for mesh in HERE.glob("*.msh"):
         shutil.copy(mesh, folder)
-    text = (HERE / f"{mistake.base}.yaml").read_text(encoding="utf-8")
+    text = (HERE / f"{'coupled' if mistake.base == 'mover' else mistake.base}.yaml").read_text(encoding="utf-8")
     for old, new in mistake.edits:
         if text.count(old) != 1:
             raise SystemExit(f"{mistake.name}: '{old}' is in {mistake.base}.yaml {text.count(old)} times instead of once")
@@ -54,6 +54,8 @@ def problems(binaries, mistake):
         bad = [] if code == wanted else [f"exit code {code} instead of {wanted}"]
         if mistake.outcome != table.RIGHT and mistake.message not in text:
             bad.append(f"it does not say '{mistake.message}'")
+        if mistake.says not in text:
+            bad.append(f"it does not say '{mistake.says}'")
         if mistake.outcome == table.FLAGGED and "warning" not in text:
             bad.append("it does not warn")
         if mistake.outcome == table.RIGHT and ("implausible" in text or not mistake.message):

@@ -22,6 +22,7 @@ class Mistake:
     run: bool = False  # else --check
     files: dict = field(default_factory=dict)
     code: int = None  # exit code, if it is another than the outcome's
+    says: str = ""  # further part of what is said
     twice: list = None  # arguments of a second run in the same folder, which is the one judged
 
 
