@@ -95,6 +95,7 @@ UNITS = [
     mover("millimetres in a heading of a motion", "{translation: ['table(t, \"p.csv\")', 0]}", "refused", "the values are in 'mm', but a table's values are taken in m", files={"p.csv": "t [s],u [mm]\n0,0\n1,1\n"}),
     plate("psi of a plate", pushed("1 psi"), "refused", "unknown unit 'psi'"),
     plate("milliseconds in a heading of a load", pushed("{of: t, file: p.csv}"), "refused", "the first column is in 'ms', but 't' is in s", files={"p.csv": "t [ms],p [Pa]\n0,0\n1,1\n"}),
+    plate("bar that nobody scales", pushed("'2*table(t, \"p.csv\")'"), "refused", "the values are in 'bar', but a table's values are taken in SI units", files={"p.csv": "t [s],p [bar]\n0,0\n1,1\n"}),
     ("radians for a rate", "solid", [("analysis: static", "analysis: dynamic"), ("    probes:", "    damping: {mass: 2 rad/s}\n    probes:")], "refused", {"message": "the unit 'rad/s' is not convertible to 1/s"}),
 ]
 VALUES = [
