@@ -122,6 +122,10 @@ class UseOfCase final : public diagnostics::Diagnostic {
               fmt::format(
                   "{}: it covers {:g} to {:g}, but was only read from {:g} to {:g}, where its end value holds",
                   name, use.from, use.to, use.lowest, use.highest));
+        else if (is_left)
+          report.sentences.push_back(fmt::format(
+              "{}: it covers {:g} to {:g} and was read from {:g} to {:g}; beyond its ends its end values held.",
+              name, use.from, use.to, use.lowest, use.highest));
         break;
       case Use::Kind::property:
         if (is_left)

@@ -117,12 +117,17 @@ void SolidBoundaries::choose_faces(const mesh::Patch& patch, const SolidBoundary
   };
   for (Index f = patch.first; f < patch.first + patch.count; ++f) choose(f);
   for (Index f = patch.ghost_first; f < patch.ghost_first + patch.ghost_count; ++f) choose(f);
-  for (std::size_t i = 0; i < tests.size(); ++i)
-    if (!parallel::any(mesh_->comm, !conditions_[own + 1 + i].faces.empty()))
-      throw Error(
-          "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is evaluated at the face centres; "
-          "widen it, for example to abs(z - 0.5) < half the height of a face.",
-          where, i, tests[i].text(), patch.name);
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (parallel::any(mesh_->comm, !conditions_[own + 1 + i].faces.empty())) continue;
+    bool is_taken = false;
+    for (Index f = patch.first; f < patch.first + patch.count && f < mesh_->n_flux_faces(); ++f)
+      is_taken = is_taken || tests[i](geometry_->face_centre[f], 0) != 0;
+    throw Error(
+        "{}.parts[{}].where: '{}' selects no face of patch '{}'. {}", where, i, tests[i].text(), patch.name,
+        parallel::any(mesh_->comm, is_taken)
+            ? "Parts before it select all of its faces, and the first one that selects a face applies; put it before them."
+            : "It is evaluated at the face centres; widen it, for example to abs(z - 0.5) < half the height of a face.");
+  }
   make_load(conditions_[own], boundary, where);
   for (std::size_t i = 0; i < tests.size(); ++i)
     make_load(conditions_[own + 1 + i], boundary.parts[i], fmt::format("{}.parts[{}]", where, i));

@@ -314,7 +314,13 @@ void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
         p.value("where", part.where)
             .required()
             .doc("expression of x, y, z at the face centres, nonzero on the faces of this part");
-        p.check([&part] { return fv::problem_of(part.where); }, "where");
+        p.check(
+            [&part] {
+              return fv::Expression(part.where).uses_time()
+                         ? "the faces of a part stay the same: use an expression of x, y, z, without t"
+                         : "";
+            },
+            "where");
         declare_condition(p, part, dimension, false);
       },
       "parts of the patch, such as a line of faces, with their own condition; the first one that selects a "

@@ -77,6 +77,9 @@ EXPRESSIONS = [
     solid("comparisons in a row", part("0.5 < y < 1"), "refused", IN_A_ROW, run=True),
     fluid("comparisons in a row in a level", [("    boundaries:", '    bodies: {b: {level: "0.1 < x < 0.2 ? -1 : 1"}}\n    boundaries:')], "refused", IN_A_ROW),
     heat("comparisons in a row in a temperature", [("value: 100 degC", 'value: "0 <= y <= 0.5 ? 300 : 400"')], "refused", IN_A_ROW),
+    solid("a part that moves", part("y > t"), "refused", "use an expression of x, y, z, without t"),
+    solid("a part that the part before it takes", [("right: {type: traction, value: [1 MPa, 0]}", 'right: {type: free, parts: [{where: "1", type: traction, value: [1 MPa, 0]}, {where: "y > 0.5", type: traction, value: [2 MPa, 0]}]}')],
+          "refused", "Parts before it select all of its faces", run=True),
     solid("comparisons joined", part("0.5 < y && y < 1"), "right", "both hold", run=True),
 ]
 UNITS = [
@@ -139,6 +142,8 @@ TIMES = [
     solid("a load that the steps see", [(PULL, 'value: ["t < 1.2 ? 1e6*t : 1.2e6", 0]'), ("end-time: 1 s", "end-time: 3 s")], "right", "it grows and stays", run=True),
     solid("a table that starts after the end", [(PULL, "value: [{of: t, at: [2 s, 3 s], values: [0, 1 MPa]}, 0]")], "flagged", "it covers 2 to 3, but was only read from 1 to 1", run=True),
     solid("a table that was over before the start", [(PULL, "value: [{of: t, at: [0, 0.5 s], values: [0, 1 MPa]}, 0]")], "flagged", "it covers 0 to 0.5, but was only read from 1 to 1", run=True),
+    solid("a table that is entered late and left early", [(PULL, "value: [{of: t, at: [1 s, 2 s], values: [1 MPa, 2 MPa]}, 0]"), ("end-time: 1 s, time-step: 1 s", "end-time: 3 s, time-step: 0.5 s")],
+          "right", "its end values hold by default, as the log says", run=True, says="it covers 1 to 2 and was read from 0.5 to 3; beyond its ends its end values held"),
     solid("a material beyond its table", [(MATERIAL, MATERIAL + "      youngs-modulus-table: {of: T, at: [20 degC, 100 degC], values: [210 GPa, 200 GPa]}\n"), ("    probes:", "    temperature: 900 degC\n    probes:")],
           "flagged", "its table covers 293.15 to 373.15 K, but was read from 1173.15 to 1173.15 K", run=True),
     plate("a load of a plate whose period is the step", pushed('"1e3*(1 + 5*sin(2*pi*1000*t))"') + [("end-time: 1 ms", "end-time: 5 ms")], "flagged", "the steps do not", run=True),
