@@ -2,6 +2,7 @@
 #include "solid_solver/parameters/parameters.hpp"
 
 #include "common/config/load.hpp"
+#include "common/fv/expression.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::parameters_test {
@@ -12,8 +13,9 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 std::vector<std::string> read(const std::string& text, SolidParameters& p) {
-  return config::load(config::Document::parse(text, "case.yaml"), "",
-                      [&](config::Section& s) { declare(s, p); });
+  return config::load(
+      config::Document::parse(text, "case.yaml"), "", [&](config::Section& s) { declare(s, p); },
+      [](const config::ExpressionText& text) { return fv::problem_of(text); });
 }
 
 const std::string material = "material: {density: 7800, youngs-modulus: 200 GPa, poissons-ratio: 0.3}\n";
