@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/face_mean.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -114,32 +115,19 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
     const OnPatch& here = on_patch_[p];
     const mesh::Patch& patch = mesh_->patches[p];
     for (Index f = patch.first; f < patch.first + patch.count; ++f, ++next) {
-      const Vec3& x = geometry_->face_centre[f];
       const double area = geometry_->face_area[f].norm();
-      heat[next] = 0;
-      if (!transfer.empty()) transfer[next] = 0;
-      if (here.type == Kind::flux) heat[next] = area * here.value(x, t);
-      if (here.type == Kind::convection) {
-        transfer[next] = here.coefficient(x, t);
-        heat[next] = area * transfer[next] * here.ambient(x, t);
-      }
+      const auto given = [&](const Vec3& x) {  // q + h T_inf, h
+        if (here.type == Kind::flux) return Vec3(here.value(x, t), 0, 0);
+        if (here.type != Kind::convection) return Vec3(Vec3::Zero());
+        const double h = here.coefficient(x, t);
+        return Vec3(h * here.ambient(x, t), h, 0);
+      };
+      const Vec3 mean = here.value.uses_space() || here.coefficient.uses_space() || here.ambient.uses_space()
+                            ? fv::mean_over_face(*mesh_, *geometry_, f, given).whole
+                            : given(Vec3::Zero());
+      heat[next] = area * mean[0];
+      if (!transfer.empty()) transfer[next] = mean[1];
     }
-  }
-}
-
-// For a quadratic, corners of a segment or parallelogram differ from the center 3 times as much as the mean.
-void HeatBoundaries::fluxes_missed(const fv::ConductionOperator& conduction, double t,
-                                   std::span<double> missed) const {
-  const std::vector<Index> patch_of = mesh_->patch_of_boundary();
-  for (std::size_t i = 0; i < missed.size(); ++i) {
-    const Index f = conduction.flux_faces()[i];
-    const OnPatch& here = on_patch_[std::size_t(patch_of[std::size_t(f - mesh_->n_interior)])];
-    missed[i] = 0;
-    if (here.type != Kind::flux) continue;
-    const auto corners = mesh_->face_points[f];
-    double mean = 0;
-    for (const Index v : corners) mean += here.value(geometry_->points[v], t) / double(corners.size());
-    missed[i] = geometry_->face_area[f].norm() * (mean - here.value(geometry_->face_centre[f], t)) / 3;
   }
 }
 

@@ -30,11 +30,9 @@ class HeatBoundaries final {
   /// Sets 1 at known columns on `patch`, 0 elsewhere; a vertex belongs to the patch of its value.
   void mark_known(const fv::ConductionOperator& conduction, const std::string& patch,
                   std::span<double> values) const;
-  /// Per entry of conduction.flux_faces(): heat independent of the face temperature, |S| (q + h T_inf) [W],
+  /// Per entry of conduction.flux_faces(), as means over the face: heat independent of the face temperature, |S| (q + h T_inf) [W],
   /// and h [W/(m^2 K)]. `transfer` may be empty without convection.
   void fluxes(double t, std::span<double> heat, std::span<double> transfer) const;
-  /// Per entry: quadrature error of a prescribed flux over the face [W]; 0 elsewhere.
-  void fluxes_missed(const fv::ConductionOperator& conduction, double t, std::span<double> missed) const;
 
  private:
   struct OnPatch {

@@ -102,7 +102,8 @@ ACTS = [
     solid("a load beside its patch", [(PULL, 'value: ["abs(y - 5) < 0.1 ? 1e6 : 0", 0]')], "flagged", "never acted", run=True),
     solid("water below the wall", [("right: {type: traction, value: [1 MPa, 0]}", "right: {type: hydrostatic-pressure, density: 1000 kg/m^3, gravity: [0, -9.81], level: -5 m}")],
           "flagged", "boundaries.right: the hydrostatic pressure never acted", run=True),
-    heat("a flux between face centers", [(HOT, 'left: {type: flux, value: "abs(y - 0.5) < 0.1 ? 1e7 : 0"}')], "flagged", "heat.boundaries.left.value: 'abs(y - 0.5) < 0.1 ? 1e7 : 0' never acted", run=True),
+    heat("a flux between face centers", [(HOT, 'left: {type: flux, value: "abs(y - 0.5) < 0.1 ? 1e4 : 0"}')], "right", "it is integrated over the faces", run=True),
+    heat("a flux beside its patch", [(HOT, 'left: {type: flux, value: "abs(y - 5) < 0.1 ? 1e7 : 0"}')], "flagged", "heat.boundaries.left.value: 'abs(y - 5) < 0.1 ? 1e7 : 0' never acted", run=True),
     heat("a source that never begins", [("      boundaries: {left", '      source: "t > 3600 ? 1e3 : 0"\n      boundaries: {left')], "flagged", "heat.source: 't > 3600 ? 1e3 : 0' never acted", run=True),
     ("gravity along a plate", "plate", [("    initial-amplitudes: [1 mm]\n", "    gravity: [0, -9.81, 0]\n")], "flagged", {"message": "motion in the plane neglected", "run": True}),
 ]
