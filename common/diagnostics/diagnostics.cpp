@@ -115,17 +115,17 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
     else if (!f.id.empty() && f.id.back() != '-')
       f.id += '-';
   }
-  const bool is_sound = e.number <= e.limit || e.saves > 0;
+  const bool is_sound = e.number <= e.limit || e.is_spare;
   f.severity = is_sound ? Severity::note : e.number < e.wrong_from ? Severity::warning : Severity::wrong;
   f.effect = fmt::format("{}{}", e.effect, e.left_out ? " neglected" : "");
   f.share = e.share;
-  if (e.saves > 0) {
-    if (!(e.number <= e.limit)) return {};
+  if (e.is_spare && e.number <= e.limit && e.saves > 0) {
     f.saves = e.saves;
     f.sentence = fmt::format("{} ({}; limit {:.2g})", e.effect, e.what, e.limit);
     return f;
   }
-  const char* word = is_sound                        ? (e.left_out ? "justified" : "adequate")
+  const char* word = e.is_spare                      ? (e.number <= e.limit ? "could be left out" : "needed")
+                     : is_sound                      ? (e.left_out ? "justified" : "adequate")
                      : f.severity == Severity::wrong ? "wrong"
                      : e.left_out                    ? "not justified"
                                                      : "questionable";
