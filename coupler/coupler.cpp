@@ -2,6 +2,7 @@
 // A coupled run from start to end; coupler/step.cpp contains the step.
 #include "coupler/coupler.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "common/base/error.hpp"
@@ -126,6 +127,10 @@ std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step
   try {
     solve(step);
   } catch (const SchemeFailure& failure) {
+    if (std::ranges::all_of(pass_.partners(), &Partner::left)) {
+      log::info("all programs have left the coupling at t = {:g} s, before its end", step.time);
+      return app::StepFailure("", false);
+    }
     return app::StepFailure(failure.what(), false);
   } catch (const SolveFailure& failure) {
     return cause_of(failure.what());

@@ -434,6 +434,10 @@ def wrong():
         check("an error that nobody catches ends the job", done.returncode != 0 and "time step size of -1" in done.stderr, done.returncode)
         done = launch(folder, {"Left": [*bad, "leave"], "Right": good})
         check("a program that leaves early ends the job with its name", done.returncode != 0 and 'The participant "Left" ended before the coupling was over' in done.stderr, done.stderr[-300:])
+        imported(folder, configuration("parallel-explicit", initialize="false"))
+        for number, code, said in ((1, 0, "all programs have left the coupling at t = 0 s, before its end"), (0, 1, 'The participant "Left" ended before the coupling was over')):
+            done = launch(folder, {name: [python, here / "small.py", "leave", name, "precice-config.xml", number] for name in ("Left", "Right")})
+            check("programs that leave together end the job, one alone is an error", done.returncode == code and said in done.stdout + done.stderr, (done.returncode, done.stdout[-300:], done.stderr[-300:]))
         words = {name: [*programs["c++"], name, "precice-config.xml", 1] for name in ("Left", "Right")}
         imported(folder, configuration("serial-explicit"))
         case = folder / "case.yaml"
@@ -513,6 +517,7 @@ GOOD = configuration("serial-implicit", substeps="false")
 BAD = {  # replaced, by what, what is said
     "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: <receive-mesh> with api-access is not supported: direct access"),
     "just-in-time mapping": ('from="Right-Mesh" to="Left-Mesh" constraint', 'from="Right-Mesh" constraint', "just-in-time mapping"),
+    "remeshing": ("<precice-configuration", '<precice-configuration experimental="true" allow-remeshing="true"', "with allow-remeshing is not supported: meshes that change during the run"),
     "actions": ("<m2n:sockets", '<action:summation /><m2n:sockets', "<action:summation> is not supported: actions on data"),
     "gradients": ("mapping:nearest-neighbor direction", "mapping:nearest-neighbor-gradient direction", "mapping with gradients"),
     "scaled": ('constraint="consistent"', 'constraint="scaled-consistent-surface"', 'with constraint "scaled-consistent-surface" is not supported'),
