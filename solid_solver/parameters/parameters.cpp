@@ -138,7 +138,7 @@ void declare_scene(config::Section& s, SolidParameters& p) {
        {{"refused", TouchingFaces::refused}, {"tie", TouchingFaces::tie}, {"apart", TouchingFaces::apart}})
       .doc(
           "parts of the mesh that touch without sharing points: refused unless the faces on both sides are patches of their "
-          "own with a load or support; tie joins faces in groups of the mesh that have the same corners (within 1e-4 of their "
+          "own with a load or support, with `heat` also a thermal one; tie joins faces in groups of the mesh that have the same corners (within 1e-4 of their "
           "size), and refuses conditions on them; apart leaves them, as those of a crack");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
