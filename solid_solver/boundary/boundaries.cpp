@@ -123,6 +123,12 @@ void SolidBoundaries::choose_faces(const mesh::Patch& patch, const SolidBoundary
           "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is evaluated at the face centres; "
           "widen it, for example to abs(z - 0.5) < half the height of a face.",
           where, i, tests[i].text(), patch.name);
+  if (!tests.empty() && boundary.type != Type::free &&
+      !parallel::any(mesh_->comm, !conditions_[own].faces.empty()))
+    throw Error(
+        "{}: its parts select all of its faces, so that its own condition acts nowhere. Make it 'free', or narrow the "
+        "parts.",
+        where);
   make_load(conditions_[own], boundary, where);
   for (std::size_t i = 0; i < tests.size(); ++i)
     make_load(conditions_[own + 1 + i], boundary.parts[i], fmt::format("{}.parts[{}]", where, i));
