@@ -130,8 +130,10 @@ TEST(Quantities, lists_tables_and_vectors_of_expressions_are_judged_expressions_
 
 TEST(Quantities, pairs_are_judged_where_each_alone_is_usual_and_nothing_is_wrong) {
   EXPECT_THAT(judge("density: 7.85\nmodulus: 210 GPa").doubts,
-              ElementsAre(HasSubstr("density: waves would travel at 1.64e+05 m/s (usual: 1 to 20000 m/s)")));
+              ElementsAre(HasSubstr("density: waves would travel at 1.64e+05 m/s (usual: 0.2 to 20000 m/s)")));
   EXPECT_THAT(judge("density: 7850\nmodulus: 210 GPa").doubts, IsEmpty());
+  EXPECT_THAT(config::doubt_of_wave_speed(210, 7850), HasSubstr("0.164 m/s"));
+  EXPECT_EQ(config::doubt_of_wave_speed(100, 1000), "");  // a gel
   EXPECT_THAT(judge("density: 7.85\nmodulus: 210 kg").doubts, IsEmpty());
 }
 
