@@ -150,8 +150,8 @@ void check_axis(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic)
 namespace {
 
 // A motion is free if its resistance relative to the largest one is below this (squared: holding a spot of a
-// thousandth of the body suffices).
-constexpr double resisted = 1e-9;
+// millionth of the body suffices, as the end of a foil is).
+constexpr double resisted = 1e-12;
 
 using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the center, rotation times the size of the body
 using Resistance = Eigen::Matrix<double, 6, 6>;
