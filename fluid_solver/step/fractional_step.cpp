@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/processor_clones.hpp"
+#include "common/fv/use.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/state/placement.hpp"
@@ -106,7 +107,12 @@ void FractionalStep<D>::set_body_force() {
     bool periodic = false;
     for (const Vec3& shift : mesh_.neighbour_shift) periodic |= std::abs(shift[c]) > 1e-12 * shift.norm();
     periodic = parallel::any(mesh_.comm, periodic);
-    scene_.balanced[c] = balances && !periodic && !scene_.body_force[c].uses_space();
+    const fv::Expression& force = scene_.body_force[c];
+    scene_.balanced[c] = balances && !periodic && !force.uses_space();
+    if (force.uses_space() || force.uses_time() || force(Vec3::Zero(), 0) == 0) continue;
+    fv::Use& use = fv::uses()["body-force"];  // a fluid that it holds at rest is loaded
+    use.given = "the constant force";
+    use.note(force(Vec3::Zero(), 0));
   }
 }
 
