@@ -147,11 +147,16 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
     }
   mark(step_.end());
   scene_.obstacles->begin(step_, from, prediction_.w);
+  predict_from_guess(from);
+  projection_.prepare(from);
+}
+
+template <int D>
+void FractionalStep<D>::predict_from_guess(const State<D>& from) {
   predictor_.predict(from);
   mesh_.cells.update_ghosts(flat<D>(prediction_.u), D);
   scene_.obstacles->hold(*step_.to, step_.dt, prediction_.u);
   flux_.predict(from, prediction_.u);
-  projection_.prepare(from);
 }
 
 template <int D>
@@ -262,9 +267,10 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
 }
 
 template <int D>
-void FractionalStep<D>::complete(const State<D>& from) {
+void FractionalStep<D>::complete(const State<D>& from, const Vectors<D>& w) {
   if (level_) return;
   level_ = correct();
+  solve_coupled(from, w);
   judgement_ = judge(from);
   check(from);
 }
