@@ -268,6 +268,11 @@ void couplet_fail(couplet_client* c, const char* why, int halving_helps) {
   c->text = why;
 }
 
+void couplet_quit(couplet_client* c, const char* why) {
+  c->status = 3;
+  c->text = why;
+}
+
 void couplet_advise(couplet_client* c, double dt) { c->advised = dt; }
 
 void couplet_report(couplet_client* c, int64_t iterations, double error, double energy) {

@@ -91,6 +91,9 @@ int couplet_within(const couplet_client* c, const char* datum);
 const double* couplet_read_within(const couplet_client* c, const char* datum, int number, double* share);
 /* SOLVE: reports a failed step instead of writing. `halving_helps` if a shorter step may succeed. */
 void couplet_fail(couplet_client* c, const char* why, int halving_helps);
+/* SOLVE: leaves the coupling before its end instead of writing. couplet_next must be called until COUPLET_END. If all programs
+ * leave in the same step, the job ends without an error. */
+void couplet_quit(couplet_client* c, const char* why);
 /* Recommends a largest time step from now on [s]. */
 void couplet_advise(couplet_client* c, double dt);
 /* ACCEPT: reports solver iterations, estimated time error and energy [J] of the step, NAN if unknown. */

@@ -2,9 +2,12 @@
 // A coupled run from start to end; coupler/step.cpp contains the step.
 #include "coupler/coupler.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -80,6 +83,7 @@ std::string Coupler::run() {
     load();
     restart_time = app::read_run_state(folders_.restart).time;
   }
+  base::release_files();
   known_->record.open(folders_.output, simulation_.end_time, restart_time);
   const auto write = [&](double time, int output) {
     pass_.ask_all({coupling::Op::write_output, {}, {}, time, output, ""});
@@ -126,6 +130,10 @@ std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step
   try {
     solve(step);
   } catch (const SchemeFailure& failure) {
+    if (std::ranges::all_of(pass_.partners(), &Partner::left)) {
+      log::info("all programs have left the coupling at t = {:g} s, before its end", step.time);
+      return app::StepFailure("", false);
+    }
     return app::StepFailure(failure.what(), false);
   } catch (const SolveFailure& failure) {
     return cause_of(failure.what());
@@ -155,6 +163,8 @@ void Coupler::finalise(const std::string& problem) {
   enter_(app::Phase::finalise, {});
   Monitor& monitor = known_->record.monitor();
   log::info("{}", monitor.summary(loop_.halvings()));
+  diagnostics::set_result(
+      {"coupling iterations per step, mean and most", "1", monitor.iterations_per_step()});
   if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
     log::info("{}", waiting);
   for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);
@@ -172,6 +182,8 @@ void Coupler::finalise(const std::string& problem) {
   }
   if (const std::string where = diagnostics::position_sentence(position()); !where.empty())
     log::info("{}", where);
+  if (problem.empty())
+    log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, diagnostics::verdict(parts)));
 }
 
 std::vector<diagnostics::Coordinate> Coupler::position() const {

@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -272,6 +271,14 @@ void FluidParticipant<D>::write_monitors(double time) {
 
 template <int D>
 std::vector<std::string> FluidParticipant<D>::finish() {
+  const State<D>& s = fluid_->state();
+  std::pair<double, Vec3> most{0, Vec3::Zero()};
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    if (const double speed = s.u[c].norm(); speed > most.first) {
+      most.first = speed;
+      most.second.template head<D>() = s.placement->centre[c];
+    }
+  diagnostics::set_largest(mesh_.comm, "largest speed", "m/s", most.first, most.second);
   if (!statistics_ || statistics_->duration() > 0) return {};
   return {fmt::format("Running statistics start at t = {:g} s, but this run ended before: there are none.",
                       fluid_->parameters().statistics->start)};

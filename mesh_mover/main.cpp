@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "common/app/program.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/linalg/petsc.hpp"
@@ -13,8 +15,20 @@ class LeastJacobian final : public diagnostics::Diagnostic {
  public:
   explicit LeastJacobian(const Mover& mover) : mover_(mover) {}
   void look(diagnostics::Report& report) override {
-    if (const auto& least = mover_.least_jacobian())
-      report.position.push_back({"least scaled Jacobian", *least, 0, "mover-rotation", true});
+    const auto& least = mover_.least_jacobian();
+    if (!least) return;
+    report.position.push_back({"least scaled Jacobian", *least, 0, "mover-rotation", true});
+    if (*least < 0)
+      report.findings.push_back(
+          {.id = "distorted-mesh",
+           .number = *least,
+           .limit = 0,
+           .sentence =
+               fmt::format("the least scaled Jacobian of the moved mesh was {:.2g} (limit 0): a cell is "
+                           "folded at a corner, and gradients there are wrong",
+                           *least),
+           .advice =
+               "use 'method: barrier' or a finer mesh near the moving walls; quality.csv names the cell"});
   }
 
  private:

@@ -3,9 +3,7 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "common/io/checkpoint.hpp"

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/cut_mesh.hpp"
 #include "common/log/log.hpp"
@@ -86,8 +88,9 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
   if (context.mesh_peer != MPI_COMM_NULL)
     sink_ = coupling::make_mesh_motion_sink(context.mesh_peer, mesh_, geometry_.points);
   if (!context.coupled && !context.output_folder.empty())
-    fields_ = std::make_unique<io::FieldWriter>(mesh_, geometry_.points, context.output_folder, name_, true,
-                                                context.restart_time);
+    base::when_started([this, folder = context.output_folder, restart_time = context.restart_time] {
+      fields_ = std::make_unique<io::FieldWriter>(mesh_, geometry_.points, folder, name_, true, restart_time);
+    });
   if (parallel::comm_rank(mesh_.comm) != 0) return;
   std::vector<std::string> columns{"time [s]"};
   columns.insert(columns.end(), measure_names.begin(), measure_names.end());
@@ -278,6 +281,12 @@ void Mover::write_monitors(double time) {
   const Worst& worst = now.worst[MeshState::scaled_jacobian];
   row.insert(row.end(), {double(worst.cell), worst.place.x(), worst.place.y(), worst.place.z()});
   quality_->row(row);
+}
+
+std::vector<std::string> Mover::finish() {
+  if (least_jacobian_ && parallel::comm_rank(mesh_.comm) == 0)
+    diagnostics::set_result({"least scaled Jacobian of the run", "1", {*least_jacobian_}});
+  return {};
 }
 
 void Mover::write_output(double time, int) {

@@ -36,6 +36,7 @@ class Mover final : public coupling::Participant {
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
+  std::vector<std::string> finish() override;
   /// Smallest scaled Jacobian of the run; empty before the first check.
   const std::optional<double>& least_jacobian() const { return least_jacobian_; }
 

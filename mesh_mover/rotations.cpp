@@ -25,14 +25,8 @@ Vec3 rotation_vector(const Tensor3& m, const Vec3& before) {
   if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) sign(2, 2) = -1;
   const Tensor3 r = svd.matrixU() * sign * svd.matrixV().transpose();
   const Eigen::AngleAxisd of(r);
-  Vec3 axis = of.axis();
-  double angle = of.angle();
-  if (axis.dot(before) < 0) {
-    axis = -axis;
-    angle = -angle;
-  }
-  angle += turn * std::round((before.dot(axis) - angle) / turn);
-  return angle * axis;
+  const double whole = std::round((before.dot(of.axis()) - of.angle()) / turn);
+  return (of.angle() + whole * turn) * of.axis();
 }
 
 /// Mesh motion that rotates the surroundings of a body with it. Each moving patch is a body with the center c

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 
@@ -151,6 +152,24 @@ void PlateResults::write_start() {
   if (root_) write_frequencies();
   if (structure_.parameters().output.modes || structure_.parameters().analysis == Parameters::Analysis::modal)
     write_shapes();
+}
+
+void PlateResults::tell() const {
+  if (!root_) return;
+  const std::vector<double>&frequency = structure_.model().frequency, &u = structure_.displacement();
+  diagnostics::set_result({.name = "frequencies",
+                           .unit = "Hz",
+                           .values = {frequency.begin(), frequency.begin() + std::min<std::ptrdiff_t>(
+                                                                                 5, std::ssize(frequency))}});
+  if (structure_.parameters().analysis == Parameters::Analysis::modal || u.empty()) return;
+  std::size_t most = 0;
+  const auto size = [&](std::size_t v) { return Vec3(&u[3 * v]).norm(); };
+  for (std::size_t v = 1; 3 * v < u.size(); ++v)
+    if (size(v) > size(most)) most = v;
+  diagnostics::set_result({.name = "largest displacement",
+                           .unit = "m",
+                           .values = {size(most)},
+                           .place = diagnostics::place_text(structure_.model().vertices[most])});
 }
 
 void PlateResults::write_frequencies() {

@@ -29,6 +29,8 @@ class PlateResults final {
   void write_start();
   void write_fields(double time);
   void write_series(double time);
+  /// Adds frequencies and the largest displacement to the results of the run.
+  void tell() const;
 
  private:
   std::vector<Vec3> places() const;  // of the vertices, on rank 0

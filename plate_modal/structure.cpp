@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/numbers.hpp"
+#include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
@@ -143,7 +144,7 @@ coupling::Interface Structure::initialise() {
                      {"velocity", "m/s", coupling::Interface::Place::vertices}};
   if (parameters_.surface_density)
     interface.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
-  results_->write_start();
+  base::when_started([this] { results_->write_start(); });
   return interface;
 }
 
@@ -297,5 +298,9 @@ void Structure::load(io::CheckpointReader& file) {
 
 void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
+std::vector<std::string> Structure::finish() {
+  results_->tell();
+  return {};
+}
 
 }  // namespace couplet::plate

@@ -27,6 +27,7 @@ class Structure final : public coupling::Participant {
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
+  std::vector<std::string> finish() override;
 
   /// View for diagnostics. It refers to this structure, which must outlive it.
   PlateView view() const {

@@ -41,6 +41,7 @@ class Solid final : public coupling::Participant {
   SolidStepper stepper_;
   const SolidFields fields_;
   SolidOutput output_;
+  const bool is_loaded_by_case_;  // alone: neither heat, which need not strain it, nor another program does
 };
 
 }  // namespace couplet::solid

@@ -21,7 +21,9 @@ bool keeps = false;
 
 void create_only_participant(::precice::string_view name, ::precice::string_view file, int rank, int size,
                              void* communicator) {
-  participant = std::make_unique<::precice::Participant>(name, file, rank, size, communicator);
+  participant = communicator == nullptr
+                    ? std::make_unique<::precice::Participant>(name, file, rank, size)
+                    : std::make_unique<::precice::Participant>(name, file, rank, size, communicator);
 }
 
 void told(const std::string& error) {

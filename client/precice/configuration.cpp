@@ -46,6 +46,10 @@ class Reader {
     if (root_.name != "precice-configuration")
       refuse(c_.file, root_,
              "<precice-configuration> of preCICE's version 3 is expected, this is <" + root_.name + ">.");
+    if (is_true(root_.attribute("allow-remeshing")))
+      refuse(
+          c_.file, root_,
+          "<precice-configuration> with allow-remeshing is not supported: meshes that change during the run.");
     const Element& me = participant(c_.participant);
     for (const Element& child : root_.children)
       if (begins(child.name, "data:")) {

@@ -12,16 +12,23 @@ std::string getVersionInformation() {
   return std::string(PRECICE_VERSION) + ";Couplet's library on preCICE's interface (docs/precice.md)";
 }
 
-Participant::Participant(string_view name, string_view file, int rank, int size)
-    : Participant(name, file, rank, size, nullptr) {}
+Participant::Participant(string_view name, string_view file, int rank, int size) {
+  construct(name, file, rank, size, nullptr);
+}
 
 Participant::Participant(string_view name, string_view file, int rank, int size, void* communicator) {
+  if (communicator == nullptr)
+    throw Error("The communicator given for the participant \"" + name.str() + "\" is null.");
+  construct(name, file, rank, size, communicator);
+}
+
+void Participant::construct(string_view name, string_view file, int rank, int size, void* communicator) {
   try {
     if (rank < 0 || size < 1 || rank >= size)
       throw Error("The process index is " + std::to_string(rank) + " and the number of processes " +
                   std::to_string(size) + ": the index must be from 0 to below the number.");
-    session_ =
-        std::make_unique<Session>(read_configuration(file.str(), name.str()), rank, size, communicator);
+    session_ = std::make_unique<Session>(read_configuration(file.str(), name.str()), rank, size,
+                                         static_cast<const MPI_Comm*>(communicator));
   } catch (const Error& error) {
     std::fprintf(stderr, "preCICE interface of Couplet: ERROR: %s\n", error.what());
     throw;
@@ -34,6 +41,8 @@ void Participant::initialize() {
   Session& s = *session_;
   check(s, !s.finalised, "initialize() cannot be called after finalize().");
   check(s, !s.initialised, "initialize() may only be called once.");
+  check(s, s.profiling_sections == 0,
+        "initialize() cannot be called before all profiling sections are stopped.");
   if (s.initial_data_due)
     fail(s,
          "Initial data has to be written before initialize(): requiresInitialData() was not called, but the "
@@ -47,6 +56,8 @@ void Participant::advance(double dt) {
   check(s, s.initialised, "initialize() has to be called before advance().");
   check(s, !s.finalised, "advance() cannot be called after finalize().");
   check(s, s.ongoing, "advance() cannot be called when isCouplingOngoing() returns false.");
+  check(s, s.profiling_sections == 0,
+        "advance() cannot be called before all profiling sections are stopped.");
   if (!std::isfinite(dt) || dt <= 0)
     fail(s, "advance() cannot be called with a time step size of " + text(dt) + ": it must be positive.");
   if (dt > s.remaining() + 1e-12 * s.window)
@@ -67,10 +78,6 @@ void Participant::advance(double dt) {
 void Participant::finalize() {
   Session& s = *session_;
   check(s, !s.finalised, "finalize() may only be called once.");
-  if (!s.initialised || s.ongoing)
-    end_the_job("finalize() was called by \"" + s.configuration.participant + "\" " +
-                (s.initialised ? "while the coupling is ongoing" : "before initialize()") +
-                ": the job cannot continue without it.");
   s.leave();
 }
 

@@ -124,7 +124,15 @@ void Participant::writeGradientData(string_view, string_view, span<const VertexI
   refuse(*session_, "writeGradientData(...)", "gradients of data");
 }
 
-void Participant::startProfilingSection(string_view) {}
-void Participant::stopLastProfilingSection() {}
+void Participant::startProfilingSection(string_view name) {
+  if (name.str().find('/') != std::string::npos)
+    fail(*session_, "startProfilingSection(...): the name \"" + name.str() + "\" contains a slash.");
+  ++session_->profiling_sections;
+}
+void Participant::stopLastProfilingSection() {
+  check(*session_, session_->profiling_sections > 0,
+        "stopLastProfilingSection(): no section has been started.");
+  --session_->profiling_sections;
+}
 
 }  // namespace precice

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 #include "couplet_precice.h"
 
@@ -38,32 +39,49 @@ extern "C" MPI_Comm couplet_precice_comm(const char* participant) {
 
 namespace couplet::dropin {
 
-Session::Session(Configuration c, int rank, int size, void* communicator) : configuration(std::move(c)) {
-  static std::string before;  // the participant of this process
-  if (!before.empty())
+namespace {
+
+/// Participant of this process.
+std::string& taken() {
+  static std::string name;
+  return name;
+}
+
+int size_of(MPI_Comm comm) {
+  int size = 0;
+  MPI_Comm_size(comm, &size);
+  return size;
+}
+
+/// Number of processes of the whole job; 0 after MPI_Finalize.
+int all_processes() {
+  int up = 0, down = 0;
+  MPI_Initialized(&up);
+  MPI_Finalized(&down);
+  if (down) return 0;
+  if (!up) MPI_Init(nullptr, nullptr);
+  const int all = size_of(MPI_COMM_WORLD);
+  if (!up) MPI_Finalize();
+  return all;
+}
+
+}  // namespace
+
+Session::Session(Configuration c, int rank, int size, const MPI_Comm* processes)
+    : configuration(std::move(c)), rank_(rank), size_(size) {
+  if (!taken().empty())
     throw ::precice::Error("The participant \"" + configuration.participant +
-                           "\" cannot be constructed: this process has been \"" + before +
+                           "\" cannot be constructed: this process has been \"" + taken() +
                            "\", and a process takes part once. Start a process for each participant.");
-  before = configuration.participant;
-  job = joined(configuration.participant, static_cast<const MPI_Comm*>(communicator));
-  int its_rank = 0, its_size = 0;
-  MPI_Comm_rank(couplet_comm(job), &its_rank);
-  MPI_Comm_size(couplet_comm(job), &its_size);
-  if (rank != its_rank || size != its_size)
-    end_the_job("The participant \"" + configuration.participant + "\" was constructed as process " +
-                std::to_string(rank) + " of " + std::to_string(size) + ", but is process " +
-                std::to_string(its_rank) + " of " + std::to_string(its_size) +
-                " of its participant: MPI_COMM_WORLD holds all programs of the job. Take rank and size from "
-                "couplet_precice_comm(\"" +
-                configuration.participant + "\") of couplet_precice.h.");
-  if (communicator != nullptr) {
-    int given = 0;
-    MPI_Comm_size(*static_cast<MPI_Comm*>(communicator), &given);
-    if (given != its_size)
-      end_the_job("The communicator given for the participant \"" + configuration.participant + "\" has " +
-                  std::to_string(given) + " processes, the participant has " + std::to_string(its_size) +
-                  ".");
-  }
+  int up = 0;
+  MPI_Initialized(&up);
+  if (processes != nullptr) processes_ = *processes;
+  const int known = processes != nullptr ? size_of(*processes) : up ? size_of(MPI_COMM_WORLD) : size;
+  if (processes != nullptr ? size != known : size > known)
+    throw ::precice::Error("The participant \"" + configuration.participant + "\" was constructed with " +
+                           std::to_string(size) + " processes, but its communicator has " +
+                           std::to_string(known) + ".");
+  taken() = configuration.participant;
   for (const Configuration::Mesh& m : configuration.meshes)
     if (m.provided) meshes.push_back({m.name, m.dimensions, {}, {}});
   initial_data_due = configuration.writes_initial_data();
@@ -71,15 +89,39 @@ Session::Session(Configuration c, int rank, int size, void* communicator) : conf
 }
 
 Session::~Session() {
-  if (finalised) return;
-  if (!initialised || ongoing)
+  if (!finalised && (!initialised || ongoing) && std::uncaught_exceptions() > 0)
     end_the_job("The participant \"" + configuration.participant + "\" ended before the coupling was over." +
                 (last_error.empty() ? "" : " Before that: " + last_error));
-  leave();
+  if (!finalised) leave();
+  if (job == nullptr) taken().clear();
+}
+
+void Session::join() {
+  job = joined(configuration.participant, processes_ ? &*processes_ : nullptr);
+  int its_rank = 0;
+  MPI_Comm_rank(couplet_comm(job), &its_rank);
+  const int its_size = size_of(couplet_comm(job));
+  if (rank_ != its_rank || size_ != its_size)
+    end_the_job("The participant \"" + configuration.participant + "\" was constructed as process " +
+                std::to_string(rank_) + " of " + std::to_string(size_) + ", but is process " +
+                std::to_string(its_rank) + " of " + std::to_string(its_size) +
+                " of its participant: MPI_COMM_WORLD holds all programs of the job. Take rank and size from "
+                "couplet_precice_comm(\"" +
+                configuration.participant + "\") of couplet_precice.h.");
 }
 
 void Session::leave() {
   finalised = true;
+  const std::string why = "The participant \"" + configuration.participant + "\" ended before ";
+  if (job == nullptr) {  // a coupler would wait for it
+    if (all_processes() > size_) end_the_job(why + "initialize(): the job cannot start without it.");
+    return;
+  }
+  if (ongoing) {
+    couplet_quit(job, (why + "the coupling was over.").c_str());
+    while (couplet_next(job) != COUPLET_END) {
+    }
+  }
   couplet_leave(job);
 }
 
@@ -183,6 +225,7 @@ void Session::keep_sub_step() {
 }
 
 void Session::begin() {
+  join();
   describe();
   samples_.resize(configuration.wires.size());
   std::size_t all = 0;

@@ -34,7 +34,8 @@ using Blend = std::vector<std::pair<double, const double*>>;
 /// Participant between construction and end. Maps its time windows to events of the Couplet client.
 class Session {
  public:
-  Session(Configuration configuration, int rank, int size, void* communicator);
+  /// `processes`: of this participant; nullptr: those that the job gives it.
+  Session(Configuration configuration, int rank, int size, const MPI_Comm* processes);
   ~Session();
   Session(const Session&) = delete;
 
@@ -54,15 +55,17 @@ class Session {
   std::size_t first_vertex(const std::string& mesh) const;
 
   Configuration configuration;
-  couplet_client* job = nullptr;
+  couplet_client* job = nullptr;             ///< from initialize() on
   std::vector<Mesh> meshes;                  ///< provided
   std::vector<std::vector<double>> written;  ///< by datum, on its mesh
   mutable std::string last_error;
   bool initialised = false, finalised = false, ongoing = false, window_complete = false;
+  int profiling_sections = 0;
   bool initial_data_due = false, writing_due = false, reading_due = false;
   double window = 0, at = 0;  ///< length of the window and the time reached in it [s]
 
  private:
+  void join();
   void describe();
   /// Handles other events of the job. Returns false if it is over. Sets `accepted` if a new window begins.
   bool wait_for_window(bool& accepted);
@@ -74,6 +77,8 @@ class Session {
   void keep_sub_step();
   void take_within(const Configuration::Wire& wire, Sample& s, bool constant);
 
+  int rank_, size_;
+  std::optional<MPI_Comm> processes_;
   std::vector<Sample> samples_;  // by wire
   // Share of the window; as `written`.
   std::vector<std::pair<double, std::vector<std::vector<double>>>> sub_steps_;

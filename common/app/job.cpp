@@ -20,6 +20,7 @@
 #include "common/app/loop/step_loop.hpp"
 #include "common/app/watch/watch.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
 #include "common/coupling/wait.hpp"
 #include "common/diagnostics/finding.hpp"
@@ -101,6 +102,7 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
         "The output folder {} is in use by another job that is still running. Wait for it to end, or choose "
         "another folder with --set simulation.output.folder=....",
         job.output_folder.string());
+  base::hold_files();
   log::set_driver(is_driver);
   log::setup(job.name, job.rank, command_line.verbosity, (job.output_folder / (job.name + ".log")).string());
   job.restart_time = std::numeric_limits<double>::quiet_NaN();

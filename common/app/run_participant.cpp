@@ -12,10 +12,12 @@
 #include "common/app/run_report.hpp"
 #include "common/app/use_of_case.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/coupling/serve.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
@@ -66,8 +68,17 @@ class Bookkeeping {
   void received(const coupling::Command& command) {
     since_ = Clock::now();
     processor_since_ = RunReport::processor_seconds();
+    // The first command after the start shows that all participants have accepted the run.
+    if (command.op == coupling::Op::begin_step || command.op == coupling::Op::write_output ||
+        command.op == coupling::Op::finalise)
+      release();
     if (command.op == coupling::Op::begin_step) job_.watch->set_time(command.step.time);
     job_.enter(phase_of(command.op));
+  }
+  /// Until the files are there, an error is one of the start.
+  void release() {
+    job_.watch->enter(Phase::initialise);
+    base::release_files();
   }
   void done(const coupling::Command& command) {
     const double seconds = seconds_since(since_);
@@ -122,6 +133,7 @@ class Observed final : public coupling::Participant {
   }
   void write_output(double time, int number) override {
     inner_.write_output(time, number);
+    const log::ScopedTimer timer(log::timers(), "diagnostics");
     diagnostics_.look();
   }
   void write_monitors(double time) override { inner_.write_monitors(time); }
@@ -140,8 +152,11 @@ struct Closing {
   bool has_failed = false;
 };
 
+/// Rows of the results, so that a run that ends shows them all on a terminal of 24 lines.
+constexpr std::size_t most_results = 14, most_of_participant = 5;
+
 void closing_words(const Job& job, coupling::Participant& participant, diagnostics::Diagnostics& diagnostics,
-                   const Closing& closing, double seconds) {
+                   const Closing& closing, double seconds, double time) {
   std::vector<std::string> sentences = participant.finish();
   for (std::string& line : diagnostics.conclude(closing.has_failed)) sentences.push_back(std::move(line));
   if (closing.has_failed)
@@ -163,6 +178,10 @@ void closing_words(const Job& job, coupling::Participant& participant, diagnosti
   log::info("{}", log::timers().table("time of '" + job.name + "'", seconds));
   log::info("peak memory of '{}': {:.0f} MB on the rank with the most, {:.0f} MB in total", job.name, most,
             all);
+  const bool judges = closing.is_alone && !closing.has_failed;
+  log::info("{}",
+            diagnostics::results_text(job.name, time, closing.is_alone ? most_results : most_of_participant,
+                                      judges ? diagnostics::verdict(errors) : std::vector<std::string>()));
 }
 
 /// Sends commands from the participant's own loop, with the bookkeeping of a coupled run.
@@ -270,7 +289,8 @@ int run_alone(const Job& job, coupling::Participant& participant, const Diagnose
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
-  closing_words(job, participant, diagnostics, {.has_failed = !problem.empty()}, console.seconds());
+  closing_words(job, participant, diagnostics, {.has_failed = !problem.empty()}, console.seconds(),
+                loop.time());
   run.finish(console.seconds(), problem, diagnostics.errors(), diagnostics.position());
   if (job.rank == 0) log::tell_where(job.output_folder.string(), job.name + ".log");
   if (problem.empty()) return 0;
@@ -293,7 +313,7 @@ int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& partici
     books.received(command);
     if (command.op != coupling::Op::finalise) return;
     closing_words(job, participant, diagnostics, {.is_alone = false, .has_failed = !command.folder.empty()},
-                  seconds_since(start));
+                  seconds_since(start), run.time());
     run.finish(seconds_since(start), "", diagnostics.errors(), diagnostics.position());
   };
   observer.last_word = [&] { return diagnostics.errors().text(); };

@@ -12,6 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -60,6 +61,21 @@ std::string json(const std::vector<diagnostics::Coordinate>& position) {
   return "[" + out + (out.empty() ? "]" : "\n  ]");
 }
 
+std::string json(const std::vector<diagnostics::Result>& results) {
+  std::string out;
+  for (const diagnostics::Result& r : results) {
+    std::string values;
+    for (const double v : r.values)
+      values += fmt::format("{}{}", values.empty() ? "" : ", ",
+                            std::isfinite(v) ? fmt::format("{:.9g}", v) : "null");
+    out +=
+        fmt::format("{}\n    {{\"name\": {}, \"values\": [{}], \"unit\": {}, \"error\": {}, \"place\": {}}}",
+                    out.empty() ? "" : ",", quoted(r.name), values, quoted(r.unit),
+                    std::isfinite(r.error) ? fmt::format("{:.6g}", r.error) : "null", quoted(r.place));
+  }
+  return "[" + out + (out.empty() ? "]" : "\n  ]");
+}
+
 }  // namespace
 
 double RunReport::processor_seconds() {
@@ -76,10 +92,13 @@ double RunReport::peak_memory() {
   return 0;
 }
 
-RunReport::RunReport(const Job& job, bool with_steps) : job_(job) {
+RunReport::RunReport(const Job& job, bool with_steps)
+    : job_(job), time_(std::isnan(job.restart_time) ? 0 : job.restart_time) {
   if (job.rank != 0) return;
-  std::error_code ignored;
-  std::filesystem::remove(job.output_folder / summary_file, ignored);
+  base::when_started([file = job.output_folder / summary_file] {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  });
   if (with_steps && job.simulation.output_steps)
     steps_.emplace(
         job.output_folder / "steps.csv",
@@ -103,15 +122,18 @@ void RunReport::finish(double wall, const std::string& problem, const diagnostic
                working = parallel::sum(job_.comm, working_);
   const double most = parallel::max(job_.comm, peak_memory()), all = parallel::sum(job_.comm, peak_memory());
   if (job_.rank != 0) return;
+  const std::vector<diagnostics::NamedErrors> named{{job_.name, errors}};
   const std::string text = fmt::format(
       "{{\n  \"participant\": {},\n  \"version\": {},\n  \"ranks\": {},\n"
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
       "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"processor-working\": "
       "{:.6g},\n  \"memory-most\": {:.6g},\n"
-      "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"atlas\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
+      "  \"memory-all\": {:.6g},\n  \"results\": {},\n  \"error\": {},\n  \"next\": {},\n  \"errors\": {},\n  \"atlas\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
       quoted(job_.name), quoted(version_text()), parallel::comm_size(job_.comm),
       problem.empty() ? "ended" : "failed", quoted(problem), time_, count_, iterations_, wall, cpu, working,
-      most, all, json(errors), json(position), diagnostics::findings_as_json(), phases());
+      most, all, json(diagnostics::results()), quoted(diagnostics::error_summary(named)),
+      quoted(diagnostics::best_change(named)), json(errors), json(position), diagnostics::findings_as_json(),
+      phases());
   base::write_file(job_.output_folder / summary_file, text);
 }
 

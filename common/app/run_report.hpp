@@ -21,7 +21,8 @@ struct Job;
 ///   steps.csv  a row per accepted step: time and dt [s], iterations of linear solvers, estimated time error
 ///              of the step [1], energy [J], seconds; nan if not computed. Disabled by output.steps.
 ///   run.json   at the end: outcome, wall and processor seconds, memory, steps, iterations, phases,
-///              estimated error contributions (null: unknown), position in the atlas, findings with ids.
+///              results (see diagnostics::Result), estimated error contributions (null: unknown), position in
+///              the atlas, findings with ids.
 /// Written by rank 0. A run.json of an earlier run is removed at the start.
 class RunReport {
  public:
@@ -43,6 +44,9 @@ class RunReport {
   void finish(double wall, const std::string& problem, const diagnostics::ErrorParts& errors,
               const std::vector<diagnostics::Coordinate>& position);
 
+  /// End of the last accepted step [s], or the start of the run.
+  double time() const { return time_; }
+
   /// User and system time of this process since it started.
   static double processor_seconds();
   /// Peak memory of this process [MB], or 0 if unknown.
@@ -51,7 +55,7 @@ class RunReport {
  private:
   const Job& job_;
   std::optional<io::Series> steps_;
-  double since_accepted_ = 0, working_ = 0, time_ = 0;
+  double since_accepted_ = 0, working_ = 0, time_;
   long count_ = 0, iterations_ = 0;
 };
 

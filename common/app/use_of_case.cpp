@@ -41,8 +41,11 @@ class UseOfCase final : public diagnostics::Diagnostic {
     const std::map<std::string, Use> all = together();
     const auto energy = all.find("energy");
     const bool is_at_rest = energy != all.end() && energy->second.largest() == 0;
+    const bool acts = std::ranges::any_of(all, [](const auto& entry) {
+      return entry.second.kind == Use::Kind::effect && entry.second.is_used() && entry.second.largest() > 0;
+    });
     for (const auto& [name, use] : all) {
-      if (use.is_used()) judge(report, name, use);
+      if (use.is_used() && !(acts && use.kind == Use::Kind::energy)) judge(report, name, use);
       // A part that never acted is then the reason.
       if (is_at_rest && use.kind == Use::Kind::effect && !report.findings.empty() &&
           report.findings.back().id == "given-without-effect")
@@ -122,6 +125,10 @@ class UseOfCase final : public diagnostics::Diagnostic {
               fmt::format(
                   "{}: it covers {:g} to {:g}, but was only read from {:g} to {:g}, where its end value holds",
                   name, use.from, use.to, use.lowest, use.highest));
+        else if (is_left)
+          report.sentences.push_back(fmt::format(
+              "{}: it covers {:g} to {:g} and was read from {:g} to {:g}; beyond its ends its end values held.",
+              name, use.from, use.to, use.lowest, use.highest));
         break;
       case Use::Kind::property:
         if (is_left)

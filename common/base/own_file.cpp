@@ -8,6 +8,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/base/error.hpp"
 
@@ -34,10 +37,26 @@ void flush(int file, const std::filesystem::path& name) {
   expect(::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP, name);
 }
 
+bool holding = false;
+std::vector<std::function<void()>> held;
+
 }  // namespace
+
+void hold_files() { holding = true; }
+
+void release_files() {
+  holding = false;
+  for (const auto& write : std::exchange(held, {})) write();
+}
+
+void when_started(std::function<void()> write) {
+  if (!holding) return write();
+  held.push_back(std::move(write));
+}
 
 void write_file(const std::filesystem::path& file, std::string_view text, bool durable) {
   const std::filesystem::path part = own_file(file).string() + "~";
+  if (holding) return when_started([=, whole = std::string(text)] { write_file(file, whole, durable); });
   const int out = ::open(own_file(part).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   expect(out >= 0, file);
   while (!text.empty()) {

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -77,7 +76,8 @@ Unit symbol_unit(std::string_view name) {
         unit.factor *= prefix.factor;
         return unit;
       }
-  const auto meant = closest(name, usual_names());
+  const bool is_celsius = name == "C" || name == "°C" || name == "Celsius" || name == "celsius";
+  const auto meant = is_celsius ? std::optional<std::string>("degC") : closest(name, usual_names());
   throw Error("unknown unit '{}'.{}", name, meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
 }
 

@@ -377,12 +377,12 @@ std::string format_value(const Slot& slot, std::string_view unit) {
 }
 
 std::string doubt_of_wave_speed(double modulus, double density) {
-  constexpr double slowest = 0.999, fastest = 20e3;  // [m/s]
+  constexpr double slowest = 0.2, fastest = 20e3;  // [m/s]; a gel of 100 Pa has 0.3, steel without GPa 0.16
   if (!(modulus > 0) || !(density > 0)) return "";
   const double speed = std::sqrt(modulus / density);
   if (speed >= slowest && speed <= fastest) return "";
   return fmt::format(
-      "waves would travel at {:.3g} m/s (usual: 1 to 20000 m/s): implausible; check the units of the modulus ({:g} Pa) and of the "
+      "waves would travel at {:.3g} m/s (usual: 0.2 to 20000 m/s): implausible; check the units of the modulus ({:g} Pa) and of the "
       "density ({:g} kg/m^3).",
       speed, modulus, density);
 }

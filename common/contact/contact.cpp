@@ -43,7 +43,6 @@ void declare(config::Section& s, ContactParameters& c, const char* default_direc
           "conserving: a bounce conserves the energy to rounding, with the trapezoidal time scheme only; "
           "midpoint: the force where the scheme has equilibrium, with any scheme");
   const auto problem = [](const config::ExpressionText& text) -> std::string {
-    if (std::string wrong = fv::problem_of(text); !wrong.empty()) return wrong;
     return fv::Expression(text).uses_time() ? "the seat is at rest: use an expression of x, y, z, without t"
                                             : "";
   };

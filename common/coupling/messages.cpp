@@ -145,7 +145,7 @@ void take_out_within(std::vector<Interface::Datum>& takes, Surfaces& surfaces) {
 Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   Unpacker in(bytes, reply_mark, "reply");
   Reply r;
-  r.status = Reply::Status(in.integer(0, 2, "the status"));
+  r.status = Reply::Status(in.integer(0, 3, "the status"));
   r.text = in.text();
   r.seconds = in.real();
   r.suggested_dt = in.real();

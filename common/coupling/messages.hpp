@@ -93,6 +93,7 @@ struct Reply {
     ok = 0,
     failure = 1,   ///< the step could not be solved (`text` states why); state n is unchanged
     hopeless = 2,  ///< as `failure`, and a smaller step would not help
+    left = 3,      ///< the program has left the coupling before its end
   };
   Status status = Status::ok;
   std::string text;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 
 #include "common/log/progress.hpp"
@@ -18,18 +17,6 @@ using base::Severity;
 
 /// Returns true if a exceeds its limit by more than b. NaN counts as largest.
 bool exceeds(const Finding& a, const Finding& b) { return !(a.number / a.limit <= b.number / b.limit); }
-
-/// Adds the time until the end of the scope to the timers of the run.
-class Timed {
- public:
-  ~Timed() {
-    log::timers().add("diagnostics",
-                      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 
@@ -52,7 +39,7 @@ void Diagnostics::take(Report& report) {
 }
 
 void Diagnostics::accepted(double time) {
-  const Timed timed;
+  const log::ScopedTimer timer(log::timers(), "diagnostics");
   ++steps_;
   time_ = time;
   Report report;
@@ -69,7 +56,7 @@ void Diagnostics::look() {
 }
 
 std::vector<std::string> Diagnostics::conclude(bool failed) {
-  const Timed timed;
+  const log::ScopedTimer timer(log::timers(), "diagnostics");
   look();
   concluding_ = true;
   Report report;
@@ -115,17 +102,17 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
     else if (!f.id.empty() && f.id.back() != '-')
       f.id += '-';
   }
-  const bool is_sound = e.number <= e.limit || e.saves > 0;
+  const bool is_sound = e.number <= e.limit || e.is_spare;
   f.severity = is_sound ? Severity::note : e.number < e.wrong_from ? Severity::warning : Severity::wrong;
   f.effect = fmt::format("{}{}", e.effect, e.left_out ? " neglected" : "");
   f.share = e.share;
-  if (e.saves > 0) {
-    if (!(e.number <= e.limit)) return {};
+  if (e.is_spare && e.number <= e.limit && e.saves > 0) {
     f.saves = e.saves;
     f.sentence = fmt::format("{} ({}; limit {:.2g})", e.effect, e.what, e.limit);
     return f;
   }
-  const char* word = is_sound                        ? (e.left_out ? "justified" : "adequate")
+  const char* word = e.is_spare                      ? (e.number <= e.limit ? "could be left out" : "needed")
+                     : is_sound                      ? (e.left_out ? "justified" : "adequate")
                      : f.severity == Severity::wrong ? "wrong"
                      : e.left_out                    ? "not justified"
                                                      : "questionable";

@@ -140,7 +140,9 @@ struct EffectFinding {
   /// Value from which the result is useless.
   double wrong_from = std::numeric_limits<double>::infinity();
   double share = std::numeric_limits<double>::quiet_NaN();  ///< see Finding
-  double saves = 0;                                         ///< see Finding
+  /// True if the scene includes the effect, and up to the limit could leave it out.
+  bool is_spare = false;
+  double saves = 0;  ///< see Finding
 };
 std::optional<Finding> finding_of(const EffectFinding& effect);
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/results.hpp"
 
 namespace couplet::diagnostics {
 namespace {
@@ -150,6 +151,30 @@ double total_error(const std::vector<NamedErrors>& participants) {
   for (const Part& p : largest_parts(participants))
     if (!p.is(&ErrorParts::model)) total += p.value;
   return total;
+}
+
+namespace {
+
+/// Largest known contribution that is not of the model and not 0.
+std::optional<Part> worst_part(const std::vector<NamedErrors>& participants) {
+  std::optional<Part> worst;
+  for (const Part& p : largest_parts(participants))
+    if (!p.is(&ErrorParts::model) && p.value > (worst ? worst->value : 0)) worst = p;
+  return worst;
+}
+
+}  // namespace
+
+std::string error_summary(const std::vector<NamedErrors>& participants) {
+  const auto worst = worst_part(participants);
+  if (!worst) return "the error is not estimated";
+  return fmt::format("estimated error {:.2g} % of the solution, mostly {}", 100 * total_error(participants),
+                     worst->kind->words);
+}
+
+std::string best_change(const std::vector<NamedErrors>& participants) {
+  const auto worst = worst_part(participants);
+  return worst ? cure(*worst) : "";
 }
 
 std::optional<Finding> worthless(const std::vector<NamedErrors>& participants) {

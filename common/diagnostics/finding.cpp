@@ -26,6 +26,8 @@ constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::
 #define LOOK(name, function)
 #define DIAGNOSTIC(name, make)
 #define ESTIMATE(name, make)
+#define MADE(name, made)
+#define HEAT(name, make)
 #define FINDING(about, id, meaning) FindingId{about, id, meaning},
 constexpr FindingId ids[] = {
 #include "common/diagnostics/table.def"
@@ -38,6 +40,8 @@ constexpr FindingId ids[] = {
 #undef LOOK
 #undef DIAGNOSTIC
 #undef ESTIMATE
+#undef MADE
+#undef HEAT
 #undef FINDING
 
 std::string quoted(const std::string& text) {

@@ -32,7 +32,7 @@ enum class ElasticPart { stiffness, springs, mass };
 
 /// External loads on a body in the form the kernels use.
 struct ElasticLoads {
-  std::vector<double> faces;     ///< `dim` values per boundary face of owned cells [N], or empty
+  std::vector<double> faces;     ///< see ElasticKernel::add_face_forces(), or empty
   std::vector<double> cells;     ///< `dim` values per owned cell [N], or empty
   std::vector<double> pressure;  ///< of thermal strain, per local face [Pa], or empty
 };
@@ -75,8 +75,9 @@ class ElasticKernel {
   /// The following functions add loads to the right-hand side, by the test functions of the kernel.
   /// Collective.
   ///
-  /// Adds known forces [N] on boundary faces of owned cells, `dim` values per face. Returns the sum that this
-  /// rank added.
+  /// Adds known forces [N] on boundary faces of owned cells, `dim` values per face. Forces that vary within faces
+  /// have `dim` more values for each of 2 (2-D) or 4 corners of each face, after those of all faces: the difference
+  /// between the corner's part and that of an even force. Returns the sum that this rank added.
   Vec3 add_face_forces(std::span<const double> forces, std::span<double> rhs) const;
   /// Adds forces [N] on owned cells, `dim` values each.
   void add_cell_forces(std::span<const double> forces, std::span<double> rhs) const;

@@ -29,19 +29,6 @@ double value_in_table(void* data, double at) {
   return (*table)(at);
 }
 
-/// Plain numbers in a text, such as the ends of a pulse in "t > 0.1021 && t < 0.1023".
-std::vector<double> numbers_in(std::string_view text) {
-  std::vector<double> numbers;
-  const auto in_number = [&](std::size_t i) {
-    return std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '.' || text[i] == '_';
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (!in_number(i) || (i > 0 && in_number(i - 1))) continue;
-    if (const auto quantity = base::split_quantity(text.substr(i))) numbers.push_back(quantity->number);
-  }
-  return numbers;
-}
-
 /// Rejects what muParser reads in another way than a reader of the docs: a comma outside the arguments of a
 /// function (1,5 is 5), an assignment, and comparisons in a row (0 < x < 1 compares 0 or 1 with 1).
 void refuse_other_meanings(const std::string& text) {

@@ -46,21 +46,31 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
                             : base::did_you_mean(column, names, "columns"));
 }
 
-/// Throws Error if a name ends with round brackets that may hold a unit: a known one as in "p(Pa)", or one word
-/// after a blank as in "p (psi)". It would be ignored.
-void check_brackets(const csv::CsvReader& rows, const std::string& name) {
-  const std::size_t open = name.rfind('(');
-  if (!name.ends_with(')') || open == std::string::npos) return;
-  const std::string unit(base::trim(std::string_view(name).substr(open + 1, name.size() - open - 2)));
-  const bool is_word = open > 0 && name[open - 1] == ' ' && unit.find(' ') == std::string::npos;
-  try {
-    if (!is_word) base::parse_unit(unit);
-  } catch (const Error&) {
-    return;  // e.g. y(x)
+/// Throws Error if a name has its unit where it is not read: in round brackets, a known one as in "p(Pa)" or one
+/// word after a blank as in "p (psi)", or behind a line as in "p_kPa".
+void check_place_of_unit(const csv::CsvReader& rows, const std::string& name) {
+  const auto known = [](std::string_view text) -> std::optional<base::Unit> {
+    try {
+      return base::parse_unit(text);
+    } catch (const Error&) {
+      return std::nullopt;
+    }
+  };
+  const std::size_t open = name.rfind('('), line = name.rfind('_');
+  if (name.ends_with(')') && open != std::string::npos) {
+    const std::string unit(base::trim(std::string_view(name).substr(open + 1, name.size() - open - 2)));
+    const bool is_word = open > 0 && name[open - 1] == ' ' && unit.find(' ') == std::string::npos;
+    if (!unit.empty() && !csv::number_of(unit) && (is_word || known(unit)))
+      throw Error("{}: '{}' has its unit in round brackets, where it is not read. Write '{}[{}]'.",
+                  rows.place_of_names(), name, name.substr(0, open), unit);
+  } else if (line != std::string::npos && name.size() > line + 2) {
+    // A single letter, as in t_h, may be an index, and min a minimum.
+    const std::string unit = name.substr(line + 1);
+    const auto is = unit == "min" ? std::nullopt : known(unit);
+    if (is && !is->is_number() && (is->factor != 1 || is->offset != 0))
+      throw Error("{}: '{}' ends with a unit, which is not read there. Write '{}[{}]', or another name.",
+                  rows.place_of_names(), name, name.substr(0, line), unit);
   }
-  if (!unit.empty() && !csv::number_of(unit))
-    throw Error("{}: '{}' has its unit in round brackets, where it is not read. Write '{}[{}]'.",
-                rows.place_of_names(), name, name.substr(0, open), unit);
 }
 
 }  // namespace
@@ -126,7 +136,7 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
     if (!wanted) {
       wanted = find_column(file, names, column, rows.cells().size());
       for (const std::size_t i : {std::size_t(0), *wanted})
-        if (i < names.size()) check_brackets(rows, names[i]);
+        if (i < names.size()) check_place_of_unit(rows, names[i]);
     }
     at.push_back(rows.number(0, names.empty() ? "the point in column 1" : names[0]));
     values.push_back(rows.number(

@@ -59,10 +59,14 @@ struct TextProblem {
   bool is_sentence = false;  ///< the message is complete, because the table is wrong and not the text
 };
 
+/// Plain numbers in a text, such as the ends of a pulse in "t > 0.1021 && t < 0.1023". As factors, those that
+/// divide are inverted.
+std::vector<double> numbers_in(std::string_view text, bool as_factors = false);
+
 /// Replaces the calls table(variable, [clamp|error,] x0, y0, x1, y1, ...) and table(variable, [clamp|error,]
 /// "file.csv"[, column]) by tabNN(variable), padded with blanks to keep positions. Appends table number NN to
-/// `tables`. Throws TextProblem, also if the unit in a file's header does not match, of the values that of the
-/// key (if known).
+/// `tables`. Throws TextProblem, also if the unit in a file's header is not read: values are in the unit of the
+/// key, or scaled in the text.
 std::string take_tables(const std::string& text, std::deque<Table>& tables, std::string_view unit);
 
 /// Material property: a number, or a table of the temperature T: "table(T, 300, 210e9, 600, 180e9)".

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <map>
-#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
@@ -100,43 +101,73 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   }
 }
 
-/// Returns true if numbers under this heading are in `unit`, or if the heading has no unit. One that is not
-/// known ("psi") is another. An empty `unit` means any in SI.
-bool is_in_unit(const std::string& heading, std::string_view unit) {
+/// Numbers that multiply the call in text[begin, close]: those of its term.
+std::vector<double> factors_of(const std::string& text, std::size_t begin, std::size_t close) {
+  const auto ends_term = [&](std::size_t i) {
+    const bool in_number = i > 1 && std::tolower(text[i - 1]) == 'e' && !std::isalpha(text[i - 2]);
+    return std::string_view("+-,?:<>=&|").find(text[i]) != std::string_view::npos && !in_number;
+  };
+  std::size_t first = begin, last = close + 1;
+  while (first > 0 && !ends_term(first - 1)) --first;
+  while (last < text.size() && !ends_term(last)) ++last;
+  return numbers_in(text.substr(first, begin - first) + " " + text.substr(close + 1, last - close - 1), true);
+}
+
+/// Returns true if numbers under this heading are in `unit` (empty: any in SI), if the heading has no unit, or
+/// if one of `factors` converts it, as 1e5 does bar. A unit that is not known ("psi") is another.
+bool is_in_unit(const std::string& heading, std::string_view unit, const std::vector<double>& factors) {
   if (heading.empty() || heading == "-" || heading == unit) return true;
   try {
     const base::Unit given = unit.empty() ? base::parse_unit(heading) : base::parse_unit(heading, unit);
-    return given.factor == (unit.empty() ? 1 : base::parse_unit(unit).factor) && given.offset == 0;
+    const double factor = given.factor / (unit.empty() ? 1 : base::parse_unit(unit).factor);
+    const auto is_near = [&](double f) { return std::abs(f / factor - 1) < 1e-3; };
+    return given.offset == 0 && (factor == 1 || std::ranges::any_of(factors, is_near));
   } catch (const Error&) {
     return false;
   }
 }
 
-/// Rejects a header in another unit. The numbers of a file are used unchanged, so they must be in SI if the
-/// variable is bare, and in the unit of the key if the table is the whole value.
-void check_units(const Table& table, const std::string& variable, std::optional<std::string_view> unit,
-                 std::size_t at) {
+/// Rejects a header in another unit. The numbers of a file are used unchanged, so they must be in SI, in the
+/// unit of the key if the table is the whole value, or be scaled beside the table or its variable.
+void check_units(const Table& table, const std::string& variable, std::string_view unit,
+                 const std::vector<double>& factors, std::size_t at) {
   static const std::map<std::string, std::string> unit_of_variable{
       {"x", "m"}, {"y", "m"}, {"z", "m"}, {"sqrt(x^2 + y^2)", "m"}, {"t", "s"}, {"T", "K"}};
   const auto known = unit_of_variable.find(variable);
-  if (known != unit_of_variable.end() && !is_in_unit(table.units().axis, known->second))
+  const std::string of_variable = known == unit_of_variable.end() ? "" : known->second;
+  std::vector<double> inverse = numbers_in(variable, true);
+  for (double& factor : inverse) factor = 1 / factor;
+  if (!is_in_unit(table.units().axis, of_variable, inverse))
     throw TextProblem{
         at,
         fmt::format(
             "{}: the first column is in '{}', but '{}' is in {}. Convert the column, or write the variable "
             "in its unit, such as table(t/3600, \"file.csv\") for hours.",
-            table.where(), table.units().axis, variable, known->second),
+            table.where(), table.units().axis, variable, of_variable.empty() ? "SI units" : of_variable),
         true};
-  if (unit && !is_in_unit(table.units().value, *unit))
+  if (!is_in_unit(table.units().value, unit, factors))
     throw TextProblem{
         at,
         fmt::format("{}: the values are in '{}', but a table's values are taken in {}. Convert "
                     "the column, or scale it, such as \"1e5*table(t, \\\"file.csv\\\")\" for bar.",
-                    table.where(), table.units().value, unit->empty() ? "SI units" : *unit),
+                    table.where(), table.units().value, unit.empty() ? "SI units" : unit),
         true};
 }
 
 }  // namespace
+
+std::vector<double> numbers_in(std::string_view text, bool as_factors) {
+  std::vector<double> numbers;
+  const auto in_number = [&](std::size_t i) { return in_word(text[i]) || text[i] == '.'; };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!in_number(i) || (i > 0 && in_number(i - 1))) continue;
+    const bool divides =
+        as_factors && text.substr(0, text.find_last_not_of(' ', i == 0 ? 0 : i - 1) + 1).ends_with('/');
+    if (const auto quantity = base::split_quantity(text.substr(i)))
+      numbers.push_back(divides ? 1 / quantity->number : quantity->number);
+  }
+  return numbers;
+}
 
 std::string take_tables(const std::string& text, std::deque<Table>& tables, std::string_view unit) {
   std::string rest = text;
@@ -148,7 +179,8 @@ std::string take_tables(const std::string& text, std::deque<Table>& tables, std:
     std::string call = fmt::format("tab{:02}({}", tables.size() - 1, arguments[0].text);
     call.resize(close - begin, ' ');
     const bool is_whole_value = rest.find_first_not_of(" (") == begin && rest.find_last_not_of(" )") < close;
-    check_units(tables.back(), arguments[0].text, is_whole_value ? std::optional(unit) : std::nullopt, begin);
+    check_units(tables.back(), arguments[0].text, is_whole_value ? unit : "", factors_of(rest, begin, close),
+                begin);
     rest.replace(begin, close - begin, call);
   }
   return rest;

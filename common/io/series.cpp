@@ -12,6 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/csv/csv_reader.hpp"
+#include "common/diagnostics/results.hpp"
 
 namespace couplet::io {
 namespace {
@@ -57,7 +58,9 @@ void copy_rows(csv::LineReader& old, std::size_t n_columns, double restart_time,
 
 Series::Series(const std::filesystem::path& file, const std::vector<std::string>& columns,
                double restart_time)
-    : n_columns_(columns.size()) {
+    : name_(file),
+      last_(diagnostics::results_of_table(file.stem().string(), columns)),
+      n_columns_(columns.size()) {
   for (const std::string& name : columns)
     if (name.find_first_of(",\"") != std::string::npos)
       throw Error(
@@ -71,18 +74,17 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   if (const auto old = std::isnan(restart_time) ? nullptr : rows_of(file, head))
     copy_rows(*old, n_columns_, restart_time, text);
   base::write_file(file, text.view());
-  file_.open(file, std::ios::app);
-  if (!file_)
-    throw Error("Cannot write the series '{}'. Does the folder exist, with write permission?", file.string());
 }
 
 void Series::row(std::span<const double> values) {
   if (values.size() != n_columns_)
     throw Error("A series row has {} values, but its header has {} columns.", values.size(), n_columns_);
+  if (last_) last_->assign(values.begin(), values.end());
+  if (!file_.is_open()) file_.open(name_, std::ios::app);
   // The default format is the shortest text that restores the same number.
   file_ << fmt::format("{}\n", fmt::join(values, ","));
   file_.flush();
-  if (!file_) throw Error("Cannot write a series row. Is the disk full?");
+  if (!file_) throw Error("Cannot write a row of '{}'. Is the disk full?", name_.string());
 }
 
 }  // namespace couplet::io

@@ -11,7 +11,7 @@
 namespace couplet::io {
 
 /// CSV time series: first line "time [s],name [unit],...", then one line per row, flushed after each. Create
-/// it on one rank. `columns` includes the time: {"time [s]", "tip x [m]"}. A row has as many values. On
+/// it on one rank; the file is opened for the first row. `columns` includes the time: {"time [s]", "tip x [m]"}. A row has as many values. On
 /// restart rows later than `restart_time` are dropped.
 class Series {
  public:
@@ -20,6 +20,8 @@ class Series {
   void row(std::span<const double> values);
 
  private:
+  std::filesystem::path name_;
+  std::vector<double>* last_;  // row at the end, if the results of the run show it
   std::ofstream file_;
   std::size_t n_columns_;
 };

@@ -2,7 +2,6 @@
 // Aggregates, prolongation and Galerkin products of a multigrid hierarchy.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "common/linalg/component_multigrid.hpp"
 #include "common/parallel/collective.hpp"

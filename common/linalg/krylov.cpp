@@ -2,7 +2,6 @@
 #include "common/linalg/krylov.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>

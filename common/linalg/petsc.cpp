@@ -14,10 +14,12 @@ namespace couplet::linalg {
 
 // PETSc installs no signal handlers. It starts while the program runs, so removing them later
 // (PetscPopSignalHandler) would also remove the program's own, which save the state on a stop. Errors become
-// exceptions (petsc_check()); PETSc prints nothing.
+// exceptions (petsc_check()); PETSc prints nothing. It does not read .petscrc, which may lie beside a case from
+// elsewhere and start a debugger.
 PetscEnvironment::PetscEnvironment(MPI_Comm program) {
   PETSC_COMM_WORLD = program;
   PetscErrorCode code = PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
+  if (code == 0) code = PetscOptionsSetValue(nullptr, "-skip_petscrc", "true");
   if (code == 0) code = PetscInitializeNoArguments();
   if (code == 0) code = PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
   if (code != 0) throw Error("PETSc could not be initialised.");

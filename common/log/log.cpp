@@ -2,10 +2,13 @@
 #include "common/log/log.hpp"
 
 #include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
+#include <fstream>
 #include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -21,6 +24,33 @@ class BelowError final : public spdlog::sinks::stdout_sink_mt {
   void log(const spdlog::details::log_msg& message) override {
     if (message.level < spdlog::level::err) spdlog::sinks::stdout_sink_mt::log(message);
   }
+};
+
+/// Appends to a file, from when files are no longer held (see base::hold_files).
+class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  explicit LogFile(std::string name) : name_(std::move(name)) {}
+  void open() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    file_.open(name_, std::ios::app);
+    if (!(file_ << text_ << std::flush))
+      throw Error("The log file '{}' cannot be written. Check the output folder and its permissions.", name_);
+    text_.clear();
+  }
+
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t text;
+    formatter_->format(message, text);
+    if (file_.is_open())
+      file_.write(text.data(), std::streamsize(text.size()));
+    else
+      text_.append(text.data(), text.size());
+  }
+  void flush_() override { file_.flush(); }
+
+  std::string name_, text_;
+  std::ofstream file_;
 };
 
 /// Adds "warning: " or "error: " before the message.
@@ -52,13 +82,9 @@ void setup(const std::string& participant, int rank, Verbosity verbosity, const 
   sinks.push_back(std::make_shared<spdlog::sinks::stderr_sink_mt>());
   sinks.back()->set_level(spdlog::level::err);
   if (!file.empty() && rank == 0) {
-    try {
-      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(base::own_file(file).string()));
-    } catch (const spdlog::spdlog_ex&) {
-      throw Error(
-          "The log file '{}' cannot be opened for writing. Check the output folder and its permissions.",
-          file);
-    }
+    const auto log_file = std::make_shared<LogFile>(base::own_file(file).string());
+    sinks.push_back(log_file);
+    base::when_started([log_file] { log_file->open(); });
   }
   const auto logger = std::make_shared<spdlog::logger>(participant, sinks.begin(), sinks.end());
   auto formatter = std::make_unique<spdlog::pattern_formatter>();

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/sinks/base_sink.h>
+#include <spdlog/spdlog.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -15,7 +16,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <iterator>
 #include <mutex>
 #include <string_view>
 #include <utility>
@@ -25,7 +25,7 @@ namespace couplet::log {
 
 namespace {
 
-constexpr int most_at_start = 9, most_of_several = 5, most_later = 7, most_rows = 4, widest = 100;
+constexpr int most_at_start = 9, most_of_several = 5, widest = 100;
 
 int screen_descriptor = STDOUT_FILENO;  // of the terminal that determines the width
 bool drives = false;                    // this program drives the steps of its job
@@ -101,25 +101,17 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
       return above(is_shared_ ? fmt::format("[{}] warning: {}", name, text)
                               : fmt::format("warning: {}", text));
     }
+    if (text.starts_with("Results of ")) {
+      clear();
+      return fmt::print("{}\n", text);
+    }
     if (!is_driver_) {  // prints one line, since another program has the status line
       if (told_++ == 0) print(shortened(text));
       return;
     }
     if (text.starts_with("t=")) return renew(text);
-    if (!steps_) {
-      if (told_++ < (is_shared_ ? most_of_several : most_at_start))
-        print(shortened(text.substr(0, text.find("; neglected: "))));
-    } else if (text.find('\n') != text.npos) {
-      table(text);
-    } else if (text.starts_with("estimated error") || text.find(" dominates: ") != text.npos ||
-               text.starts_with("could be omitted")) {
-      above(text);
-    } else if (text.starts_with("peak memory") ||
-               (!text.starts_with("t = ") && !text.ends_with(": justified") &&
-                !text.ends_with(": adequate") && told_++ < most_later)) {
-      print(shortened(text));
-      fmt::print("{}", shortened(status_));
-    }
+    if (!steps_ && told_++ < (is_shared_ ? most_of_several : most_at_start))
+      print(shortened(text.substr(0, text.find("; neglected: "))));
   }
   void flush_() override { std::fflush(stdout); }
 
@@ -181,18 +173,6 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
     }
     if (!status_.empty()) fmt::print("{}", shortened(status_));
   }
-  /// Prints the head, the largest rows and the sum.
-  void table(std::string_view text) {
-    clear();
-    while (text.ends_with('\n')) text.remove_suffix(1);
-    for (int row = 0; !text.empty(); ++row) {
-      const std::size_t n = std::min(text.find('\n'), text.size());
-      const bool is_last = n == text.size();
-      if (row <= most_rows || is_last) print(shortened(text.substr(0, n)));
-      text.remove_prefix(is_last ? n : n + 1);
-    }
-  }
-
   std::string status_;
   bool is_shared_, is_driver_;
   int told_ = 0;

@@ -16,7 +16,7 @@ enum class Screen { none, own, shared };
 Screen screen();
 
 /// Sink for terminals. It prints at most ten lines at the start, then a status line with findings above it,
-/// and finally results and costs. The log file holds the rest. Lines have at most 100 columns. On a shared
+/// and finally the results. The log file holds the rest. Lines have at most 100 columns. On a shared
 /// terminal only the program that drives the steps has the status line. The others print one line at their
 /// start and their warnings.
 spdlog::sink_ptr terminal_sink(Screen screen, bool is_first_rank);

@@ -2,7 +2,6 @@
 #include "common/mesh/entries.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "common/base/error.hpp"
 #include "common/mesh/topology.hpp"

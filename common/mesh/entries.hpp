@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "common/mesh/mesh.hpp"
 #include "common/parallel/index_map.hpp"

@@ -2,7 +2,6 @@
 #include "common/mesh/partition.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <numeric>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -18,11 +19,14 @@ namespace {
 /// Largest distance of faces or points that coincide, relative to the size of a face.
 constexpr double touching = 1e-4;
 /// Largest cosine of the angle between the outer normals of faces that lie on each other.
-constexpr double opposite = -0.99;
+constexpr double opposite = -0.95;
+/// Least cosine of the angle between neighboring faces of one curved surface; beyond it they meet at an edge.
+constexpr double smooth = 0.85;
 
 struct BoundaryFace {
   Vec3 centre, normal;
   double reach;  ///< radius of a circle about the center that lies within the face [m]
+  double bulge;  ///< height of the curved surface above the face [m]
   int patch;
 };
 
@@ -31,6 +35,9 @@ std::vector<BoundaryFace> boundary_faces(const Mesh& mesh, const Geometry& geome
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     const Patch& patch = mesh.patches[p];
     if (patch.bonded) continue;
+    std::map<Index, std::vector<Vec3>> normals;  // of the faces at a point
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      for (const Index v : mesh.face_points[f]) normals[v].push_back(geometry.face_area[f].normalized());
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const auto points = mesh.face_points[f];
       const Vec3& centre = geometry.face_centre[f];
@@ -40,7 +47,13 @@ std::vector<BoundaryFace> boundary_faces(const Mesh& mesh, const Geometry& geome
         reach = std::min(
             reach, mesh.dim == 2 ? 0.5 * (b - a).norm() : base::nearest_on_segment(a, b, centre).distance);
       }
-      faces.push_back({centre, geometry.face_area[f].normalized(), reach, static_cast<int>(p)});
+      const Vec3 normal = geometry.face_area[f].normalized();
+      double cosine = 1;
+      for (const Index v : points)
+        for (const Vec3& other : normals[v])
+          if (const double c = normal.dot(other); c > smooth) cosine = std::min(cosine, c);
+      // A chord of length l that turns by an angle a from one to the next is a l/8 below its arc.
+      faces.push_back({centre, normal, reach, reach * std::acos(cosine) / 4, static_cast<int>(p)});
     }
   }
   return faces;
@@ -109,8 +122,8 @@ std::vector<TouchingFaces> find_touching_faces(const Mesh& mesh, const Geometry&
     for (const Index j : tree.within(own[i].centre, own[i].reach)) {
       const BoundaryFace &face = own[i], &other = all[std::size_t(j)];
       const Vec3 away = other.centre - face.centre;
-      if (face.normal.dot(other.normal) > opposite || std::abs(face.normal.dot(away)) > touching * face.reach)
-        continue;
+      const double most = touching * face.reach + 1.1 * std::max(face.bulge, other.bulge);
+      if (face.normal.dot(other.normal) > opposite || std::abs(face.normal.dot(away)) > most) continue;
       const bool alike = away.norm() <= touching * face.reach;
       const Index here = first + Index(i);
       found.push_back({face.patch, other.patch, alike, here});

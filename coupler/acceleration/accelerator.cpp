@@ -56,9 +56,7 @@ std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& para
     case AccelerationParameters::Type::aitken:
       return std::make_unique<AitkenRelaxation>(parameters, comm);
     case AccelerationParameters::Type::iqn_ils:
-      return std::make_unique<LeastSquaresNewton>(parameters, comm);
-    case AccelerationParameters::Type::iqn_mvj:
-      return std::make_unique<MultiVectorNewton>(parameters, comm);
+      return std::make_unique<QuasiNewton>(parameters, comm);
   }
   return nullptr;
 }

@@ -50,23 +50,6 @@ void take_away(double t, const double* q, double* v, std::size_t count) {
 
 }  // namespace
 
-Eigen::VectorXd GrowingQr::along(std::span<const double> r) const {
-  Eigen::VectorXd t = Eigen::VectorXd::Zero(columns());
-  for_blocks(r.size(), [&](std::size_t first, std::size_t count) {
-    for (int j = 0; j < columns(); ++j)
-      t[j] += dot({q_[std::size_t(j)].data() + first, count}, r.subspan(first, count));
-  });
-  sum_over(comm_, {t.data(), std::size_t(t.size())});
-  return t;
-}
-
-void GrowingQr::subtract(const Eigen::VectorXd& t, std::span<double> r) const {
-  for_blocks(r.size(), [&](std::size_t first, std::size_t count) {
-    for (int j = 0; j < columns(); ++j)
-      take_away(t[j], q_[std::size_t(j)].data() + first, r.data() + first, count);
-  });
-}
-
 void GrowingQr::push_front(std::vector<double> v) {
   const int m = columns();
   // First sweep: t = Q^T v. Its last entry |v|^2 is the scale of round-off.
@@ -120,11 +103,6 @@ void GrowingQr::erase(int column) {
   q_.pop_back();
 }
 
-void GrowingQr::clear() {
-  q_.clear();
-  r_.resize(0, 0);
-}
-
 std::vector<int> GrowingQr::drop(double limit) {
   std::vector<int> dropped;
   for (int j = 0; j < columns();) {
@@ -139,11 +117,15 @@ std::vector<int> GrowingQr::drop(double limit) {
   return dropped;
 }
 
-Eigen::VectorXd GrowingQr::back_substitute(const Eigen::VectorXd& t) const {
-  return r_.triangularView<Eigen::Upper>().solve(t);
+Eigen::VectorXd GrowingQr::minimise(std::span<const double> r) const {
+  Eigen::VectorXd t = Eigen::VectorXd::Zero(columns());  // Q^T r
+  for_blocks(r.size(), [&](std::size_t first, std::size_t count) {
+    for (int j = 0; j < columns(); ++j)
+      t[j] += dot({q_[std::size_t(j)].data() + first, count}, r.subspan(first, count));
+  });
+  sum_over(comm_, {t.data(), std::size_t(t.size())});
+  return -r_.triangularView<Eigen::Upper>().solve(t);
 }
-
-Eigen::VectorXd GrowingQr::minimise(std::span<const double> r) const { return -back_substitute(along(r)); }
 
 void GrowingQr::save(io::CheckpointWriter& file, const std::string& name,
                      const parallel::GlobalOrder& order) const {

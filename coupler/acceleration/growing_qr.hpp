@@ -29,16 +29,11 @@ class GrowingQr {
   /// the next use.
   void push_front(std::vector<double> v);
   void erase(int column);
-  void clear();
   /// Erases, front to back, each column with |R_jj| < limit |a_j|, nearly dependent on those before it
   /// ("QR2"). Returns their positions in the order of removal.
   std::vector<int> drop(double limit);
   /// Returns c that minimizes |r + A c|.
   Eigen::VectorXd minimise(std::span<const double> r) const;
-  /// along() returns Q^T r over all ranks; subtract() computes r -= Q t.
-  Eigen::VectorXd along(std::span<const double> r) const;
-  void subtract(const Eigen::VectorXd& t, std::span<double> r) const;
-  Eigen::VectorXd back_substitute(const Eigen::VectorXd& t) const;
 
   void save(io::CheckpointWriter& file, const std::string& name, const parallel::GlobalOrder& order) const;
   void load(io::CheckpointReader& file, const std::string& name, const parallel::GlobalOrder& order);

@@ -32,46 +32,8 @@ void add_to(std::vector<double>& y, const Eigen::VectorXd& c, Column column) {
 
 }  // namespace
 
-void SecantPairs::push_front(std::vector<double> residual, Iterate image) {
-  qr_.push_front(std::move(residual));
-  images_.push_front(std::move(image));
-}
-
-void SecantPairs::erase(int column) {
-  qr_.erase(column);
-  images_.erase(images_.begin() + column);
-}
-
-std::vector<int> SecantPairs::drop(double limit) {
-  std::vector<int> dropped = qr_.drop(limit);
-  for (const int j : dropped) images_.erase(images_.begin() + j);
-  return dropped;
-}
-
-void SecantPairs::add(const Eigen::VectorXd& c, Iterate& to) const {
-  add_to(to.unknown, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].unknown; });
-  add_to(to.rider, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].rider; });
-}
-
-void SecantPairs::save(io::CheckpointWriter& file, const std::string& name, const IterateOrder& order) const {
-  qr_.save(file, name, order.unknown);
-  Columns unknown, rider;
-  for (const Iterate& image : images_) unknown.emplace_back(image.unknown), rider.emplace_back(image.rider);
-  write_columns(file, order.unknown, name + ".images", unknown);
-  write_columns(file, order.rider, name + ".riders", rider);
-}
-
-void SecantPairs::load(io::CheckpointReader& file, const std::string& name, const IterateOrder& order) {
-  qr_.load(file, name, order.unknown);
-  const auto m = std::size_t(qr_.columns());
-  std::vector<std::vector<double>> unknown = read_columns(file, order.unknown, name + ".images", m),
-                                   rider = read_columns(file, order.rider, name + ".riders", m);
-  images_.clear();
-  for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(rider[j])});
-}
-
 QuasiNewton::QuasiNewton(const AccelerationParameters& parameters, MPI_Comm comm)
-    : parameters_(parameters), comm_(comm), share_(parameters.initial_relaxation) {}
+    : parameters_(parameters), comm_(comm), share_(parameters.initial_relaxation), qr_(comm) {}
 
 void QuasiNewton::start_step() {
   // An abandoned step may be due to its history, and its own pairs have another dt.
@@ -79,7 +41,9 @@ void QuasiNewton::start_step() {
   open_ = true;
   share_ = parameters_.initial_relaxation;
   last_.reset();
-  begin_step();
+  step_ += 1;
+  // Columns of the current step are not counted.
+  while (!step_of_.empty() && step_ - step_of_.back() > parameters_.reused_steps) drop_oldest();
 }
 
 void QuasiNewton::learn(const Iterate& x, const Iterate& image) {
@@ -94,7 +58,7 @@ void QuasiNewton::learn(const Iterate& x, const Iterate& image) {
                                   dot(pair.residual, pair.residual)};
     sum_over(comm_, squares);
     if (uses_earlier_steps() && squares[1] > 0 && std::sqrt(squares[0] / squares[1]) > bad_growth) {
-      forget_earlier_steps();
+      while (uses_earlier_steps()) drop_oldest();
       ++resets_;
     }
     if (squares[2] > 0) add(std::move(pair));
@@ -105,7 +69,12 @@ Iterate QuasiNewton::next(Iterate x, const Iterate& image) {
   learn(x, image);
   Iterate next = image;
   const bool has_pairs = columns() > 0;
-  if (has_pairs) correct(next);
+  if (has_pairs) {
+    const Eigen::VectorXd c = qr_.minimise(last_->residual);
+    add_to(next.unknown, c,
+           [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].unknown; });
+    add_to(next.rider, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].rider; });
+  }
   if (!has_pairs || !is_finite(next)) {
     if (has_pairs) ++resets_;
     forget_all();
@@ -114,7 +83,7 @@ Iterate QuasiNewton::next(Iterate x, const Iterate& image) {
   }
   using Vector = Eigen::Map<const Eigen::VectorXd>;
   const auto n = Eigen::Index(x.unknown.size());
-  const Vector r(residual().data(), n), from(x.unknown.data(), n), to(next.unknown.data(), n);
+  const Vector r(last_->residual.data(), n), from(x.unknown.data(), n), to(next.unknown.data(), n);
   std::array<double, 2> sums{(to - from).dot(r), r.squaredNorm()};
   sum_over(comm_, sums);
   share_ = sums[1] > 0 ? sums[0] / sums[1] : 0;
@@ -137,86 +106,49 @@ bool QuasiNewton::is_finite(const Iterate& x) const {
   return wrong == 0;
 }
 
-void LeastSquaresNewton::drop_oldest() {
-  pairs_.erase(pairs_.columns() - 1);
+void QuasiNewton::drop_oldest() {
+  qr_.erase(columns() - 1);
+  images_.pop_back();
   step_of_.pop_back();
 }
 
-void LeastSquaresNewton::forget_all() {
+void QuasiNewton::forget_all() {
   while (!step_of_.empty()) drop_oldest();
 }
 
-void LeastSquaresNewton::forget_earlier_steps() {
-  while (uses_earlier_steps()) drop_oldest();
-}
-
-void LeastSquaresNewton::begin_step() {
-  step_ += 1;
-  // Columns of the current step are not counted.
-  while (!step_of_.empty() && step_ - step_of_.back() > parameters().reused_steps) drop_oldest();
-}
-
-void LeastSquaresNewton::add(Pair pair) {
-  pairs_.push_front(std::move(pair.residual), std::move(pair.image));
+void QuasiNewton::add(Pair pair) {
+  qr_.push_front(std::move(pair.residual));
+  images_.push_front(std::move(pair.image));
   step_of_.push_front(step_);
-  for (const int j : pairs_.drop(parameters().filter)) step_of_.erase(step_of_.begin() + j);
-  while (pairs_.columns() > parameters().maximum_columns) drop_oldest();
+  for (const int j : qr_.drop(parameters_.filter)) {
+    images_.erase(images_.begin() + j);
+    step_of_.erase(step_of_.begin() + j);
+  }
+  while (columns() > parameters_.maximum_columns) drop_oldest();
 }
 
-void LeastSquaresNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
-  pairs_.save(file, "iqn", order);
+void QuasiNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
+  qr_.save(file, "iqn", order.unknown);
+  Columns unknown, rider;
+  for (const Iterate& image : images_) unknown.emplace_back(image.unknown), rider.emplace_back(image.rider);
+  write_columns(file, order.unknown, "iqn.images", unknown);
+  write_columns(file, order.rider, "iqn.riders", rider);
   file.write_common("iqn.step-of", std::vector<double>(step_of_.begin(), step_of_.end()));
   file.write_scalar("iqn.step", step_);
 }
 
-void LeastSquaresNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
-  pairs_.load(file, "iqn", order);
+void QuasiNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
+  qr_.load(file, "iqn", order.unknown);
+  const auto m = std::size_t(columns());
+  std::vector<std::vector<double>> unknown = read_columns(file, order.unknown, "iqn.images", m),
+                                   rider = read_columns(file, order.rider, "iqn.riders", m);
+  images_.clear();
+  for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(rider[j])});
   const std::vector<double> steps = file.read_common("iqn.step-of");
-  if (steps.size() != std::size_t(pairs_.columns()))
+  if (steps.size() != m)
     throw Error("The checkpoint's steps of differences ('iqn.step-of') are damaged. Use an earlier one.");
   step_of_.assign(steps.begin(), steps.end());
   step_ = file.read_scalar("iqn.step");
-}
-
-int MultiVectorNewton::columns() const {
-  int sum = 0;
-  for (const SecantPairs& step : steps_) sum += step.columns();
-  return sum;
-}
-
-void MultiVectorNewton::begin_step() {
-  if (!steps_.empty() && steps_.front().columns() == 0) steps_.pop_front();
-  steps_.emplace_front(comm());
-  while (steps_.size() > std::size_t(parameters().reused_steps) + 1 ||
-         (columns() > parameters().maximum_columns && steps_.size() > 1))
-    steps_.pop_back();
-}
-
-void MultiVectorNewton::add(Pair pair) {
-  steps_.front().push_front(std::move(pair.residual), std::move(pair.image));
-  steps_.front().drop(parameters().filter);
-}
-
-void MultiVectorNewton::correct(Iterate& next) const {
-  // The residual left by the columns of one step is passed to the previous step.
-  std::vector<double> rest = residual();
-  for (const SecantPairs& step : steps_) {
-    const Eigen::VectorXd t = step.qr().along(rest);
-    step.qr().subtract(t, rest);
-    step.add(-step.qr().back_substitute(t), next);
-  }
-}
-
-void MultiVectorNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
-  file.write_scalar("iqn.steps", double(steps_.size()));
-  for (std::size_t s = 0; s < steps_.size(); ++s) steps_[s].save(file, "iqn." + std::to_string(s), order);
-}
-
-void MultiVectorNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
-  steps_.clear();
-  const std::size_t n = file.read_count("iqn.steps", most_columns);
-  for (std::size_t s = 0; s < n; ++s)
-    steps_.emplace_back(comm()).load(file, "iqn." + std::to_string(s), order);
 }
 
 }  // namespace couplet::coupler

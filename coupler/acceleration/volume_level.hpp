@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 

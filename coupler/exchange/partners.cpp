@@ -14,7 +14,8 @@ coupling::Reply Partner::receive() {
   coupling::Reply reply = channel->receive();
   seconds += reply.seconds;
   seconds_since_accepted += reply.seconds;
-  if (reply.status == coupling::Reply::Status::hopeless)
+  left = reply.status == coupling::Reply::Status::left;
+  if (left || reply.status == coupling::Reply::Status::hopeless)
     throw SchemeFailure("'{}' reports: {}", name(), reply.text);
   if (reply.status == coupling::Reply::Status::failure)
     throw SolveFailure("'{}' reports: {}", name(), reply.text);

@@ -14,6 +14,7 @@ namespace couplet::coupler {
 struct Partner {
   std::unique_ptr<coupling::Channel> channel;
   int sub_steps = 1;   ///< within a coupling step
+  bool left = false;   ///< before the end of the coupling
   double seconds = 0;  ///< spent in the current step
   double seconds_since_accepted = 0;
   coupling::StepReport report;  ///< of the last accepted step

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "common/coupling/wait.hpp"
 #include "common/log/log.hpp"

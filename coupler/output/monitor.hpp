@@ -37,6 +37,10 @@ class Monitor {
             const std::vector<Partner>& partners);
   /// Mean and largest number of iterations, and time per participant.
   std::string summary(int halvings) const;
+  /// Mean and largest number.
+  std::vector<double> iterations_per_step() const {
+    return {double(iterations_) / double(std::max(1L, steps_)), double(most_iterations_)};
+  }
   /// Waiting times, and a better division of ranks; may be empty.
   std::string waiting(const std::vector<Partner>& partners, const Schedule& schedule) const;
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"

@@ -18,9 +18,6 @@ const char* semi_implicit_of(const P& p) {
 bool iterates(const P& p) { return p.scheme != coupling::Scheme::explicit_; }
 /// True if participants see a guessed motion before the structure gives its own.
 bool predicts(const P& p) { return predictor_order_of(p) > 0; }
-bool is_quasi_newton(const P& p) {
-  return p.acceleration.type == AccelerationType::iqn_ils || p.acceleration.type == AccelerationType::iqn_mvj;
-}
 
 const std::array cards{
     CouplingCard{"exchange among any participants", "`exchange`",
@@ -62,8 +59,11 @@ const std::array cards{
                                "acceleration.type: aitken");
                  },
                  "two vectors of the interface"},
-    CouplingCard{"quasi-Newton of the interface", "`acceleration.type: iqn-ils` or `iqn-mvj`",
-                 [](const P& p) { return when(iterates(p) && is_quasi_newton(p), "acceleration.type"); },
+    CouplingCard{"quasi-Newton of the interface", "`acceleration.type: iqn-ils`",
+                 [](const P& p) {
+                   return when(iterates(p) && p.acceleration.type == AccelerationType::iqn_ils,
+                               "acceleration.type");
+                 },
                  "three interface vectors for each of at most `maximum-columns` differences"},
     CouplingCard{"prediction", "`predictor.order` above 0",
                  [](const P& p) { return when(predicts(p), "predictor.order"); },

@@ -258,14 +258,11 @@ void declare(config::Section& section, AccelerationParameters& p) {
   using Type = AccelerationParameters::Type;
   section
       .choice("type", p.type,
-              {{"constant", Type::constant},
-               {"aitken", Type::aitken},
-               {"iqn-ils", Type::iqn_ils},
-               {"iqn-mvj", Type::iqn_mvj}})
+              {{"constant", Type::constant}, {"aitken", Type::aitken}, {"iqn-ils", Type::iqn_ils}})
       .doc(
           "constant: always the initial relaxation; aitken: adapted in each iteration from the last two "
           "residuals; iqn-ils: quasi-Newton from the differences of this and earlier steps by least "
-          "squares; iqn-mvj: the same, each step's differences correcting the previous Jacobian");
+          "squares");
   section.value("initial-relaxation", p.initial_relaxation)
       .range(1e-6, 2)
       .doc(

@@ -12,7 +12,7 @@
 namespace couplet::coupler {
 
 struct AccelerationParameters {
-  enum class Type { constant, aitken, iqn_ils, iqn_mvj } type = Type::iqn_ils;
+  enum class Type { constant, aitken, iqn_ils } type = Type::iqn_ils;
   double initial_relaxation = 0.5;
   double maximum_relaxation = 1.0;
   int reused_steps = 8;       // quasi-Newton: number of earlier steps with stored differences

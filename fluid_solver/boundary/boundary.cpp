@@ -9,6 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/face_mean.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
@@ -99,6 +100,14 @@ fv::Expression turning_of(const BoundaryParameters& b, const std::string& where)
   return speed;
 }
 
+FaceCorners corners_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
+  FaceCorners corners(std::size_t(patch.count));
+  for (Index i = 0; i < patch.count; ++i)
+    for (const Index v : mesh.face_points[patch.first + i])
+      corners[std::size_t(i)].push_back(geometry.points[v] - geometry.face_centre[patch.first + i]);
+  return corners;
+}
+
 bool uses_space(const std::vector<fv::Expression>& expressions) {
   return std::ranges::any_of(expressions, [](const fv::Expression& e) { return e.uses_space(); });
 }
@@ -124,7 +133,9 @@ GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& ge
   } else if (!b.velocity.empty()) {
     velocity_ = fv::make_expressions(b.velocity, D, where + ".velocity");
   }
-  turns_ = is_wall(b) && (b.rotation || b.table || uses_space(velocity_));
+  const bool varies = b.table || uses_space(velocity_);
+  turns_ = is_wall(b) && (b.rotation || varies);
+  if (varies) corners_ = corners_of(mesh, geometry, patch);
 }
 
 template <int D>
@@ -148,6 +159,20 @@ void GivenVelocity<D>::evaluate(double t, std::span<const Vec3> places, Vec<D>* 
   }
   const double factor = ramp_factor(parameters_, t);
   for (std::size_t i = 0; factor != 1 && i < n; ++i) w[i] *= factor;
+}
+
+template <int D>
+void GivenVelocity<D>::average(double t, std::span<const Vec3> centres, Vec<D>* w) const {
+  if (corners_.empty()) return evaluate(t, centres, w);
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    w[i] = fv::mean_over_face(corners_[i], Vec3::Zero(), [&](const Vec3& x) {
+             const Vec3 place = centres[i] + x;
+             Vec<D> here;
+             evaluate(t, {&place, 1}, &here);
+             Vec3 value = Vec3::Zero();
+             value.template head<D>() = here;
+             return value;
+           }).whole.template head<D>();
 }
 
 template class GivenVelocity<2>;
@@ -236,7 +261,9 @@ void Boundary<D>::add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geomet
   sealed_ = sealed_ && condition.passage == Passage::none;
   if (gives_pressure(b)) {
     closed_ = false;
-    pressure_patches_.push_back({faces, fv::Expression(b.pressure, where + ".pressure")});
+    fv::Expression pressure(b.pressure, where + ".pressure");
+    FaceCorners corners = pressure.uses_space() ? corners_of(mesh, geometry, patch) : FaceCorners();
+    pressure_patches_.push_back({faces, std::move(pressure), std::move(corners)});
   }
   if (condition.velocity == GivenBy::keys) {
     velocity_patches_.emplace_back(mesh, geometry, patch, b);
@@ -292,15 +319,21 @@ template <int D>
 void Boundary<D>::velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const {
   for (const GivenVelocity<D>& given : velocity_patches_) {
     const auto [first, count] = given.faces();
-    given.evaluate(t, {centres.data() + first, std::size_t(count)}, w.data() + first);
+    given.average(t, {centres.data() + first, std::size_t(count)}, w.data() + first);
   }
 }
 
 template <int D>
 void Boundary<D>::pressure_at(double t, const std::vector<Vec3>& centres, std::vector<double>& p) const {
-  for (const auto& [faces, value] : pressure_patches_)
-    value.evaluate({centres.data() + faces.first, std::size_t(faces.count)}, t,
-                   {p.data() + faces.first, std::size_t(faces.count)});
+  for (const auto& [faces, value, corners] : pressure_patches_) {
+    for (Index i = 0; i < faces.count; ++i) {
+      const Vec3& centre = centres[std::size_t(faces.first + i)];
+      const auto given = [&](const Vec3& x) { return Vec3(value(centre + x, t), 0, 0); };
+      p[std::size_t(faces.first + i)] =
+          corners.empty() ? value(Vec3::Zero(), t)
+                          : fv::mean_over_face(corners[std::size_t(i)], Vec3::Zero(), given).whole[0];
+    }
+  }
 }
 
 /// u_b = t w + (1 - t) u_P + (1 - q - t) n n.(w - u_P), q = 1 if the pressure is given.

@@ -64,6 +64,9 @@ struct InletShape {
   std::vector<double> speed;          ///< per face of the patch; its mean over the area is 1 to round-off
 };
 
+/// Corners of the faces of a patch, relative to the face centers.
+using FaceCorners = std::vector<std::vector<Vec3>>;
+
 /// Velocity of a patch as given by the keys of its condition.
 template <int D>
 class GivenVelocity {
@@ -78,6 +81,8 @@ class GivenVelocity {
   bool turns() const { return turns_; }
   /// Evaluates at points of the patch, in the order of its faces if a profile was made for them [m/s].
   void evaluate(double t, std::span<const Vec3> places, Vec<D>* w) const;
+  /// Means over the faces of the patch with these centers [m/s].
+  void average(double t, std::span<const Vec3> centres, Vec<D>* w) const;
 
  private:
   FaceRange faces_;
@@ -89,6 +94,7 @@ class GivenVelocity {
   std::optional<fv::GridTable> table_;  // of the velocity
   fv::Expression turning_;              // [rad/s], if a rotation is given
   bool turns_ = false;
+  FaceCorners corners_;  // empty unless the velocity varies in space
 };
 
 /// Reads the velocities of a boundary from its file, in `dimension` components. Throws Error with file:line.
@@ -175,6 +181,7 @@ class Boundary {
   struct GivenPressure {
     FaceRange faces;
     fv::Expression value;
+    FaceCorners corners;  // empty unless it varies in space
   };
   void add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                  const BoundaryParameters& b);

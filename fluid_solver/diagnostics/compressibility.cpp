@@ -10,6 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
+#include "fluid_solver/parameters/effects.hpp"
 
 namespace couplet::fluid {
 
@@ -119,13 +120,19 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
     const ComplianceWatch::Walls mine = watch_.walls();
     std::array<double, 3> walls{mine.square, mine.rate, mine.size};
     MPI_Allreduce(MPI_IN_PLACE, walls.data(), int(walls.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
-    if (!(walls[0] > 0)) return;
-    const ComplianceWatch::Totals totals = watch_.totals();
-    // A plate in the fluid sweeps the same volume on both sides.
-    const double stroke = std::max(totals.swept, 0.5 * walls[2]);
     const double size = largest_extent(view_.mesh, view_.fluid.state().placement->boundary_centre);
-    add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
-    add(report, wave_time(std::sqrt(walls[1] / walls[0]), size, sound_));
+    double rate = parallel::max(
+        view_.mesh.comm, prescribed_rate(
+                             view_.parameters(), [&](const std::string& name) { return some_places(name); },
+                             view_.step.time + view_.step.dt, view_.step.dt));
+    if (walls[0] > 0) {
+      const ComplianceWatch::Totals totals = watch_.totals();
+      // A plate in the fluid sweeps the same volume on both sides.
+      const double stroke = std::max(totals.swept, 0.5 * walls[2]);
+      add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
+      rate = std::max(rate, std::sqrt(walls[1] / walls[0]));
+    }
+    if (rate > 0) add(report, wave_time(rate, size, sound_));
   }
   void visit(io::Archive& archive) override {
     if (!moves_) return;
@@ -148,6 +155,13 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
 
  private:
   double density() const { return view_.parameters().density; }
+  /// Centers of the first, a middle and the last face of a patch on this rank. What the motion moves is observed.
+  std::vector<Vec3> some_places(const std::string& name) const {
+    const mesh::Patch* patch = name.empty() ? nullptr : view_.mesh.find_patch(name);
+    if (!patch || patch->count == 0) return {};
+    return {centre(patch->first), centre(patch->first + patch->count / 2),
+            centre(patch->first + patch->count - 1)};
+  }
   static bool has_bodies(const FluidView<D>& view) { return !view.fluid.boundary().body_patches().empty(); }
   const Vec3& centre(Index face) const {
     return view_.fluid.state().placement->boundary_centre[face - view_.mesh.n_interior];
@@ -218,14 +232,13 @@ diagnostics::EffectFinding compliance(double density, double stroke, double pres
 // A column of length L responds to motion of rate omega as tan(omega L/c)/(omega L/c): 3 % more at 0.3.
 diagnostics::EffectFinding wave_time(double rate, double size, const Sound& sound) {
   const double phase = rate * size / sound.speed;
-  return {
-      .effect = "waves of pressure",
-      .number = phase,
-      .limit = 0.3,
-      .what = fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
-                          sound.of, size / sound.speed, phase, 1 / rate),
-      .advice = "pressure waves return while the walls move: add 'compressibility'",
-      .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
+  return {.effect = "waves of pressure",
+          .number = phase,
+          .limit = 0.3,
+          .what = fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of what moves it",
+                              sound.of, size / sound.speed, phase, 1 / rate),
+          .advice = "pressure waves return while that changes: add 'compressibility'",
+          .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
 }
 
 template <int D>

@@ -173,10 +173,12 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const double speed = size(fluid_.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;
     const double falls = std::sqrt(pressure_range(view_).value_or(0) / fluid_.parameters().density);
-    const double scale = diagnostics::scale_of(std::max(speed, largest_), falls);
+    const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
+    // A fluid at rest is so within the tolerance of its pressure.
+    const double left = fluid_.parameters().pressure_tolerance * std::sqrt(across) * falls;
+    const double scale = diagnostics::scale_of(std::max({speed, largest_, left}), falls);
     parts.mesh = recovered_difference() / scale;
     parts.step = step_part() * steps_.size() / scale;
-    const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
     // The trapezoidal rule also knows the divergence before.
     const auto& known = fluid_.parameters().compressibility;
     const bool open = known && known->scheme == WaveScheme::trapezoidal;

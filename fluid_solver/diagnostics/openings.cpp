@@ -50,8 +50,10 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
       const auto use = fv::uses().find("boundaries." + patch.name);
       for (Index f = patch.first; f < patch.first + patch.count; ++f) {
         constexpr double slowest = 1e-12;  // [m/s], round-off
+        const double through = std::abs(s.phi[f]) / s.placement->area[f].norm(),
+                     given = s.w[f - view_.mesh.n_interior].norm();  // along itself it is a lid
         if (use != fv::uses().end())
-          use->second.note(std::abs(s.phi[f]) > slowest * s.placement->area[f].norm() ? s.phi[f] : 0);
+          use->second.note(std::max(through, given) > slowest ? std::max(through, given) : 0);
         sums[net] += s.phi[f] * view_.step.dt;
         sums[gross] += std::abs(s.phi[f]) * view_.step.dt;
         const double in = std::max(0., (s.mesh_flux.empty() ? 0 : s.mesh_flux[f]) - s.phi[f]) * view_.step.dt;

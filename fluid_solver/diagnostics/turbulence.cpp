@@ -117,6 +117,7 @@ diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
       .what = fmt::format("max eddy viscosity = {:.2g} of the molecular", eddy_viscosity),
       .left_out = false};
   if (dimension == 3 || eddy_viscosity <= e.limit) {
+    e.is_spare = true;
     e.saves = diagnostics::saved_share("fluid_solver", "turbulence model");
     return e;
   }

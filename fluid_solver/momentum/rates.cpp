@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/momentum/rates.hpp"
 
-#include <algorithm>
-
 #include "common/base/processor_clones.hpp"
 
 namespace couplet::fluid {

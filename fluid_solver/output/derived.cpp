@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/parameters/gradient_fields.hpp"

@@ -199,8 +199,7 @@ Row balance(const Fluid<D>& fluid) {
           {"largest divergence [1/s]", worst},
           {"mean divergence [1/s]", sums[divergence] / sums[volume]},
           {"mass defect [m^3/s]", sums[outflow] - sums[inflow] + sums[taken_up]},
-          {"sub-steps [-]", double(fluid.statistics().sub_steps)},
-          {"pressure iterations so far [-]", double(fluid.statistics().pressure_iterations)}};
+          {"sub-steps [-]", double(fluid.statistics().sub_steps)}};
 }
 
 template <int D>

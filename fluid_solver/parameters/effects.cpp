@@ -50,7 +50,7 @@ const std::array cards{
         [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); },
         "three pressures per cell in the right side of the pressure equation, whose matrix changes with the step",
         "density change by the pressure range, 0.05; for moving walls: compressed over displaced volume, "
-        "0.1, and travel time of sound across the fluid over 1/omega of the wall motion, 0.3"},
+        "0.1, and travel time of sound across the fluid over 1/omega of walls and of what is prescribed, 0.3"},
     FluidCard{"small changes of density", "`compressibility`",
               [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); }, "",
               "with `compressibility`: density change by the pressure range, 0.05", true},
@@ -146,10 +146,10 @@ constexpr double slow_waves = 0.3;  // of the audit: travel time of sound over 1
 constexpr int most_samples = 2000, places = 4;
 
 /// RMS rate of a prescribed quantity over its RMS fluctuation [1/s]; 0 if it is constant.
-double rate_of(const config::ExpressionText& text, const Vec3& at, const diagnostics::CaseScene& scene) {
-  const fv::Expression value(text, "what is prescribed");
-  const int n = std::clamp(int(scene.end_time / std::max(scene.time_step, 1e-300)), 2, most_samples);
-  const double dt = std::min(scene.time_step, scene.end_time / n);
+double rate_of(const config::ExpressionText& text, const Vec3& at, double end, double step) {
+  const fv::Expression value(text);
+  const int n = std::clamp(int(end / std::max(step, 1e-300)), 2, most_samples);
+  const double dt = std::min(step, end / n);
   double last = value(at, 0), sum = last, square = last * last, changes = 0;
   for (int i = 1; i <= n; ++i) {
     const double now = value(at, i * dt);
@@ -161,28 +161,29 @@ double rate_of(const config::ExpressionText& text, const Vec3& at, const diagnos
   return variance > 1e-9 * square ? std::sqrt(changes / variance) : 0;
 }
 
-/// Largest rate of all prescribed quantities.
-double largest_rate(const FluidParameters& p, const mesh::MeshFacts& mesh,
-                    const diagnostics::CaseScene& scene) {
-  std::vector<config::ExpressionText> texts;
-  const auto add = [&texts](const auto& more) { texts.insert(texts.end(), more.begin(), more.end()); };
+}  // namespace
+
+double prescribed_rate(const FluidParameters& p, const PlacesOfPatch& places_of, double end, double step) {
+  double rate = 0;
+  const auto add = [&](const std::string& patch, const std::vector<config::ExpressionText>& texts) {
+    for (const Vec3& place : places_of(patch))
+      for (const config::ExpressionText& text : texts) rate = std::max(rate, rate_of(text, place, end, step));
+  };
   for (const auto& [name, b] : p.boundaries) {
     const bool inlet = condition_of(b).passage == Passage::in;
-    if (inlet) add(b.velocity);
-    if (inlet && b.mean_speed) texts.push_back(*b.mean_speed);
-    if (gives_pressure(b)) texts.push_back(b.pressure);
+    if (inlet) add(name, b.velocity);
+    if (inlet && b.mean_speed) add(name, {*b.mean_speed});
+    if (gives_pressure(b)) add(name, {b.pressure});
   }
   if (p.motion) {
-    add(p.motion->translation);
-    add(p.motion->displacement);
-    texts.push_back(p.motion->angle);
+    add("", p.motion->translation);
+    add("", p.motion->displacement);
+    add("", {p.motion->angle});
   }
-  double rate = 0;
-  for (const auto& text : texts)
-    for (int i = 0; i <= places; ++i)
-      rate = std::max(rate, rate_of(text, double(i) / places * mesh.size, scene));
   return rate;
 }
+
+namespace {
 
 /// Decides about pressure waves. They are computed if sound takes longer across the mesh than 0.3/omega of
 /// boundaries and motions, if gaps cut off an inlet, or if an interface moves in a fluid without an outlet.
@@ -211,7 +212,13 @@ diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::Mes
   if (scene.coupled && p.volume_level == VolumeLevelBy::nobody && velocity_by(GivenBy::structure) &&
       !has(gives_pressure))
     return with("no outlet: an interface that moves compresses the fluid");
-  const double rate = largest_rate(p, mesh, scene), phase = rate * mesh.largest_side() / sound->speed;
+  const auto along_the_box = [&mesh](const std::string&) {
+    std::vector<Vec3> all;
+    for (int i = 0; i <= places; ++i) all.push_back(double(i) / places * mesh.size);
+    return all;
+  };
+  const double rate = prescribed_rate(p, along_the_box, scene.end_time, scene.time_step),
+               phase = rate * mesh.largest_side() / sound->speed;
   const std::string reason =
       fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega of what is prescribed", sound->of,
                   mesh.largest_side() / sound->speed, phase);

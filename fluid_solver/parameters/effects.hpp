@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/diagnostics/effects.hpp"
@@ -19,6 +21,12 @@ struct FluidScene {
 
 using FluidCard = diagnostics::EffectCard<FluidScene>;
 std::span<const FluidCard> fluid_effect_cards();
+
+/// Places of a patch at which its expressions are looked at, or of the mesh for an empty name.
+using PlacesOfPatch = std::function<std::vector<Vec3>(const std::string&)>;
+/// Largest rate of what boundaries and motions prescribe until the time `end` [1/s].
+double prescribed_rate(const FluidParameters& parameters, const PlacesOfPatch& places_of, double end,
+                       double step);
 
 /// Resolves `effects: auto` of a fluid: its dimension, laminar flow or LES, the viscous scheme, pressure
 /// waves, and mesh motion. The speed is the largest one in boundaries, profiles and the initial state. The

@@ -38,7 +38,6 @@ void declare_gap(config::Section& s, GapParameters& gap) {
           "height of the seat, the second wall, along 'direction', of x, y, z at rest: the mesh is refused if its wall is "
           "elsewhere, and the 'contact' of a structure may name the gap; absent: where the mesh has it");
   s.value("direction", gap.direction).doc("direction from the seat to the valve; absent: z, in 2-D y");
-  s.check([&gap] { return gap.height ? fv::problem_of(*gap.height) : std::string(); }, "height");
   s.check(
       [&gap] {
         const auto& d = gap.direction;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
@@ -117,6 +116,8 @@ struct SubStep {
 template <int D>
 struct Step : SubStep<D> {
   History<D> by;
+  /// What the implicit predictor takes for the pressure of this step; nullptr if there is none yet.
+  std::shared_ptr<const PressureLevel<D>> guess = by.pressure[0];
 
   double begin() const { return by.time; }
   double middle() const { return by.time + this->dt / 2; }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/step/fluid.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -149,10 +148,10 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     ++statistics_.all_sub_steps;
     if (last) break;
     step_.project(level(), last_w_);
+    step_.complete(level(), last_w_);
     add_forces(dt / dt_);
     pressure_done_.swap(pressure_force_);
     viscous_done_.swap(viscous_force_);
-    step_.complete(level());
     if (!split_) trial_ = accepted_;
     split_ = true;
     step_.commit(trial_);
@@ -170,7 +169,7 @@ void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity, double answer) {
   check_wall_velocity();
   step_.project(level(), last_w_, answer);
   // Once per prediction, because repetitions only change the potential flow of a bounded wall velocity.
-  if (!judged_) step_.complete(level());
+  if (!judged_) step_.complete(level(), last_w_);
   judged_ = true;
   ++statistics_.pressure_solves;
   add_forces(step_.size() / dt_);

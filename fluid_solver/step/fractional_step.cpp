@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/processor_clones.hpp"
+#include "common/fv/use.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/state/placement.hpp"
@@ -106,7 +107,12 @@ void FractionalStep<D>::set_body_force() {
     bool periodic = false;
     for (const Vec3& shift : mesh_.neighbour_shift) periodic |= std::abs(shift[c]) > 1e-12 * shift.norm();
     periodic = parallel::any(mesh_.comm, periodic);
-    scene_.balanced[c] = balances && !periodic && !scene_.body_force[c].uses_space();
+    const fv::Expression& force = scene_.body_force[c];
+    scene_.balanced[c] = balances && !periodic && !force.uses_space();
+    if (force.uses_space() || force.uses_time() || force(Vec3::Zero(), 0) == 0) continue;
+    fv::Use& use = fv::uses()["body-force"];  // a fluid that it holds at rest is loaded
+    use.given = "the constant force";
+    use.note(force(Vec3::Zero(), 0));
   }
 }
 
@@ -147,11 +153,16 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
     }
   mark(step_.end());
   scene_.obstacles->begin(step_, from, prediction_.w);
+  predict_from_guess(from);
+  projection_.prepare(from);
+}
+
+template <int D>
+void FractionalStep<D>::predict_from_guess(const State<D>& from) {
   predictor_.predict(from);
   mesh_.cells.update_ghosts(flat<D>(prediction_.u), D);
   scene_.obstacles->hold(*step_.to, step_.dt, prediction_.u);
   flux_.predict(from, prediction_.u);
-  projection_.prepare(from);
 }
 
 template <int D>
@@ -262,9 +273,10 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
 }
 
 template <int D>
-void FractionalStep<D>::complete(const State<D>& from) {
+void FractionalStep<D>::complete(const State<D>& from, const Vectors<D>& w) {
   if (level_) return;
   level_ = correct();
+  solve_coupled(from, w);
   judgement_ = judge(from);
   check(from);
 }

@@ -57,9 +57,10 @@ class FractionalStep {
   void rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear);
   /// May be called again with another w after one predict(). Collective.
   void project(const State<D>& from, const Vectors<D>& w, double answer = 0);
-  /// Computes and checks level n+1 of the last project(), beside level n. Throws SolveFailure with time and
+  /// Computes and checks level n+1 of the last project(), for the same w, beside level n. Where the splitting error asks for it, prediction
+  /// and projection are repeated until they solve the coupled system of velocity and pressure. Throws SolveFailure with time and
   /// place if its velocity is not finite. Collective.
-  void complete(const State<D>& from);
+  void complete(const State<D>& from, const Vectors<D>& w);
   /// Replaces level n by level n+1 by swapping. Computes it first if complete() was not called since the last
   /// project(). Cannot fail. Collective.
   void commit(State<D>& state);
@@ -108,12 +109,17 @@ class FractionalStep {
   bool oblique() const { return scene_.oblique; }
 
  private:
+  void predict_from_guess(const State<D>& from);
   std::shared_ptr<PressureLevel<D>> correct();
   struct Judgement {
     EnergyJudgement energy;
     double speed = 0;        // largest [m/s]; infinity if one is not finite
     double given_speed = 0;  // largest at the boundaries [m/s]
   };
+  void solve_coupled(const State<D>& from, const Vectors<D>& w);
+  void project_from_guess(const State<D>& from, const Vectors<D>& w);
+  Vectors<D> friction_of(const Vectors<D>& x) const;
+  double splitting_error(const PressureLevel<D>& now) const;
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
   void set_body_force();

@@ -144,8 +144,8 @@ void Predictor<D>::add_swept(const State<D>& from, double e0, double e1) {
 // correct boundary value of the predictor; add_back_old_pressure() returns the part on S^{n+1}.
 template <int D>
 void Predictor<D>::add_old_pressure(const State<D>& from, bool implicit) {
-  if (!step_.by.pressure[0]) return;
-  const PressureLevel<D>& level = *step_.by.pressure[0];
+  if (!step_.guess) return;
+  const PressureLevel<D>& level = *step_.guess;
   const double factor = step_.dt / scene_.fluid.rho;
   const Placement<D>&old = *from.placement, &now = *step_.to;
   if (!step_.moving()) {  // S does not change: the gradient of that step is still at hand
@@ -191,8 +191,8 @@ void Predictor<D>::solve_viscous(const State<D>& from, double a) {
 
 template <int D>
 void Predictor<D>::add_back_old_pressure() {
-  if (!step_.by.pressure[0]) return;
-  const PressureLevel<D>& level = *step_.by.pressure[0];
+  if (!step_.guess) return;
+  const PressureLevel<D>& level = *step_.guess;
   const double factor = step_.dt / scene_.fluid.rho;
   if (!step_.moving()) {
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) out_.u[c] += factor * level.gradient[c];

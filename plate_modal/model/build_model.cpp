@@ -7,6 +7,7 @@
 
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
@@ -235,7 +236,10 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
     if (f < least) f = 0;
   // Without the key, modes are recomputed and their notes are repeated.
   if (!context.output_folder.empty())
-    modes::write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
+    base::when_started(
+        [file, model = built.model, key = built.note.empty() ? key_with_content(key, built.model) : ""] {
+          modes::write_modes(file, model, key);
+        });
 }
 
 }  // namespace

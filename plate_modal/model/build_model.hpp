@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "common/app/program.hpp"
 #include "common/modes/modal_model.hpp"

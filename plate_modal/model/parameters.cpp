@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/config/values.hpp"
-#include "common/fv/expression.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -162,8 +161,6 @@ void declare_loads(config::Section& s, Parameters& p) {
             .unit("Pa")
             .plausible(1e-9, 1e11)
             .doc("pressure on the opposite side (with 'modes.file': -z), of x, y, z, t");
-        l.check([&] { return v.upper ? fv::problem_of(*v.upper) : ""; }, "upper-pressure");
-        l.check([&] { return v.lower ? fv::problem_of(*v.lower) : ""; }, "lower-pressure");
       },
       "pressures acting on the sides, in addition to those of a fluid; a table of a file: 'table(t, "
       "\"p.csv\")'");

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"

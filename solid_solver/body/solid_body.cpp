@@ -160,12 +160,10 @@ std::vector<double> SolidBody::scaled(std::vector<double> values) const {
   return values;
 }
 
-void SolidBody::add_scaled_loads(double t, std::span<double> forces) const {
-  const bool with_pressure = !equilibrium_->means().takes_pressure;
-  if (load_factor_ == 1) return boundaries_.add_forces(t, forces, with_pressure);
-  std::vector<double> whole(forces.size(), 0);
-  boundaries_.add_forces(t, whole, with_pressure);
-  for (std::size_t i = 0; i < whole.size(); ++i) forces[i] += load_factor_ * whole[i];
+std::vector<double> SolidBody::dead_loads(double t) const {
+  std::vector<double> forces(boundaries_.n_forces(), 0);
+  boundaries_.add_forces(t, forces, !equilibrium_->means().takes_pressure);
+  return scaled(std::move(forces));
 }
 
 std::vector<double> SolidBody::body_forces(double t, const Vec3& shift) const {

@@ -62,8 +62,8 @@ class SolidBody final {
   /// Sets the temperature-dependent elastic constants. Returns true if data made for the old ones are
   /// invalid. Collective.
   bool apply_stiffness();
-  /// Adds the loads of the boundaries at time t that are no pressures of the equilibrium.
-  void add_dead_loads(double t, std::span<double> forces) const { add_scaled_loads(t, forces); }
+  /// Loads of the boundaries at time t that are no pressures of the equilibrium, see SolidBoundaries::add_forces().
+  std::vector<double> dead_loads(double t) const;
   /// See Equilibrium::lowest_stiffness(). Collective.
   SoftMotion softest_motion(std::span<const double> unknowns, std::span<const double> known) const;
   /// Smooth forces on the rows of elastic() without symmetry, equal on any number of ranks. Start vector of a
@@ -106,7 +106,6 @@ class SolidBody final {
   void check_supports() const;
   void find_mass();
   void make_seat();
-  void add_scaled_loads(double t, std::span<double> forces) const;
   std::vector<double> scaled(std::vector<double> values) const;
 
   const mesh::Mesh mesh_;

@@ -62,8 +62,7 @@ std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
 /// Loads at the accepted time; the interface's are those of the last solve.
 elastic::ElasticLoads SolidFields::loads_now() const {
   elastic::ElasticLoads loads;
-  loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
-  body_.add_dead_loads(state_.time, loads.faces);
+  loads.faces = body_.dead_loads(state_.time);
   for (std::size_t i = 0; i < last_.interface.size(); ++i) loads.faces[i] += last_.interface[i];
   if (body_.seat() && !last_.contact.empty()) body_.seat()->add_to_faces(last_.contact, loads.faces);
   loads.cells = body_.body_forces(state_.time);

@@ -12,6 +12,9 @@
 namespace couplet::solid {
 namespace {
 
+int n_corners(const mesh::Mesh& mesh) { return mesh.dim == 2 ? 2 : 4; }
+Vec3 unit(const Vec3&) { return Vec3::Ones(); }
+
 using Type = SolidCondition::Type;
 
 // Difference of displacements that count as equal, relative to the largest prescribed one; on patches whose
@@ -44,7 +47,10 @@ void check_names(const mesh::Mesh& mesh, const SolidParameters& parameters) {
 
 SolidBoundaries::SolidBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                  const SolidParameters& parameters)
-    : mesh_(&mesh), geometry_(&geometry), condition_of_face_(mesh.boundary.n_local(), -1) {
+    : mesh_(&mesh),
+      geometry_(&geometry),
+      is_ring_(is_axisymmetric(parameters)),
+      condition_of_face_(mesh.boundary.n_local(), -1) {
   check_names(mesh, parameters);
   for (const mesh::Patch& patch : mesh.patches) {
     holds_.push_back(0);
@@ -117,12 +123,23 @@ void SolidBoundaries::choose_faces(const mesh::Patch& patch, const SolidBoundary
   };
   for (Index f = patch.first; f < patch.first + patch.count; ++f) choose(f);
   for (Index f = patch.ghost_first; f < patch.ghost_first + patch.ghost_count; ++f) choose(f);
-  for (std::size_t i = 0; i < tests.size(); ++i)
-    if (!parallel::any(mesh_->comm, !conditions_[own + 1 + i].faces.empty()))
-      throw Error(
-          "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is evaluated at the face centres; "
-          "widen it, for example to abs(z - 0.5) < half the height of a face.",
-          where, i, tests[i].text(), patch.name);
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (parallel::any(mesh_->comm, !conditions_[own + 1 + i].faces.empty())) continue;
+    bool is_taken = false;
+    for (Index f = patch.first; f < patch.first + patch.count && f < mesh_->n_flux_faces(); ++f)
+      is_taken = is_taken || tests[i](geometry_->face_centre[f], 0) != 0;
+    throw Error(
+        "{}.parts[{}].where: '{}' selects no face of patch '{}'. {}", where, i, tests[i].text(), patch.name,
+        parallel::any(mesh_->comm, is_taken)
+            ? "Parts before it select all of its faces, and the first one that selects a face applies; put it before them."
+            : "It is evaluated at the face centres; widen it, for example to abs(z - 0.5) < half the height of a face.");
+  }
+  if (!tests.empty() && boundary.type != Type::free &&
+      !parallel::any(mesh_->comm, !conditions_[own].faces.empty()))
+    throw Error(
+        "{}: its parts select all of its faces, so that its own condition acts nowhere. Make it 'free', or narrow the "
+        "parts.",
+        where);
   make_load(conditions_[own], boundary, where);
   for (std::size_t i = 0; i < tests.size(); ++i)
     make_load(conditions_[own + 1 + i], boundary.parts[i], fmt::format("{}.parts[{}]", where, i));
@@ -193,12 +210,21 @@ elastic::ElasticBoundary SolidBoundaries::elastic() const {
   return result;
 }
 
-template <class Take>
-void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& take,
-                                      const Vec3& shift) const {
-  const double level = c.liquid ? c.liquid->level(t) : 0;
-  for (const Index f : c.faces)
-    take(f, c.liquid ? c.liquid->mean(f, level, shift) : c.pressure(geometry_->face_centre[f] + shift, t));
+double SolidBoundaries::Condition::pressure_at(const Vec3& x, double level, double t) const {
+  return liquid ? liquid->at(x, level) : pressure(x, t);
+}
+
+bool SolidBoundaries::Condition::varies() const {
+  return liquid || pressure.uses_space() ||
+         std::ranges::any_of(traction, [](const fv::Expression& e) { return e.uses_space(); });
+}
+
+/// Means of a load over a face, per circumference at the face center on a ring.
+fv::FaceMean SolidBoundaries::mean_over(Index f, const std::function<Vec3(const Vec3&)>& load) const {
+  const double radius = geometry_->face_centre[f][0];
+  if (!is_ring_ || radius == 0) return fv::mean_over_face(*mesh_, *geometry_, f, load);
+  return fv::mean_over_face(*mesh_, *geometry_, f,
+                            [&](const Vec3& x) { return Vec3(x[0] / radius * load(x)); });
 }
 
 std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
@@ -209,12 +235,64 @@ std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
 }
 
 std::vector<double> SolidBoundaries::pressures(double t, const Vec3& shift) const {
-  std::vector<double> pressure(mesh_->boundary.n_owned(), 0);
-  for (const Condition& c : conditions_)
-    if (c.has_pressure())
-      visit_pressures(
-          c, t, [&](Index f, double p) { pressure[f - mesh_->n_interior] = p; }, shift);
+  const auto varies_here = [](const Condition& c) { return c.has_pressure() && c.varies(); };
+  const bool varies = std::ranges::any_of(conditions_, varies_here);
+  const std::size_t n = std::size_t(mesh_->boundary.n_owned()), n_places = std::size_t(1 + n_corners(*mesh_));
+  std::vector<double> pressure(n * (varies ? 1 + n_places : 1), 0);
+  for (const Condition& c : conditions_) {
+    if (!c.has_pressure()) continue;
+    const double level = c.liquid ? c.liquid->level(t) : 0;
+    const auto at = [&](const Vec3& x) { return Vec3(c.pressure_at(x + shift, level, t), 0, 0); };
+    for (const Index f : c.faces) {
+      const std::size_t b = std::size_t(f - mesh_->n_interior);
+      double* const here = varies ? pressure.data() + n + b * n_places : nullptr;  // at its node and corners
+      if (!c.varies()) {
+        pressure[b] = c.pressure(Vec3::Zero(), t);
+        if (varies) std::fill_n(here, n_places, pressure[b]);
+        continue;
+      }
+      const fv::FaceMean mean = mean_over(f, at), even = mean_over(f, unit);
+      pressure[b] = c.liquid ? c.liquid->mean(f, level, shift) : mean.whole[0];
+      double part = pressure[b], share = 1;
+      for (std::size_t i = 0; i + 1 < n_places; ++i) {
+        part -= mean.corner[i][0], share -= even.corner[i][0];
+        here[1 + i] = even.corner[i][0] > 0 ? mean.corner[i][0] / even.corner[i][0] : 0;
+      }
+      here[0] = part / share;
+    }
+  }
   return pressure;
+}
+
+std::size_t SolidBoundaries::n_forces() const {
+  const bool varies = std::ranges::any_of(conditions_, &Condition::varies);
+  return mesh_->boundary.n_owned() * std::size_t(mesh_->dim * (varies ? 1 + n_corners(*mesh_) : 1));
+}
+
+/// Adds a traction or pressure that varies within faces.
+void SolidBoundaries::add_varying_forces(const Condition& c, double t, std::span<double> forces) const {
+  const std::size_t dim = std::size_t(mesh_->dim), n_corner = std::size_t(n_corners(*mesh_)),
+                    n_whole = mesh_->boundary.n_owned() * dim;
+  const double level = c.liquid ? c.liquid->level(t) : 0;
+  for (const Index f : c.faces) {
+    const Vec3& area = geometry_->face_area[f];
+    const Vec3 n = area.normalized();
+    const auto load = [&](const Vec3& x) {
+      Vec3 value = Vec3::Zero();
+      for (std::size_t a = 0; a < c.traction.size(); ++a) value[Index(a)] = c.traction[a](x, t);
+      if (c.has_pressure()) value -= c.pressure_at(x, level, t) * n;
+      return value;
+    };
+    const fv::FaceMean mean = mean_over(f, load), even = mean_over(f, unit);
+    const Vec3 whole = c.liquid && !is_ring_ ? Vec3(-c.liquid->mean(f, level, Vec3::Zero()) * n) : mean.whole;
+    const std::size_t b = std::size_t(f - mesh_->n_interior);
+    for (std::size_t a = 0; a < dim; ++a) {
+      forces[b * dim + a] += area.norm() * whole[Index(a)];
+      for (std::size_t i = 0; i < n_corner && n_whole < forces.size(); ++i)
+        forces[n_whole + (b * n_corner + i) * dim + a] +=
+            area.norm() * (mean.corner[i] - even.corner[i].cwiseProduct(mean.whole))[Index(a)];
+    }
+  }
 }
 
 void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_pressure) const {
@@ -223,14 +301,19 @@ void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_p
   for (const Condition& c : conditions_) {
     if (c.distributed) c.distributed->add_forces(t, forces);
     if (c.bearing) c.bearing->add_forces(t, forces);
-    if (c.has_pressure() && with_pressure)
-      visit_pressures(c, t, [&](Index f, double p) {
+    if (c.varies() && (with_pressure || !c.has_pressure())) {
+      add_varying_forces(c, t, forces);
+      continue;
+    }
+    if (c.presses && with_pressure)
+      for (const Index f : c.faces) {
+        const double p = c.pressure(Vec3::Zero(), t);
         for (int a = 0; a < dim; ++a) force_on(f)[a] -= p * geometry_->face_area[f][a];
-      });
+      }
     if (c.traction.empty()) continue;
     for (const Index f : c.faces) {
       const double size = geometry_->face_area[f].norm();
-      for (int a = 0; a < dim; ++a) force_on(f)[a] += c.traction[a](geometry_->face_centre[f], t) * size;
+      for (int a = 0; a < dim; ++a) force_on(f)[a] += c.traction[a](Vec3::Zero(), t) * size;
     }
   }
   for (const DistributedForce& load : point_loads_) load.add_forces(t, forces);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
+#include "common/fv/face_mean.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/loads.hpp"
 #include "solid_solver/parameters/parameters.hpp"
@@ -31,10 +33,12 @@ class SolidBoundaries {
   /// True if the patch can hold the solid: some of its faces prescribe more than a force.
   bool holds(std::size_t patch) const { return holds_[patch] != 0; }
 
-  /// Adds tractions, pressures and total loads at time t as forces [N] on boundary faces of owned cells
-  /// (`dim` values per face): thesis (2.64), reference configuration. Collective.
+  /// Number of values that add_forces() takes.
+  std::size_t n_forces() const;
+  /// Adds tractions, pressures and total loads at time t as forces [N] on boundary faces of owned cells (see
+  /// ElasticKernel::add_face_forces): thesis (2.64), reference configuration. Collective.
   void add_forces(double t, std::span<double> forces, bool with_pressure = true) const;
-  /// Pressures at time t on the boundary faces of owned cells, moved by `shift` [Pa].
+  /// Pressures at time t on the boundary faces of owned cells, moved by `shift` [Pa], see FollowerPressure::set().
   std::vector<double> pressures(double t, const Vec3& shift = Vec3::Zero()) const;
 
  private:
@@ -59,20 +63,23 @@ class SolidBoundaries {
     std::optional<HydrostaticPressure> liquid;
     bool is_rigid = false, presses = false;
     bool has_pressure() const { return presses || liquid; }
+    /// True if its traction or pressure varies in space.
+    bool varies() const;
+    /// Pressure at a place, with the height of the free surface of a liquid [Pa].
+    double pressure_at(const Vec3& x, double level, double t) const;
   };
   Condition make_condition(const SolidCondition& from, const std::string& where) const;
   void choose_faces(const mesh::Patch& patch, const SolidBoundary& boundary);
   void make_load(Condition& condition, const SolidCondition& from, const std::string& where) const;
   void make_point_loads(const SolidParameters& parameters);
-  /// Calls take(face, pressure [Pa]) for the faces of a condition.
-  template <class Take>
-  void visit_pressures(const Condition& condition, double t, const Take& take,
-                       const Vec3& shift = Vec3::Zero()) const;
+  void add_varying_forces(const Condition& condition, double t, std::span<double> forces) const;
+  fv::FaceMean mean_over(Index face, const std::function<Vec3(const Vec3&)>& load) const;
   elastic::BoundaryRow row_at(const Condition& condition, Index face) const;
   const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
 
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
+  bool is_ring_;
   std::vector<Condition> conditions_;
   std::vector<Index> condition_of_face_;  // per local boundary face; -1 if bonded
   std::vector<std::uint8_t> holds_;       // per patch

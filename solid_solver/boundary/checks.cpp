@@ -78,28 +78,39 @@ void check_touching(const mesh::LoadedMesh& body, const SolidParameters& paramet
   if (parameters.touching_faces == SolidParameters::TouchingFaces::apart) return;
   const auto is_free = [&](const std::string& patch) {
     const auto at = parameters.boundaries.find(patch);
-    if (at != parameters.boundaries.end() &&
-        (at->second.type != SolidCondition::Type::free || !at->second.parts.empty()))
-      return false;
+    return at == parameters.boundaries.end() ||
+           (at->second.type == SolidCondition::Type::free && at->second.parts.empty());
+  };
+  const auto is_adiabatic = [&](const std::string& patch) {
     if (!parameters.heat) return true;
     const auto heat = parameters.heat->boundaries.find(patch);
     return heat == parameters.heat->boundaries.end() || heat->second.type == HeatBoundary::Type::adiabatic;
   };
+  const auto is_apart = [&](const mesh::TouchingFaces& found, const auto& is_open) {
+    return found.patch != found.other && !is_open(found.patch) && !is_open(found.other);
+  };
   const bool ties = parameters.touching_faces == SolidParameters::TouchingFaces::tie;
   for (const mesh::Patch& patch : body.mesh.patches)
-    if (ties && parallel::sum(body.mesh.comm, double(patch.count)) == 0 && !is_free(patch.name))
+    if (ties && parallel::sum(body.mesh.comm, double(patch.count)) == 0 &&
+        !(is_free(patch.name) && is_adiabatic(patch.name)))
       throw Error(
           "boundaries.{}: all faces of this patch are tied to other faces ('touching-faces: tie'), so that its condition "
           "acts nowhere. Make it 'free' and without heat, or set 'touching-faces: apart'.",
           patch.name);
   for (const mesh::TouchingFaces& found : mesh::find_touching_faces(body.mesh, body.geometry)) {
-    if (found.patch != found.other && !is_free(found.patch) && !is_free(found.other)) continue;
+    // Parts are separate only if each of the fields that are solved has its condition on both sides.
+    const bool forces = parameters.analysis == SolidParameters::Analysis::thermal || is_apart(found, is_free),
+               heat = !parameters.heat || is_apart(found, is_adiabatic);
+    if (forces && heat) continue;
     throw Error(
         "mesh: {} face{} of patch '{}', the first at {}, touch{} faces of {} without sharing their points, so that "
-        "neither force nor heat passes there. {} If the parts are meant to be separate, such as the faces of a "
+        "{} passes there. {} If the parts are meant to be separate, such as the faces of a "
         "crack, set 'touching-faces: apart'.",
         found.count, found.count == 1 ? "" : "s", found.patch, text_of(found.where, body.mesh.dim),
         found.count == 1 ? "es" : "", found.patch == found.other ? "the same patch" : "'" + found.other + "'",
+        heat     ? "no force"
+        : forces ? "no heat"
+                 : "neither force nor heat",
         found.alike && ties ? "Only faces in a group of the mesh are tied: put both sides into groups."
         : found.alike
             ? "Merge the double points of the mesh, or set 'touching-faces: tie'."
@@ -139,8 +150,8 @@ void check_axis(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic)
 namespace {
 
 // A motion is free if its resistance relative to the largest one is below this (squared: holding a spot of a
-// thousandth of the body suffices).
-constexpr double resisted = 1e-9;
+// millionth of the body suffices, as the end of a foil is).
+constexpr double resisted = 1e-12;
 
 using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the center, rotation times the size of the body
 using Resistance = Eigen::Matrix<double, 6, 6>;

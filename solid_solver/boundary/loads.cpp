@@ -259,6 +259,12 @@ double mean_positive(double d0, double d1, double d2) {
   return d[1] <= 0 ? corner(d[2], d[0], d[1]) : all + corner(-d[0], -d[1], -d[2]);
 }
 
+double HydrostaticPressure::at(const Vec3& x, double level) const {
+  const double pressure = weight_ * std::max(0., level - up_.dot(x));
+  use_->note(pressure);
+  return pressure;
+}
+
 double HydrostaticPressure::mean(Index face, double level, const Vec3& shift) const {
   const double pressure = below(face, level, shift);
   use_->note(pressure);

@@ -97,6 +97,8 @@ class HydrostaticPressure {
 
   /// Height of the free surface at time t [m].
   double level(double t) const { return level_(Vec3::Zero(), t); }
+  /// Pressure at a place below this free surface [Pa].
+  double at(const Vec3& x, double level) const;
   /// Mean over a face, moved by `shift`, below this free surface [Pa].
   double mean(Index face, double level, const Vec3& shift) const;
 

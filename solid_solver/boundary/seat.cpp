@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/base/error.hpp"
 #include "common/contact/contact.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -19,6 +18,9 @@
 namespace couplet::solid {
 namespace {
 
+constexpr double grown =
+    1.1;  // strain energy over the largest so far with which what the mesh misses of it is looked at again
+
 double product(MPI_Comm comm, std::span<const double> a, std::span<const double> b) {
   return parallel::sum(comm, std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
 }
@@ -30,6 +32,7 @@ double product(MPI_Comm comm, std::span<const double> a, std::span<const double>
 struct PhaseDrift {
   double way = 0, size = 0;        // integral of |v|, largest |u| [m]
   double kinetic = 0, strain = 0;  // integrals of the energies of the whole body [J s]
+  double largest = 0, missed = 0;  // strain energy [J], and the relative error of the mesh in it
   /// Relative error of the displacement for a relative error `stiffness` of the strain energy.
   double over_size(double stiffness) const {
     if (!(size > 0) || !(strain > 0)) return 0;
@@ -39,7 +42,7 @@ struct PhaseDrift {
   }
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(way, size, kinetic, strain);
+    numbers(way, size, kinetic, strain, largest, missed);
   }
 };
 
@@ -80,6 +83,7 @@ class ErrorEstimate final : public diagnostics::Diagnostic {
   double missed_of_large_strain() const;
   double finite_mesh_error() const;
   double thermal_mesh_error(double known) const;
+  double missed_now() const;
   double linear_mesh_error() const;
 
   SolidView view_;
@@ -162,11 +166,17 @@ double ErrorEstimate::thermal_mesh_error(double known) const {
   return std::isnan(weighted) ? weighted : std::max(known, weighted);
 }
 
-double ErrorEstimate::linear_mesh_error() const {
+/// Relative error of the strain energy now; NaN of a body without strain.
+double ErrorEstimate::missed_now() const {
   const StrainAudit& audit = strain_->now(true);
   if (!(audit.scale > 0)) return diagnostics::ErrorParts::unknown;
-  const double missed = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
-  return body_.is_dynamic() ? missed + drift_.over_size(missed) : missed;
+  return std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
+}
+
+double ErrorEstimate::linear_mesh_error() const {
+  if (!body_.is_dynamic()) return missed_now();
+  return drift_.largest > 0 ? drift_.missed + drift_.over_size(drift_.missed)
+                            : diagnostics::ErrorParts::unknown;
 }
 
 void ErrorEstimate::observe(diagnostics::Report&) {
@@ -185,7 +195,8 @@ void ErrorEstimate::observe(diagnostics::Report&) {
   if (strain_) see_swing(step);
 }
 
-/// Half of u . K u is the strain energy, approximately also for gradients without an energy.
+/// Half of u . K u is the strain energy, approximately also for gradients without an energy. What the mesh misses of it is looked at
+/// where it is large: as a body swings through its rest position, only the short waves that its mesh resolves worst have energy.
 void ErrorEstimate::see_swing(const time::StepErrors::Seen& step) {
   const SolidState& now = view_.now();
   const std::vector<double> u = view_.unknowns();
@@ -198,6 +209,9 @@ void ErrorEstimate::see_swing(const time::StepErrors::Seen& step) {
   drift_.size = std::max(drift_.size, step.size);
   drift_.kinetic += now.dt * kinetic;
   drift_.strain += now.dt * strain;
+  if (!(strain > grown * drift_.largest)) return;
+  const double missed = missed_now();
+  if (std::isfinite(missed)) drift_.largest = strain, drift_.missed = missed;
 }
 
 void ErrorEstimate::conclude(diagnostics::Report& report) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/csv/csv_reader.hpp"
 #include "solid_solver/effects.hpp"
@@ -57,7 +56,7 @@ Opinion neglected_inertia(const P& p, double inertia_over_load) {
 
 // In slow motion, the kinetic energy is (w/w_1)^2 of the strain energy.
 Opinion spare_inertia(double kinetic_over_strain, double steps) {
-  if (!(steps > 1)) return {};
+  if (!(steps > 1) || kinetic_over_strain > 1e-3) return {};
   return diagnostics::finding_of(
       {.effect = "inertia",
        .number = kinetic_over_strain,
@@ -67,6 +66,7 @@ Opinion spare_inertia(double kinetic_over_strain, double steps) {
                        "the final state",
                        kinetic_over_strain),
        .left_out = false,
+       .is_spare = true,
        .saves = 1 - 1 / steps});
 }
 
@@ -158,6 +158,7 @@ Opinion thermoelastic_coupling(const P& p, double coupling_number) {
              .limit = 0.005,
              .what = found.what,
              .left_out = false,
+             .is_spare = true,
              .saves = diagnostics::saved_share("solid_solver", "thermoelastic coupling")};
   return diagnostics::finding_of(found);
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/diagnostics/results.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/view.hpp"
 
@@ -31,6 +32,9 @@ class StressError final : public diagnostics::Diagnostic {
     const std::string error = std::isnan(s.error) ? "unknown"
                               : s.error < 0.995   ? fmt::format("{:.2g} %", 100 * s.error)
                                                   : fmt::format("{:.0f} %", 100 * s.error);
+    if (parallel::comm_rank(view_.comm()) == 0)
+      diagnostics::set_result(
+          {"equivalent stress, " + s.where, "Pa", {s.value}, s.error, diagnostics::place_text(s.place)});
     diagnostics::finding(
         parallel::comm_rank(view_.comm()),
         {.id = "stress-error",

@@ -210,7 +210,7 @@ std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
     const std::vector<double> body = body_.body_forces(t);
     if (!body.empty()) kernel_.add_cell_forces(body, at_time);
     if (body_.thermal()) body_.thermal()->add_loads(t, kernel_, at_time);
-    std::vector<double> faces(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+    std::vector<double> faces(body_.boundaries().n_forces(), 0);
     body_.boundaries().add_forces(t, faces);
     kernel_.add_face_forces(faces, at_time);
     return at_time;

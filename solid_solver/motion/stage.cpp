@@ -79,10 +79,9 @@ void SolidStepper::prepare_stage(StageWork& work) {
                          parameters_.output.energies;
   work.known_force.clear();
   work.rhs.assign(is_loaded ? elastic_.n_unknowns() : 0, 0);
-  work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+  work.face_force = body_.dead_loads(work.place_time);
   add_body_forces(work.place_time, work.rhs);
   if (body_.thermal()) body_.thermal()->add_loads(work.place_time, kernel_, work.rhs);
-  body_.add_dead_loads(work.place_time, work.face_force);
   if (parameters_.output.energies) {
     work.loads = work.rhs;
     work.known.assign(trial_.known.size(), 0);
@@ -235,10 +234,10 @@ void SolidStepper::add_face_forces(const StageWork& work) {
     return;
   }
   std::vector<double> force = work.face_force;
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] += last_.interface[i];
+  for (std::size_t i = 0; i < last_.interface.size(); ++i) force[i] += last_.interface[i];
   if (const std::vector<double>& before = state_.interface; !before.empty() && state_.steps > 0) {
     const double on = (work.stage.place - 0.5) * work.stage.dt / (0.5 * (step_.dt + state_.dt));
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] += on * (last_.interface[i] - before[i]);
+    for (std::size_t i = 0; i < before.size(); ++i) force[i] += on * (last_.interface[i] - before[i]);
   }
   last_.face_force = kernel_.add_face_forces(force, last_.rhs);
 }

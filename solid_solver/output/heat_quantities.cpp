@@ -210,10 +210,7 @@ class HeatEstimates {
         mesh_(conduction_.mesh()),
         points_(heat.point_temperature(heat.accepted())),
         fits_(local_heat(heat, heat.accepted())),
-        source_missed_(heat.source_missed()),
-        flux_missed_(conduction_.flux_faces().size()) {
-    heat.boundaries().fluxes_missed(conduction_, heat.accepted().time, flux_missed_);
-  }
+        source_missed_(heat.source_missed()) {}
 
   QuantityEstimate of(const std::string& name, const SolidQuantity& quantity) const {
     return quantity.field == "heat" ? through(name, quantity.patch) : at(name, place_of(quantity));
@@ -295,9 +292,6 @@ class HeatEstimates {
     const auto& flux = conduction_.flux_faces();
     for (std::size_t i = 0; i < transfer.size(); ++i)
       if (is_here(flux[i])) faces[std::size_t(flux[i] - mesh_.n_interior)] = transfer[i];
-    for (std::size_t i = 0; i < flux.size(); ++i)
-      if (is_here(flux[i])) e.local += flux_missed_[i];
-    e.local = parallel::sum(mesh_.comm, e.local);
     e.is_signed = true;
     e.dual = missed(in_rows(std::vector<double>(std::size_t(mesh_.cells.n_owned()), 0), faces), known);
     return e;
@@ -307,8 +301,6 @@ class HeatEstimates {
     const HeatState z = heat_.answer(std::move(rows), std::move(known));
     double source = 0;
     for (std::size_t c = 0; c < source_missed_.size(); ++c) source += z.cells[c] * source_missed_[c];
-    for (std::size_t i = 0; i < flux_missed_.size(); ++i)
-      source += z.boundary[std::size_t(conduction_.flux_faces()[i] - mesh_.n_interior)] * flux_missed_[i];
     return weighted_defect(heat_, fits_, z) - parallel::sum(mesh_.comm, source);
   }
 
@@ -318,7 +310,6 @@ class HeatEstimates {
   const std::vector<double> points_;
   const std::vector<LocalHeat> fits_;
   const std::vector<double> source_missed_;
-  std::vector<double> flux_missed_;
 };
 
 }  // namespace

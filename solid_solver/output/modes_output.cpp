@@ -2,11 +2,10 @@
 // Free vibrations and buckling in SolidOutput.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/modal_model.hpp"
 #include "common/parallel/collective.hpp"
@@ -46,6 +45,27 @@ void SolidOutput::write_modes() {
   write_vibrations(*problem, found, "");
 }
 
+/// Writes shapes to <file>.h5 and .xdmf, as point fields <name>-1, ... Collective.
+void SolidOutput::write_shapes(const char* file, const char* name,
+                               const std::vector<std::vector<double>>& shapes) {
+  const mesh::Mesh& mesh = body_.mesh();
+  std::vector<std::vector<double>> points;
+  std::vector<io::OutputField> fields;
+  for (const std::vector<double>& shape : shapes) {
+    std::vector<double>& values =
+        points.emplace_back(std::size_t(mesh.points.n_local()) * std::size_t(mesh.dim));
+    body_.kernel().point_values(shape, {}, values);
+    mesh.points.update_ghosts(values, mesh.dim);
+  }
+  for (std::size_t m = 0; m < points.size(); ++m)
+    fields.push_back(
+        {fmt::format("{}-{}", name, m + 1), "-", io::OutputField::Place::points, mesh.dim, points[m]});
+  if (!fields.empty())
+    io::FieldWriter(mesh, body_.geometry().points, context_.output_folder, file, false,
+                    std::numeric_limits<double>::quiet_NaN())
+        .write(stepper_.state().time, body_.geometry().points, fields);
+}
+
 /// `of`: of what, for the log.
 void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::EigenModes& found,
                                    const char* of) {
@@ -55,6 +75,7 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
   for (const double m : cell_masses(body_)) model.mass += m;
   model.mass = parallel::sum(mesh.comm, model.mass);
   const double error = mode_error(body_, found);
+  write_shapes("mode-shapes", "mode", found.shape);
   if (parallel::comm_rank(mesh.comm) != 0) return;
   io::Series series(context_.output_folder / "modes.csv",
                     {"number", "frequency [Hz]", "effective mass x [kg]", "effective mass y [kg]",
@@ -66,8 +87,14 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
     series.row(row);
   }
   if (mesh.dim == 3) couplet::modes::write_modes(context_.output_folder / "modes.h5", model, "");
+  diagnostics::set_result(
+      {"free vibrations",
+       "Hz",
+       {model.frequency.begin(),
+        model.frequency.begin() + std::min<std::ptrdiff_t>(5, std::ssize(model.frequency))},
+       error});
   log::info(
-      "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}; estimated error due "
+      "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv, shapes in mode-shapes.xdmf{}; max residual {:.1e}; estimated error due "
       "to the mesh up to {:.2g} %",
       model.n_modes(), of, model.frequency.front(), model.frequency.back(),
       mesh.dim == 3 ? ", their surface shapes in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
@@ -89,7 +116,6 @@ void SolidOutput::write_preloaded_modes() {
 void SolidOutput::write_buckling() {
   if (context_.output_folder.empty()) return;
   const mesh::Mesh& mesh = body_.mesh();
-  const mesh::Geometry& geometry = body_.geometry();
   const int asked = body_.parameters().output.buckling;
   Buckling found;
   try {
@@ -97,22 +123,9 @@ void SolidOutput::write_buckling() {
   } catch (const SolveFailure& e) {
     throw Error("output.buckling: {}", e.what());
   }
-  std::vector<std::vector<double>> points;
-  std::vector<io::OutputField> fields;
-  for (const std::vector<double>& shape : found.shape) {
-    std::vector<double>& values =
-        points.emplace_back(std::size_t(mesh.points.n_local()) * std::size_t(mesh.dim));
-    body_.kernel().point_values(shape, {}, values);
-    mesh.points.update_ghosts(values, mesh.dim);
-  }
-  for (std::size_t m = 0; m < points.size(); ++m)
-    fields.push_back(
-        {fmt::format("buckling-{}", m + 1), "-", io::OutputField::Place::points, mesh.dim, points[m]});
-  if (!fields.empty())
-    io::FieldWriter(mesh, geometry.points, context_.output_folder, "buckling", false,
-                    std::numeric_limits<double>::quiet_NaN())
-        .write(stepper_.state().time, geometry.points, fields);
+  write_shapes("buckling", "buckling", found.shape);
   if (parallel::comm_rank(mesh.comm) == 0) {
+    if (!found.factor.empty()) diagnostics::set_result({"load factors of buckling", "1", found.factor});
     io::Series series(context_.output_folder / "buckling.csv", {"number", "load factor [-]"});
     for (std::size_t m = 0; m < found.factor.size(); ++m)
       series.row(std::vector<double>{double(m + 1), found.factor[m]});

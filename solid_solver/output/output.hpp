@@ -61,6 +61,7 @@ class SolidOutput {
 
  private:
   void write_volume(double time, std::span<const double> points, std::span<const Vec3> places);
+  void write_shapes(const char* file, const char* name, const std::vector<std::vector<double>>& shapes);
   void write_vibrations(const SolidProblem& problem, const modes::EigenModes& found, const char* of);
   void write_probes(double time, std::span<const double> points);
   void write_reactions(double time, std::span<const double> points);

@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/fv/gradients.hpp"
 #include "common/mesh/topology.hpp"
@@ -185,7 +186,14 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
                .sentence = fmt::format("{}: {} {}: {:.6g} {}, estimated error {}, {}", q.name, q.what, where,
                                        q.value, q.unit, error, method_of(q))});
   }
-  if (rank != 0 || context.output_folder.empty()) return;
+  if (rank != 0) return;
+  for (const QuantityEstimate& q : found)
+    diagnostics::set_result({q.name + ": " + q.what,
+                             q.unit,
+                             {q.value},
+                             q.value != 0 ? q.error() / std::abs(q.value) : std::nan(""),
+                             q.patch.empty() ? diagnostics::place_text(q.place) : q.patch});
+  if (context.output_folder.empty()) return;
   std::string text =
       "quantity,unit,value,estimated error,at the place,by the dual problem,of the whole body,method\n";
   for (const QuantityEstimate& q : found)

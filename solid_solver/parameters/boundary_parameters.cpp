@@ -19,7 +19,6 @@ using Texts = std::vector<config::ExpressionText>;
 
 /// Checks an expression for a total, which may depend only on time.
 std::string problem_of_total(const config::ExpressionText& text) {
-  if (std::string problem = fv::problem_of(text); !problem.empty()) return problem;
   return fv::Expression(text).uses_space()
              ? fmt::format(
                    "'{}' depends on x, y or z, but a total load has no position; it may depend on t "
@@ -28,21 +27,19 @@ std::string problem_of_total(const config::ExpressionText& text) {
              : "";
 }
 
-std::string problem_of_totals(const Texts& texts, int n) {
-  if (std::string problem = fv::problem_of(texts, n); !problem.empty()) return problem;
+std::string problem_of_totals(const Texts& texts) {
   for (const auto& text : texts)
     if (std::string problem = problem_of_total(text); !problem.empty()) return problem;
   return "";
 }
 
-void declare_force(config::Section& s, const char* key, Texts& force, const int& dimension, bool is_required,
-                   const char* doc) {
+void declare_force(config::Section& s, const char* key, Texts& force, bool is_required, const char* doc) {
   {
     config::Key k = s.value(key, force);
     k.unit("N").plausible(1e-9, 1e12).doc(doc);
     if (is_required) k.required();
   }
-  s.check([&] { return force.empty() ? std::string() : problem_of_totals(force, dimension); }, key);
+  s.check([&] { return problem_of_totals(force); }, key);
 }
 
 void declare_moment(config::Section& s, Texts& moment, const int& dimension) {
@@ -53,8 +50,7 @@ void declare_moment(config::Section& s, Texts& moment, const int& dimension) {
         .plausible(1e-9, 1e12)
         .doc("moment about 'point', one expression of t per component; in 2-D one, positive from x to y");
   }
-  s.check([&] { return moment.empty() ? std::string() : problem_of_totals(moment, dimension == 3 ? 3 : 1); },
-          "moment");
+  s.check([&] { return problem_of_totals(moment); }, "moment");
 }
 
 std::string problem_of_nothing(const TotalLoad& load) {
@@ -63,8 +59,8 @@ std::string problem_of_nothing(const TotalLoad& load) {
 
 }  // namespace
 
-void declare_total_force(config::Section& s, TotalLoad& load, const int& dimension) {
-  declare_force(s, "value", load.force, dimension, true,
+void declare_total_force(config::Section& s, TotalLoad& load) {
+  declare_force(s, "value", load.force, true,
                 "total force on these faces, one expression of t per component; uniform force per area, in "
                 "2-D per metre of depth");
 }
@@ -75,7 +71,7 @@ void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimensi
       .plausible(1e-9, 1e4)
       .required()
       .doc("point of application of the force, on the patch or away from it");
-  declare_force(s, "force", load.force, dimension, false,
+  declare_force(s, "force", load.force, false,
                 "force at 'point', one expression of t per component; in 2-D per metre of depth");
   declare_moment(s, load.moment, dimension);
   s.choice("coupling", load.is_rigid, {{"distributing", false}, {"rigid", true}})
@@ -85,8 +81,8 @@ void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimensi
   s.check([&] { return load.is_rigid ? std::string() : problem_of_nothing(load); }, "point");
 }
 
-void declare_bearing_load(config::Section& s, TotalLoad& load, const int& dimension) {
-  declare_force(s, "force", load.force, dimension, true,
+void declare_bearing_load(config::Section& s, TotalLoad& load) {
+  declare_force(s, "force", load.force, true,
                 "total force of a pin or shaft on the cylinder, one expression of t per component, normal "
                 "to its axis; in 2-D per metre of depth");
 }
@@ -125,7 +121,7 @@ void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int
 
 void declare(config::Section& s, PointLoad& load, const int& dimension) {
   s.value("point", load.point).unit("m").plausible(1e-9, 1e4).required().doc("point on the surface");
-  declare_force(s, "force", load.force, dimension, false,
+  declare_force(s, "force", load.force, false,
                 "force at 'point', one expression of t per component; in 2-D per metre of depth");
   declare_moment(s, load.moment, dimension);
   s.value("radius", load.radius)
@@ -151,11 +147,10 @@ using Type = SolidCondition::Type;
 
 /// Either empty, or one expression per component.
 void declare_vector(config::Section& s, const char* key, std::vector<config::ExpressionText>& texts,
-                    const int& dimension, const char* unit, const char* doc) {
+                    const char* unit, const char* doc) {
   constexpr std::pair usual_length{1e-9, 1e4}, usual_pressure{1e-9, 1e11};
   const auto [lowest, highest] = std::string_view(unit) == "m" ? usual_length : usual_pressure;
   s.value(key, texts).unit(unit).plausible(lowest, highest).doc(doc);
-  s.check([&] { return texts.empty() ? std::string() : fv::problem_of(texts, dimension); }, key);
 }
 
 std::string problem_of_components(const SolidCondition& c, int dimension) {
@@ -163,12 +158,7 @@ std::string problem_of_components(const SolidCondition& c, int dimension) {
   const bool any = given(0) || given(1) || given(2);
   if (any != c.value.empty())
     return "give either 'value' (all components) or 'components' (the prescribed ones of x, y, z)";
-  if (!c.value.empty()) return fv::problem_of(c.value, dimension);
-  if (dimension == 2 && given(2)) return "a 2-dimensional scene has no component z";
-  for (const auto& text : c.components)
-    if (text)
-      if (std::string problem = fv::problem_of(*text); !problem.empty()) return problem;
-  return "";
+  return dimension == 2 && given(2) ? "a 2-dimensional scene has no component z" : "";
 }
 
 void declare_displacement(config::Section& s, SolidCondition& c, const int& dimension) {
@@ -188,19 +178,19 @@ void declare_displacement(config::Section& s, SolidCondition& c, const int& dime
       "instead of value: the prescribed components; the others are free. On a part of a patch this holds "
       "its faces, but not the vertices at its edge");
   s.check([&] { return problem_of_components(c, dimension); }, "value");
-  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on the free components");
+  declare_vector(s, "traction", c.traction, "Pa", "force per area on the free components");
 }
 
-void declare_plate(config::Section& s, SolidCondition& c, const int& dimension) {
+void declare_plate(config::Section& s, SolidCondition& c) {
   s.value("plate-normal", c.normal).doc("normal of the plate, any length");
   s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "plate-normal");
-  declare_vector(s, "traction", c.traction, dimension, "Pa",
+  declare_vector(s, "traction", c.traction, "Pa",
                  "force per area on the remaining free "
                  "components");
 }
 
-void declare_roller(config::Section& s, SolidCondition& c, const int& dimension) {
+void declare_roller(config::Section& s, SolidCondition& c) {
   s.value("direction", c.normal).required().doc("direction that is held, any length");
   s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "direction");
@@ -208,22 +198,19 @@ void declare_roller(config::Section& s, SolidCondition& c, const int& dimension)
       .unit("m")
       .plausible(1e-9, 1e4)
       .doc("displacement along this direction, of x, y, z, t");
-  s.check([&c] { return fv::problem_of(c.along); }, "value");
-  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area across this direction");
+  declare_vector(s, "traction", c.traction, "Pa", "force per area across this direction");
 }
 
-void declare_spring(config::Section& s, SolidCondition& c, const int& dimension) {
+void declare_spring(config::Section& s, SolidCondition& c) {
   s.value("stiffness", c.stiffness)
       .unit("N/m^3")
       .plausible(1, 1e16)
       .required()
       .doc("force per area and displacement, of x, y, z (Winkler foundation)");
-  s.check([&c] { return fv::problem_of(c.stiffness); }, "stiffness");
   s.choice("direction", c.along_normal, {{"all", false}, {"normal", true}})
       .doc("displacement components that the springs resist");
-  declare_vector(s, "value", c.value, dimension, "m",
-                 "displacement of the far ends of the springs, of x, y, z, t");
-  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area in addition to the springs");
+  declare_vector(s, "value", c.value, "m", "displacement of the far ends of the springs, of x, y, z, t");
+  declare_vector(s, "traction", c.traction, "Pa", "force per area in addition to the springs");
 }
 
 void declare_condition(config::Section& s, SolidCondition& c, const int& dimension, bool whole_patch) {
@@ -234,7 +221,6 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
         .plausible(1e-9, 1e11)
         .required()
         .doc("force per area, one expression of x, y, z, t per component");
-    v.check([&] { return fv::problem_of(c.value, dimension); }, "value");
   };
   const auto pressure = [&](config::Section& v) {
     v.value("value", c.pressure)
@@ -242,14 +228,13 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
         .plausible(1e-9, 1e11)
         .required()
         .doc("pressure acting into the solid, of x, y, z, t");
-    v.check([&] { return fv::problem_of(c.pressure); }, "value");
   };
-  const auto plate = [&](config::Section& v) { declare_plate(v, c, dimension); };
-  const auto roller = [&](config::Section& v) { declare_roller(v, c, dimension); };
-  const auto spring = [&](config::Section& v) { declare_spring(v, c, dimension); };
-  const auto force = [&](config::Section& v) { declare_total_force(v, c.load, dimension); };
+  const auto plate = [&](config::Section& v) { declare_plate(v, c); };
+  const auto roller = [&](config::Section& v) { declare_roller(v, c); };
+  const auto spring = [&](config::Section& v) { declare_spring(v, c); };
+  const auto force = [&](config::Section& v) { declare_total_force(v, c.load); };
   const auto remote = [&](config::Section& v) { declare_remote_load(v, c.load, dimension); };
-  const auto bearing = [&](config::Section& v) { declare_bearing_load(v, c.load, dimension); };
+  const auto bearing = [&](config::Section& v) { declare_bearing_load(v, c.load); };
   const auto hydrostatic = [&](config::Section& v) { declare_hydrostatic_pressure(v, c.load, dimension); };
   const auto nothing = [](config::Section&) {};
   std::vector<std::tuple<std::string, Type, config::Section::Declare>> types{
@@ -314,7 +299,13 @@ void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
         p.value("where", part.where)
             .required()
             .doc("expression of x, y, z at the face centres, nonzero on the faces of this part");
-        p.check([&part] { return fv::problem_of(part.where); }, "where");
+        p.check(
+            [&part] {
+              return fv::Expression(part.where).uses_time()
+                         ? "the faces of a part stay the same: use an expression of x, y, z, without t"
+                         : "";
+            },
+            "where");
         declare_condition(p, part, dimension, false);
       },
       "parts of the patch, such as a line of faces, with their own condition; the first one that selects a "

@@ -38,7 +38,6 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
         .plausible(q.lowest, q.highest)
         .required()
         .doc(doc);
-    v.check([&text] { return fv::problem_of(text); }, q.name);
   };
   s.variant<Type>(
       "type", b.type,
@@ -93,12 +92,10 @@ void declare(config::Section& s, HeatParameters& h) {
       .unit("K")
       .plausible(70, 5000)
       .doc("initial temperature, of x, y, z");
-  s.check([&h] { return fv::problem_of(h.initial_temperature); }, "initial-temperature");
   s.value("source", h.source)
       .unit("W/m^3")
       .plausible(1e-6, 1e14)
       .doc("heat source in the solid, of x, y, z, t");
-  s.check([&h] { return fv::problem_of(h.source); }, "source");
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
       "patch", "patches that are not adiabatic; mechanical symmetry planes are thermal ones as well");
@@ -147,7 +144,6 @@ void check_heat(config::Section& s, SolidParameters& p) {
         },
         p.materials.empty() ? "material" : "materials");
   };
-  s.check([&] { return p.temperature ? fv::problem_of(*p.temperature) : ""; }, "temperature");
   s.check(
       [&] {
         return takes_temperature(p) && (p.heat || p.temperature)

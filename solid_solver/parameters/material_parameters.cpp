@@ -35,10 +35,6 @@ std::string problem_of_constants(const Orthotropic& m) {
                "nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 positive (nu_ji = nu_ij E_j / E_i)";
 }
 
-std::string problem_of_axis(const std::vector<config::ExpressionText>& axis) {
-  return axis.empty() ? std::string() : fv::problem_of(axis, static_cast<int>(axis.size()));
-}
-
 }  // namespace
 
 void declare(config::Section& s, Orthotropic& m) {
@@ -54,12 +50,10 @@ void declare(config::Section& s, Orthotropic& m) {
   s.check([&m] { return problem_of_constants(m); }, "poissons-ratios");
   s.value("first-axis", m.first_axis)
       .doc("direction of axis 1, one expression of x, y, z per component, any length; absent: x");
-  s.check([&m] { return problem_of_axis(m.first_axis); }, "first-axis");
   s.value("second-axis", m.second_axis)
       .doc(
           "axis 2, of which only the part normal to axis 1 counts; absent: y; in two dimensions it follows "
           "from axis 1");
-  s.check([&m] { return problem_of_axis(m.second_axis); }, "second-axis");
 }
 
 elastic::ElasticMatrix matrix_of(const Orthotropic& m) {

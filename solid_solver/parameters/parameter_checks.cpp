@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "common/fv/expression.hpp"
-
 namespace couplet::solid {
 namespace {
 
@@ -57,11 +55,6 @@ void check_motion(config::Section& s, SolidParameters& p) {
 }  // namespace
 
 void check_together(config::Section& s, SolidParameters& p) {
-  const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
-    s.check([&] { return texts.empty() ? std::string() : fv::problem_of(texts, p.dimension); }, key);
-  };
-  check_components("body-force", p.body_force);
-  check_components("initial-velocity", p.initial_velocity);
   s.check(
       [&] {
         return p.gravity.empty() || std::ssize(p.gravity) == p.dimension

@@ -138,14 +138,15 @@ void declare_scene(config::Section& s, SolidParameters& p) {
        {{"refused", TouchingFaces::refused}, {"tie", TouchingFaces::tie}, {"apart", TouchingFaces::apart}})
       .doc(
           "parts of the mesh that touch without sharing points: refused unless the faces on both sides are patches of their "
-          "own with a load or support; tie joins faces in groups of the mesh that have the same corners (within 1e-4 of their "
+          "own with a load or support, with `heat` also a thermal one; tie joins faces in groups of the mesh that have the same corners (within 1e-4 of their "
           "size), and refuses conditions on them; apart leaves them, as those of a crack");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
   s.choice("plane", p.plane,
            {{"strain", Plane::strain}, {"stress", Plane::stress}, {"axisymmetric", Plane::axisymmetric}})
-      .doc("assumption of a 2-D scene; axisymmetric: a body of revolution about the y axis, x is the radius");
+      .doc(
+          "assumption of a 2-D scene; axisymmetric: a body of revolution about the y axis, x is the radius; edges on the axis x = 0 need 'type: symmetry'");
   s.check(
       [&p] {
         return p.dimension == 3 && p.plane != Plane::strain ? "only for 2-dimensional scenes; remove this key"
@@ -156,10 +157,16 @@ void declare_scene(config::Section& s, SolidParameters& p) {
            {{"dynamic", Analysis::dynamic},
             {"static", Analysis::static_},
             {"thermal", Analysis::thermal},
+            {"modal", Analysis::modal},
             {"buckling", Analysis::buckling}})
       .doc(
-          "static neglects inertia; thermal conducts heat only; buckling is static with 'output: {buckling: "
+          "static neglects inertia; thermal conducts heat only; modal computes the free vibrations of 'output: "
+          "{modes: 10}', or the number given there, at the start: one step without loads is enough; buckling is static with 'output: {buckling: "
           "4}', or the number given there, and a factor below 1 is its answer");
+  if (p.analysis == Analysis::modal) {
+    p.analysis = Analysis::dynamic;
+    p.output.modes = 10;
+  }
   if (p.analysis == Analysis::buckling) {
     p.analysis = Analysis::static_;
     p.seeks_buckling = true;

@@ -53,7 +53,8 @@ void declare(config::Section& section, SolidQuantity& quantity, int dimension);
 void declare(config::Section& section, SolidOutputParameters& output);
 
 struct SolidParameters {
-  enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: becomes static_ after parsing
+  // After parsing modal is dynamic and buckling static_.
+  enum class Analysis { static_, dynamic, thermal, modal, buckling };
   enum class Plane { strain, stress, axisymmetric };
   enum class TouchingFaces { refused, tie, apart };
   enum class Kinematics { small_strain, finite_strain };

@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/face_mean.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -114,32 +115,22 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
     const OnPatch& here = on_patch_[p];
     const mesh::Patch& patch = mesh_->patches[p];
     for (Index f = patch.first; f < patch.first + patch.count; ++f, ++next) {
-      const Vec3& x = geometry_->face_centre[f];
       const double area = geometry_->face_area[f].norm();
       heat[next] = 0;
       if (!transfer.empty()) transfer[next] = 0;
-      if (here.type == Kind::flux) heat[next] = area * here.value(x, t);
+      // A flux is integrated; a film acts at the center, where the scheme has the temperature of the face.
+      if (here.type == Kind::flux && here.value.uses_space())
+        heat[next] = area * fv::mean_over_face(*mesh_, *geometry_, f, [&](const Vec3& x) {
+                              return Vec3(here.value(x, t), 0, 0);
+                            }).whole[0];
+      else if (here.type == Kind::flux)
+        heat[next] = area * here.value(geometry_->face_centre[f], t);
       if (here.type == Kind::convection) {
+        const Vec3& x = geometry_->face_centre[f];
         transfer[next] = here.coefficient(x, t);
         heat[next] = area * transfer[next] * here.ambient(x, t);
       }
     }
-  }
-}
-
-// For a quadratic, corners of a segment or parallelogram differ from the center 3 times as much as the mean.
-void HeatBoundaries::fluxes_missed(const fv::ConductionOperator& conduction, double t,
-                                   std::span<double> missed) const {
-  const std::vector<Index> patch_of = mesh_->patch_of_boundary();
-  for (std::size_t i = 0; i < missed.size(); ++i) {
-    const Index f = conduction.flux_faces()[i];
-    const OnPatch& here = on_patch_[std::size_t(patch_of[std::size_t(f - mesh_->n_interior)])];
-    missed[i] = 0;
-    if (here.type != Kind::flux) continue;
-    const auto corners = mesh_->face_points[f];
-    double mean = 0;
-    for (const Index v : corners) mean += here.value(geometry_->points[v], t) / double(corners.size());
-    missed[i] = geometry_->face_area[f].norm() * (mean - here.value(geometry_->face_centre[f], t)) / 3;
   }
 }
 

@@ -33,8 +33,6 @@ class HeatBoundaries final {
   /// Per entry of conduction.flux_faces(): heat independent of the face temperature, |S| (q + h T_inf) [W],
   /// and h [W/(m^2 K)]. `transfer` may be empty without convection.
   void fluxes(double t, std::span<double> heat, std::span<double> transfer) const;
-  /// Per entry: quadrature error of a prescribed flux over the face [W]; 0 elsewhere.
-  void fluxes_missed(const fv::ConductionOperator& conduction, double t, std::span<double> missed) const;
 
  private:
   struct OnPatch {

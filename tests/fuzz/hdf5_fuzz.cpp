@@ -150,7 +150,7 @@ void read_checkpoint(const fs::path& file) {
   reader.read("u", u);
   ASSERT_LT(reader.read("u").size(), 51u);
   reader.read_scalar("dt");
-  coupler::LeastSquaresNewton newton(coupler::AccelerationParameters{}, MPI_COMM_SELF);
+  coupler::QuasiNewton newton(coupler::AccelerationParameters{}, MPI_COMM_SELF);
   newton.load(reader, coupler::IterateOrder::as_they_are(MPI_COMM_SELF,
                                                          {std::vector<double>(3), std::vector<double>(0)}));
 }

@@ -21,7 +21,7 @@ os.environ["OMPI_MCA_rmaps_base_oversubscribe"] = "1"
 def prepare(folder, mistake):
     for mesh in HERE.glob("*.msh"):
         shutil.copy(mesh, folder)
-    text = (HERE / f"{mistake.base}.yaml").read_text(encoding="utf-8")
+    text = mistake.case.read_text(encoding="utf-8")
     for old, new in mistake.edits:
         if text.count(old) != 1:
             raise SystemExit(f"{mistake.name}: '{old}' is in {mistake.base}.yaml {text.count(old)} times instead of once")
@@ -44,7 +44,7 @@ def problems(binaries, mistake):
     with tempfile.TemporaryDirectory(prefix="couplet-mistakes-") as folder:
         folder = pathlib.Path(folder)
         prepare(folder, mistake)
-        how = [] if mistake.run else ["--check"]
+        how = [*([] if mistake.run else ["--check"]), *(f"--set=participants.{mistake.base}.{word}" for word in mistake.set)]
         code, text = call(binaries, folder, mistake, how)
         if mistake.twice is not None:
             if code != 0:
@@ -54,7 +54,9 @@ def problems(binaries, mistake):
         bad = [] if code == wanted else [f"exit code {code} instead of {wanted}"]
         if mistake.outcome != table.RIGHT and mistake.message not in text:
             bad.append(f"it does not say '{mistake.message}'")
-        if mistake.outcome == table.FLAGGED and "warning" not in text:
+        if mistake.says not in text:
+            bad.append(f"it does not say '{mistake.says}'")
+        if mistake.outcome == table.FLAGGED and "warning:" not in text:
             bad.append("it does not warn")
         if mistake.outcome == table.RIGHT and ("implausible" in text or not mistake.message):
             bad.append("it is flagged, or the table does not say why it is right")

@@ -1,175 +1,211 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which generated mutants survive the quick tests of their folder: each is compiled alone, linked before the libraries of the
-build, and given to the tests nearest to it until one fails. What has been judged is kept in a file of JSON lines and not judged again.
-Usage: campaign.py ROOT BUILD RESULTS [--sample N] [--seed S] [--workers N] [--only TEXT] [--again] [--batch-survivors]"""
+"""Which mutants drawn by chance survive the quick suite. All of them stand in one build of a copy of the tree, and a variable of the
+environment says which one acts. Each test runs once as it is, which shows the mutants that it reaches, and then with each of those
+that still lives, cheap tests first; a mutant that fails a test is noticed if the test passes again without it. What is known is kept
+in RESULTS (JSON lines), and a later call continues it.
+Usage: campaign.py ROOT COPY RESULTS [--sample N] [--limit SECONDS] [--tests REGEX] [--again REGEX] [--only write|build|judge|show]"""
 import argparse
-import concurrent.futures
+import collections
 import json
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 
 import generate
-import nearest
-from batch import whole_suite
 from workshop import Workshop
 
-BUDGET = 60.0  # seconds of processor time for the tests of a mutant
-LARGEST_SHARE = 0.15
-HERE = pathlib.Path(__file__).resolve().parent
+LIMIT = 120.0  # seconds of processor time for the tests of a mutant
+MOST_OF_A_TEST = 40.0
+DRAWN = 400  # of which those that compile count, in their order
 
 
 class Records:
-    """What is known, by the names of mutants and tests; the last word counts."""
-
     def __init__(self, file):
-        self.file, self.lock, self.mutants, self.prices = file, threading.Lock(), {}, {}
-        if file.exists():
-            for line in file.read_text().splitlines():
-                self._take(json.loads(line))
+        self.file = file
+        self.refused, self.killed, self.asked, self.tests = set(), {}, collections.defaultdict(dict), {}
+        for line in file.read_text().splitlines() if file.exists() else []:
+            self._take(json.loads(line))
 
-    def _take(self, entry):
-        if "price" in entry:
-            self.prices[entry["test"]] = entry["price"]
+    def _take(self, e):
+        if "refused" in e:
+            self.refused.add(e["refused"])
+        elif "again" in e:  # the test is another one now
+            self.tests.pop(e["again"], None)
+            for asked in self.asked.values():
+                asked.pop(e["again"], None)
+        elif "price" in e:
+            self.tests[e["test"]] = e
         else:
-            self.mutants[entry["name"]] = entry
+            self.asked[e["mutant"]][e["test"]] = e["seconds"]
+            if e["failed"]:
+                self.killed[e["mutant"]] = e["test"]
 
-    def add(self, entry):
-        with self.lock:
-            self._take(entry)
-            with open(self.file, "a", encoding="utf-8") as out:
-                out.write(json.dumps(entry) + "\n")
-
-
-def priced(shop, records, tests):
-    """What sound tests take; one that fails without any mutant says nothing and is not asked."""
-    for test in tests:
-        if test in records.prices:
-            continue
-        outcome = shop.run(test, shop.registered[test]["command"], BUDGET)
-        if not outcome.failed or outcome.stopped:
-            records.add({"test": test, "price": round(outcome.seconds, 2)})
-        print(f"{outcome.seconds:7.1f} s {test}{' FAILS' if outcome.failed else ''}", flush=True)
+    def add(self, **entry):
+        self._take(entry)
+        with open(self.file, "a", encoding="utf-8") as out:
+            out.write(json.dumps(entry) + "\n")
 
 
-def claim_of(outcome):
-    found = re.search(r"^\[  FAILED  \] (\w+[.\w/]+)", outcome.text, re.M)
-    return found[1] if found else "it does not end" if outcome.stopped else ""
+def drawn(root, records, count):
+    """(number, mutant); a number is a place in the draw."""
+    every = enumerate(generate.sample(root, DRAWN), 1)
+    return [(n, m) for n, m in every if m.choice and m.name not in records.refused][:count]
+
+
+def write(root, copy, mutants):
+    """Brings the copy up to date, with the mutants in it."""
+    edits = collections.defaultdict(list)
+    for number, m in mutants:
+        for begin, end, text in m.choice:
+            edits[m.file].append((begin, end, re.sub(r"\bON\b", f"::couplet_mutant::on({number})", text)))
+    for folder, below, files in os.walk(root):
+        here = pathlib.Path(folder).relative_to(root)
+        below[:] = [name for name in below if not (name.startswith((".", "build")) and here == pathlib.Path("."))]
+        for name in files:
+            source, target, file = root / here / name, copy / here / name, (here / name).as_posix()
+            text = source.read_bytes()
+            if file in edits:
+                text = text.decode()
+                for begin, end, new in sorted(edits[file], key=lambda e: e[:2], reverse=True):
+                    text = text[:begin] + new + text[end:]
+                text = f'#include "{copy}/tests/mutants/choice.hpp"\n{text}'.encode()
+            if not target.exists() or target.read_bytes() != text:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(text)
+                shutil.copymode(source, target)
+
+
+def refuse(copy, records, mutants, log):
+    """Leaves out the mutant that stands nearest before each error of the compiler."""
+    known = {n: m.name for n, m in mutants}
+    for file, line in sorted(set(re.findall(r"([\w./-]+\.[ch]pp):(\d+):\d+: error", log))):
+        before = (copy / "build" / file).read_text().splitlines()[max(int(line) - 6, 0):int(line)]
+        for n in re.findall(r"couplet_mutant::on\((\d+)\)", "\n".join(before))[-1:]:
+            if known[int(n)] not in records.refused:
+                records.add(refused=known[int(n)])
+
+
+def build(root, copy, records, count):
+    """Those that do not compile are left out, for the next of the draw."""
+    while True:
+        mutants = drawn(root, records, count)
+        write(root, copy, mutants)
+        if not (copy / "build").exists():
+            subprocess.run(["cmake", "--preset", "release"], cwd=copy, check=True)
+        done = subprocess.run(["ninja", "-C", "build", "-k", "0"], cwd=copy, capture_output=True, text=True, check=False)
+        before = len(records.refused)
+        refuse(copy, records, mutants, done.stdout)
+        if done.returncode == 0:
+            return
+        if len(records.refused) == before:
+            raise SystemExit(done.stdout[-3000:])
 
 
 class Judge:
-    def __init__(self, shop, records):
-        self.shop, self.records, self._codes, self._lock = shop, records, {}, threading.Lock()
+    def __init__(self, shop, records, mutants, limit):
+        self.shop, self.records, self.mutants, self.limit = shop, records, mutants, limit
+        self.page = pathlib.Path(tempfile.mkstemp(prefix="couplet-reached-")[1])
 
-    def _sound_code(self, file, folder):
-        with self._lock:
-            if file not in self._codes:
-                self._codes[file] = hash(self.shop.code(self.shop.object_of(file), folder))
-            return self._codes[file]
+    def _run(self, test, most, number=0):
+        self.page.write_bytes(bytes(4096))
+        outcome = self.shop.run(test, self.shop.registered[test]["command"], most, COUPLET_MUTANT=str(number), COUPLET_REACHED=str(self.page))
+        return outcome, self.page.read_bytes()
 
-    def _asked(self, m, made, folder):
-        """(verdict, by what, tests asked, processor time)"""
-        spent, asked = 0.0, []
-        prices = self.records.prices
-        before = self.records.mutants.get(m.name, {}).get("asked", [])
-        in_order = sorted(nearest.tests_of(m.file, self.shop.registered, prices), key=lambda t: t in before)  # what is new first
-        for test in in_order:
-            price = prices.get(test)
-            target = self.shop.target_of(test)
-            if price is None or spent + price > BUDGET or (target and not self.shop.holds(target, m.file)):
+    def _price(self, test):
+        known = self.records.tests.get(test)
+        names = {m.name for _, m in self.mutants}
+        if known and (known["price"] is None or names <= set(known["known"])):
+            return known
+        outcome, reached = self._run(test, MOST_OF_A_TEST)
+        self.records.add(test=test, price=None if outcome.failed else round(outcome.seconds, 2), known=sorted(names),
+                         reached=[m.name for n, m in self.mutants if reached[n]])
+        return self.records.tests[test]
+
+    def _ask(self, test, number, m, price):
+        most = 4 * price + 5
+        outcome, _ = self._run(test, most, number)
+        if outcome.failed and self._run(test, most)[0].failed:  # it fails now and then without any
+            print(f"UNSTEADY {test}", flush=True)
+            self.records.add(test=test, price=None, known=[], reached=[])
+            return
+        self.records.add(mutant=m.name, test=test, seconds=round(outcome.seconds, 2), failed=outcome.failed)
+        if outcome.failed:
+            print(f"killed {number} {m.name} {m.file}:{m.line} {m.rule}: {m.shown} ({test})", flush=True)
+
+    def __call__(self, tests):
+        excused = reasons()
+        for test in tests:
+            alive = [(n, m) for n, m in self.mutants if m.name not in self.records.killed and m.name not in excused
+                     and test not in (asked := self.records.asked[m.name]) and sum(asked.values()) < self.limit]
+            if not alive:
                 continue
-            try:
-                command = self.shop.broken_command(test, [made], folder, [m.file])
-            except subprocess.CalledProcessError as error:
-                return "not linked", error.stderr[-300:], asked, spent
-            if command is None:
-                continue
-            outcome = self.shop.run(test, command, 4 * price + 5)
-            asked.append(test)
-            spent += outcome.seconds
-            if outcome.failed:
-                return "killed", f"{test} {claim_of(outcome)}".strip(), asked, spent
-        return "survived", "", asked, spent
-
-    def __call__(self, m):
-        source = (self.shop.root / m.file).read_text()
-        with tempfile.TemporaryDirectory(prefix="couplet-mutant-") as name:
-            folder = pathlib.Path(name)
-            begin = time.monotonic()
-            sound = self._sound_code(m.file, folder)
-            try:
-                made = self.shop.compiled(m.file, m.apply(source), folder)
-            except subprocess.CalledProcessError as error:
-                if "error:" not in error.stderr:  # the compiler was ended from outside
-                    return "interrupted", "", [], 0
-                verdict = ("not compiled", re.sub(r"\s+", " ", error.stderr)[:200], [], 0)
-            else:
-                same = hash(self.shop.code(made, folder)) == sound
-                verdict = ("equivalent", "", [], 0) if same else self._asked(m, made, folder)
-        self.records.add({"name": m.name, "file": m.file, "line": m.line, "kind": m.kind, "rule": m.rule, "shown": m.shown, "verdict": verdict[0],
-                          "by": verdict[1], "asked": verdict[2], "seconds": round(verdict[3], 1), "clock": round(time.monotonic() - begin)})
-        return verdict
+            known = self._price(test)
+            print(f"{test}: {known['price']} s, reaches {len(known['reached'])}", flush=True)
+            for n, m in alive:
+                if known["price"] is not None and m.name in known["reached"]:
+                    self._ask(test, n, m, known["price"])
+                    known = self.records.tests[test]
 
 
-def summary(drawn, records):
-    counts = {}
-    for m in drawn:
-        verdict = records.mutants.get(m.name, {}).get("verdict", "not judged")
-        counts[verdict] = counts.get(verdict, 0) + 1
-    judged = counts.get("killed", 0) + counts.get("survived", 0)
-    share = counts.get("survived", 0) / judged if judged else 1
-    text = f"{counts.get('survived', 0)} of {judged} mutants survive ({100 * share:.1f} %)"
-    return text + "".join(f"; {n} {v}" for v, n in sorted(counts.items()) if v not in ("killed", "survived")), judged, share
+def quick(shop, records):
+    """Tests of the quick suite, cheap ones first: by what they took here, or by ctest's own record."""
+    def properties(entry):
+        return {p["name"]: p["value"] for p in entry.get("properties", [])}
+
+    costs = {}
+    file = shop.build / "Testing/Temporary/CTestCostData.txt"
+    for words in (line.split() for line in file.read_text().splitlines() if file.exists()):
+        if len(words) == 3:
+            costs[words[0]] = float(words[2])
+    names = [t for t, e in shop.registered.items() if "long" not in properties(e).get("LABELS", []) and not properties(e).get("DISABLED")]
+    return sorted(names, key=lambda t: (records.tests.get(t, {}).get("price") or costs.get(t, 3.0), t))
 
 
 def reasons():
     """Names of the survivors that survivors.md gives a reason for."""
-    return set(re.findall(r"^\| `([0-9a-f]{10})` \|", (HERE / "survivors.md").read_text(), re.M))
+    return set(re.findall(r"^\| `([0-9a-f]{10})` \|", (pathlib.Path(__file__).resolve().parent / "survivors.md").read_text(), re.M))
 
 
-def arguments():
-    reader = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    reader.add_argument("root", type=pathlib.Path)
-    reader.add_argument("build", type=pathlib.Path)
-    reader.add_argument("results", type=pathlib.Path)
-    reader.add_argument("--sample", type=int, default=generate.SAMPLE)
-    reader.add_argument("--seed", type=int, default=generate.SEED)
-    reader.add_argument("--workers", type=int, default=1)
-    reader.add_argument("--only", default="", help="mutants whose name or file holds this")
-    reader.add_argument("--again", action="store_true", help="survivors of before that have no reason are judged again")
-    reader.add_argument("--batch-survivors", action="store_true", help="survivors once against the whole suite")
-    return reader.parse_args()
+def show(records, mutants):
+    alive = [(n, m) for n, m in mutants if m.name not in records.killed]
+    reached = {name for e in records.tests.values() for name in e["reached"]}
+    for n, m in alive:
+        why = "equivalent" if m.name in reasons() else f"{len(records.asked[m.name])} tests" if m.name in reached else "not reached"
+        print(f"survived {n} {m.name} {m.file}:{m.line} {m.rule}: {m.shown} ({why})")
+    equivalent = sum(m.name in reasons() for _, m in alive)
+    print(f"{len(alive)} of {len(mutants)} mutants survive ({100 * len(alive) / len(mutants):.1f} %), {equivalent} of them equivalent, "
+          f"over {len({m.file for _, m in mutants})} files; {len(records.refused)} do not compile")
+    return 1 if len(alive) > 0.12 * len(mutants) or equivalent > 0.03 * len(mutants) else 0
 
 
 def main():
-    asked = arguments()
-    shop, records = Workshop(asked.root.resolve(), asked.build.resolve()), Records(asked.results)
-    drawn = generate.sample(shop.root, asked.sample, asked.seed)
-    chosen = [m for m in drawn if asked.only in m.name or asked.only in m.file]
-    if asked.batch_survivors:
-        whole_suite(shop, records, [m for m in chosen if records.mutants.get(m.name, {}).get("verdict") == "survived"])
-    else:
-        known = records.mutants
-        excused = reasons()
-        todo = [m for m in chosen if m.name not in known or (asked.again and known[m.name]["verdict"] == "survived" and m.name not in excused)]
-        todo.sort(key=lambda m: m.name in known)  # what is new first
-        priced(shop, records, dict.fromkeys(t for m in todo for t in nearest.tests_of(m.file, shop.registered, {})))
-        judge = Judge(shop, records)
-        with concurrent.futures.ThreadPoolExecutor(asked.workers) as pool:
-            for m, (verdict, by, _, seconds) in zip(todo, pool.map(judge, todo)):
-                print(f"{verdict:12} {m.name} {m.file}:{m.line} {m.rule}: {m.shown}" + (f" ({by}, {seconds:.0f} s)" if by else ""), flush=True)
-    text, judged, share = summary(drawn, records)
-    bare = [m for m in drawn if records.mutants.get(m.name, {}).get("verdict") == "survived" and m.name not in reasons()]
-    for m in bare:
-        print(f"SURVIVED without a reason in survivors.md: {m.name} {m.file}:{m.line} {m.rule}: {m.shown}")
-    print(f"{text}; {len(bare)} of the survivors without a reason")
-    whole = all(m.name in records.mutants for m in drawn)
-    return 0 if whole and judged and share <= LARGEST_SHARE and not bare else 1
+    reader = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    reader.add_argument("root", type=pathlib.Path)
+    reader.add_argument("copy", type=pathlib.Path)
+    reader.add_argument("results", type=pathlib.Path)
+    reader.add_argument("--sample", type=int, default=generate.SAMPLE)
+    reader.add_argument("--limit", type=float, default=LIMIT)
+    reader.add_argument("--tests", default="", help="only these")
+    reader.add_argument("--again", help="tests that were changed")
+    reader.add_argument("--only", choices=["write", "build", "judge", "show"])
+    asked = reader.parse_args()
+    root, copy, records = asked.root.resolve(), asked.copy.resolve(), Records(asked.results)
+    if asked.only == "write":
+        write(root, copy, drawn(root, records, asked.sample))
+    if asked.only in (None, "build"):
+        build(root, copy, records, asked.sample)
+    mutants = drawn(root, records, asked.sample)
+    if asked.only in (None, "judge"):
+        shop = Workshop(copy, copy / "build")
+        for test in [t for t in records.tests if asked.again and re.search(asked.again, t)]:
+            records.add(again=test)
+        Judge(shop, records, mutants, asked.limit)([t for t in quick(shop, records) if re.search(asked.tests, t)])
+    return show(records, mutants) if asked.only in (None, "judge", "show") else 0
 
 
 if __name__ == "__main__":

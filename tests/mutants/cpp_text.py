@@ -21,6 +21,7 @@ CONSTANT = re.compile(r"^\s*(?:const|constexpr|static constexpr|inline constexpr
 class Statement:
     begin: int  # in the text
     text: str  # of the masked source, so that places agree
+    raw: str  # of the source
     function: int  # number of the function's body in its file; 0 for a constant outside of all
 
     @property
@@ -85,6 +86,6 @@ def statements(source):
         where = bisect.bisect_right(begins, start + len(text) - len(text.lstrip()))
         inside = where > 0 and start < bodies[where - 1][1]
         if text.strip(" \n;{}") and (inside or CONSTANT.search(text)) and not _SPEAKS.search(text):
-            result.append(Statement(start, text, where if inside else 0))
+            result.append(Statement(start, text, source[start:k + 1], where if inside else 0))
         start = k + 1
     return result

@@ -25,10 +25,9 @@ def places(root):
     for m in lost:
         print(f"LOST     {m.name}: '{m.old}' is not once in {m.file}")
     print(f"{len(mutants.MUTANTS) - len(lost)} of {len(mutants.MUTANTS)} mutants have their place")
-    drawn = generate.sample(root)
-    again = generate.sample(root, generate.SAMPLE // 2)
+    drawn = generate.sample(root, FEWEST)
     rules = {m.rule for m in drawn}
-    steady = [m.name for m in again] == [m.name for m in generate.sample(root, generate.SAMPLE // 2)]
+    steady = drawn[:FEWEST // 2] == generate.sample(root, FEWEST // 2)
     same = [m for m in drawn if m.apply((root / m.file).read_text()) == (root / m.file).read_text()]
     print(f"{len(drawn)} mutants drawn over {len({m.file for m in drawn})} files by {len(rules)} rules; {len(same)} of them change nothing")
     return 1 if lost or same or len({m.name for m in drawn}) < FEWEST or len(rules) < 5 or not steady else 0

@@ -40,7 +40,7 @@ class Workshop:
         command = self._compiling.get(str(self.root / file))
         if command is None:
             raise SystemExit(f"{self.build} compiles {file} in a batch with others; mutants need a build of single objects: "
-                             "see README.md for how one is made (COUPLET_ALONE, or the preset single)")
+                             "make one by the preset single")
         return shlex.split(command)
 
     @functools.cached_property
@@ -77,11 +77,6 @@ class Workshop:
         text_of(*words, "-iquote", source.parent, cwd=self.build)
         return made
 
-    def object_of(self, file):
-        """The sound object, as the build has it."""
-        words = self._command(file)
-        return self.build / words[words.index("-o") + 1]
-
     def linked(self, target, made, folder):
         """A test or program with broken objects before the libraries: their sound ones are then not asked for."""
         words = list(self._linking(target))
@@ -91,12 +86,6 @@ class Workshop:
         words[first:first] = [str(m) for m in made]
         text_of(*words, cwd=self.build)
         return result
-
-    def code(self, made, folder):
-        """What an object does: its code and data, without names of files."""
-        bare = folder / (made.name + ".bare")
-        text_of("objcopy", "--strip-all", "--remove-section=.comment", "--remove-section=.note*", made, bare)
-        return text_of("objdump", "-s", "-r", bare).split("\n", 3)[-1]
 
     def holds(self, target, file):
         """Whether a test or program has the object of a file, by the library that it is in."""
@@ -141,12 +130,11 @@ class Workshop:
         put = [str(folder / "build") if w == str(self.build) else w for w in put]
         return put if put != command else None
 
-    def run(self, test, command, most):
+    def run(self, test, command, most, **more):
         """One test, at most so many seconds of processor time (by all its processes together: three times that on the clock of an idle machine)."""
         entry = self.registered[test]
         settings = {p["name"]: p["value"] for p in entry.get("properties", [])}
-        more = dict(pair.split("=", 1) for pair in settings.get("ENVIRONMENT", []))
-        more["GTEST_FAIL_FAST"] = "1"
+        more = {**dict(pair.split("=", 1) for pair in settings.get("ENVIRONMENT", [])), "GTEST_FAIL_FAST": "1", **more}
         before = time.monotonic()
         with subprocess.Popen(command, cwd=settings.get("WORKING_DIRECTORY", str(self.build)), env={**os.environ, **more},
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True,
@@ -164,7 +152,7 @@ class Workshop:
             pid, status, used = os.wait4(process.pid, os.WNOHANG)
             if pid:
                 break
-            if time.monotonic() - before > 10 * most + 60:
+            if time.monotonic() - before > 8 * most + 20:
                 stopped = True
                 os.killpg(process.pid, signal.SIGKILL)
                 _, status, used = os.wait4(process.pid, 0)

@@ -43,12 +43,12 @@
 
 namespace couplet::support {
 
-/// What the error says in which a call ends; empty if it ends in none.
-template <class Call>
+/// What the error of this kind says in which a call ends; empty if it ends in none.
+template <class Kind = Error, class Call>
 std::string error_of(const Call& call) {
   try {
     call();
-  } catch (const Error& error) {
+  } catch (const Kind& error) {
     return error.what();
   }
   return "";

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 #include "common/base/error.hpp"
 #include "thermocline/bed/grains.hpp"

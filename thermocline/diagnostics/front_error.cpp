@@ -19,8 +19,28 @@ double deviations(double share) {
   return low;
 }
 
+/// Change of a profile by a spread of s cells (standard deviation), summed over the cells.
+double change_by_spreading(const std::vector<double>& profile, double s) {
+  const int n = int(profile.size());
+  std::vector<double> weights{1 - s * s, 0.5 * s * s};  // within a cell: the second difference
+  if (s > 1) {
+    weights.clear();
+    for (int k = 0; k <= 4 * s; ++k) weights.push_back(std::exp(-0.5 * (k / s) * (k / s)));
+  }
+  const int last = int(weights.size()) - 1;
+  const double whole = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights[0];
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    double mean = 0;
+    for (int k = -last; k <= last; ++k)
+      mean += weights[std::size_t(std::abs(k))] * profile[std::size_t(std::clamp(i + k, 0, n - 1))];
+    sum += std::abs(mean / whole - profile[std::size_t(i)]);
+  }
+  return sum;
+}
+
 /// Error of the profile. Upwind advection spreads a front like a diffusion v dz/2, implicit steps like v^2
-/// dt/2: over a way w by s^2 = dz w and v dt w, which changes the profile by s^2/2 of its second derivative.
+/// dt/2: over a way w by s^2 = dz w and v dt w. The error is estimated by spreading the profile once more.
 /// w is the way at the largest flow since time 0, at most the height. The limited scheme spreads by a cell.
 /// Relative to the profile's distance from its mean, as sums over the height. With a plant at least the
 /// storage capacity lost by spreading.
@@ -48,20 +68,17 @@ class FrontError final : public TankDiagnostic {
     const std::size_t n = t.size();
     if (n < 3 || !(seen_->flow > 0)) return {};
     const double mean = std::accumulate(t.begin(), t.end(), 0.0) / double(n);
-    double bends = 0, size = 0;  // second differences, dz^2 times the second derivative
-    for (std::size_t i = 0; i < n; ++i) {
-      size += std::abs(t[i] - mean);
-      if (i > 0 && i + 1 < n) bends += std::abs(t[i - 1] - 2 * t[i] + t[i + 1]);
-    }
+    double size = 0;
+    for (const double value : t) size += std::abs(value - mean);
     if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // uniform temperature does not spread
-    const double one_cell = 0.5 * bends / size;                  // s = dz
     const double way = double(n) * crossed();                    // in cells
-    diagnostics::ErrorParts parts{.mesh =
-                                      scheme() == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+    const auto by = [&](double variance) {
+      return change_by_spreading(t, std::min(std::sqrt(variance), double(n))) / size;
+    };
+    diagnostics::ErrorParts parts{.mesh = by(scheme() == Advection::tvd ? 1 : std::max(1., way))};
     if (scheme() != Advection::tvd) parts.mesh_order = 1;
     parts.step_order = 1;
-    if (scheme() == Advection::implicit)
-      parts.step = seen_->advance / crossing_mass() * double(n) * way * one_cell;
+    if (scheme() == Advection::implicit) parts.step = by(seen_->advance / crossing_mass() * double(n) * way);
     return parts;
   }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/model/tank.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -239,7 +239,11 @@ void Tank::write_monitors(double time) {
 }
 
 std::vector<std::string> Tank::finish() {
-  if (report_) report_->finish();
+  if (!report_) return {};
+  report_->finish();
+  for (const ReportLine& line :
+       parallel::comm_rank(comm_) == 0 ? report_->lines() : std::vector<ReportLine>())
+    if (*line.meaning) diagnostics::set_result({line.quantity + line.meaning, line.unit, {line.value}});
   return {};
 }
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"

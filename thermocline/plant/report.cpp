@@ -2,7 +2,6 @@
 #include "thermocline/plant/report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -236,21 +235,21 @@ std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) co
   const auto energy = [&](Sums::Item item) { return days > 0 ? s[item] / days / megawatt_hour : 0; };
   const auto time = [&](Sums::Item item) { return days > 0 ? s[item] / days / seconds_an_hour : 0; };
   const double thickness = s[Sums::thickness_time] > 0 ? s[Sums::thickness] / s[Sums::thickness_time] : 0;
-  return {{"Q_SF", "MWh/day", energy(Sums::field)},
-          {"Q_excess/Q_SF", "%", share(s[Sums::excess], s[Sums::field])},
-          {"Q_C/Q_excess", "%", share(s[Sums::stored], s[Sums::excess])},
-          {"Q_D/Q_C", "%", share(s[Sums::delivered], s[Sums::stored])},
+  return {{"Q_SF", "MWh/day", energy(Sums::field), ", heat of the solar field"},
+          {"Q_excess/Q_SF", "%", share(s[Sums::excess], s[Sums::field]), ", not used at once"},
+          {"Q_C/Q_excess", "%", share(s[Sums::stored], s[Sums::excess]), ", stored of the excess"},
+          {"Q_D/Q_C", "%", share(s[Sums::delivered], s[Sums::stored]), ", regained of the stored"},
           {"B_D", "MWh/day", energy(Sums::exergy)},
-          {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], s[Sums::asked])},
-          {"energy losses", "MWh/day", energy(Sums::losses)},
+          {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], s[Sums::asked]), ", demand not met"},
+          {"energy losses", "MWh/day", energy(Sums::losses), " to the surroundings"},
           {"charge time", "h", time(Sums::charging)},
           {"discharge time", "h", time(Sums::discharging)},
           {"charged stand-by time", "h", time(Sums::charged_rest)},
           {"discharged stand-by time", "h", time(Sums::discharged_rest)},
           {"time with cold outlet", "%", share(s[Sums::cold_outlet], s[Sums::charging])},
           {"time with hot outlet", "%", share(s[Sums::hot_outlet], s[Sums::discharging])},
-          {"eta_th", "%", share(s[Sums::stored], storable_ * days)},
-          {"h_th/h_bed", "%", share(thickness, bed_height_)}};
+          {"eta_th", "%", share(s[Sums::stored], storable_ * days), ", use of the capacity"},
+          {"h_th/h_bed", "%", share(thickness, bed_height_), ", thermocline thickness"}};
 }
 
 std::vector<ReportLine> DayReport::lines() const {
@@ -265,10 +264,10 @@ std::vector<ReportLine> DayReport::lines() const {
   add_money(all);
   if (stress_.empty()) return all;
   const StressHistory::Factor least = stress_.static_factor(), dynamic = stress_.dynamic_factor();
-  all.push_back({"FoS_static", "-", least.value});
+  all.push_back({"FoS_static", "-", least.value, ", safety against yield"});
   all.push_back({"FoS_static height", "m", least.z});
   all.push_back({"FoS_static time", "s", least.time});
-  all.push_back({"FoS_dynamic", "-", dynamic.value});
+  all.push_back({"FoS_dynamic", "-", dynamic.value, ", against ratcheting"});
   all.push_back({"FoS_dynamic height", "m", dynamic.z});
   return all;
 }

@@ -201,6 +201,7 @@ struct ReportSums {
 struct ReportLine {
   std::string quantity, unit;
   double value;
+  const char* meaning = "";  ///< shown at the end of a run; empty for the rest
 };
 
 /// Daily accounting of tank and plant. Writes

@@ -152,7 +152,7 @@ void DayReport::add_money(std::vector<ReportLine>& all) const {
   const char* const per = whole_years() ? "year" : "365 such days";
   const auto yearly = [&](double sum) { return years > 0 ? sum / years : 0; };
   const double electricity = yearly(results_[Sums::electricity]) / megawatt_hour;
-  all.push_back({"electricity", fmt::format("MWh/{}", per), electricity});
+  all.push_back({"electricity", fmt::format("MWh/{}", per), electricity, " sold"});
   if (results_[Sums::pumping] > 0)
     all.push_back({"electricity of pump or fan", fmt::format("MWh/{}", per),
                    yearly(results_[Sums::pumping]) / megawatt_hour});
@@ -165,7 +165,7 @@ void DayReport::add_money(std::vector<ReportLine>& all) const {
   all.push_back({"capital", "1", cost.capital});
   all.push_back({"capital of the storage", "1", cost.storage});
   all.push_back({"cost", "1/year", cost.per_year});
-  all.push_back({"levelised cost", "1/MWh", cost.per_energy});
+  all.push_back({"levelised cost", "1/MWh", cost.per_energy, " of electricity"});
 }
 
 std::vector<std::string> DayReport::doubts() const {

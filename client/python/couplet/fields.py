@@ -5,7 +5,7 @@ import pathlib
 import numpy as np
 
 from couplet.runs.case import Wrong, expect
-from couplet.series import SHAPES, find_series, find_surface, surface_names
+from couplet.series import find_series, find_surface, surface_names
 
 # Faces of a cell by its number of points, as positions in the cell (VTK order).
 FACES = {4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)), 5: ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
@@ -15,15 +15,15 @@ MOST_FACES = 60000
 
 
 def is_shape(name):
-    """Returns true for a mode shape of maximum length 1, such as a buckling mode."""
-    return name.startswith("buckling-")
+    """File of a shape, such as buckling-1 or mode-1; None for other fields."""
+    return {"buckling": "buckling.h5", "mode": "mode-shapes.h5"}.get(name.rpartition("-")[0])
 
 
 def series_of(folder, name):
     """Series with this field in a participant's folder, or of the first participant with fields below an output folder."""
     for place in (folder, *sorted(p for p in folder.iterdir() if p.is_dir())):
         try:
-            return find_series(place, SHAPES if is_shape(name) else "*.h5")
+            return find_series(place, is_shape(name) or "*.h5")
         except FileNotFoundError:
             continue
     raise Wrong(f"{folder}: there is no field series (.h5) in it")

@@ -11,6 +11,7 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
+matplotlib.rcParams["text.usetex"] = False  # a matplotlibrc in this folder could start LaTeX
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -138,6 +139,7 @@ def draw(file, options):
 def of_case(file, options):
     """Draws the picture of the case, from its section `plot` or its own plot.py. Returns the exit code, or None if there are only monitors, which options.files then names."""
     case = Case(file)
+    case.trusted = options.allow_commands
     out = options.out or output_of(case, ())
     expect(not options.film or "plot" in case.data, f"--film: {case.file} has no section plot with a map")
     if options.film:
@@ -150,6 +152,7 @@ def of_case(file, options):
         print(f"picture: {draw(case, out, options.picture)}")
         return 0
     if case.has_picture:
+        expect(case.trusted, f"{case.file.parent / 'plot.py'} draws the picture of this case. If you trust it, add --allow-commands")
         expect(options.out is None, f"--out: {case.file.parent / 'plot.py'} looks for the run where the case puts it")
         paths = [str(places.PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
         return subprocess.run([sys.executable, case.file.parent / "plot.py", *([options.picture] if options.picture else [])],
@@ -173,6 +176,7 @@ def declare(parser):
     parser.add_argument("--component", choices=("x", "y", "z"), help="draws a component of --field instead of its magnitude")
     parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="draws --field on the body displaced by F times its displacement (default: 1)")
     parser.add_argument("--film", action="store_true", help="draws the maps of a case's section plot at each output between --from and --to: film/frame-*.png, and film.mp4 if ffmpeg is installed")
+    parser.add_argument("--allow-commands", action="store_true", help="runs the plot.py and the functions in Python by which a case draws its picture, with your permissions")
     parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="name of the picture, for a single file (default: FILE.png beside FILE.csv)")
 
 

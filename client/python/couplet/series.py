@@ -18,10 +18,11 @@ class FieldSeries:
         kind = int(self.file.attrs["kind"])
         flat = self.file["mesh/cells"][...]
         if kind:
-            self.cells = list(flat)
+            self.cells, self.codes = list(flat), [kind] * len(flat)  # kinds of cells, by XDMF code
         else:
-            self.cells, at = [], 0
+            self.cells, self.codes, at = [], [], 0
             while at < len(flat):
+                self.codes.append(int(flat[at]))
                 width = WIDTH[int(flat[at])]
                 self.cells.append(flat[at + 1 : at + 1 + width])
                 at += 1 + width
@@ -91,13 +92,13 @@ class FieldSeries:
         return np.array([pair[0] for pair in count.values() if len(pair) == 1])
 
 
-SHAPES = "buckling.h5"  # shapes of load factors, beside the fields of a run
+SHAPES = ("buckling.h5", "mode-shapes.h5")  # beside the fields of a run
 
 
 def find_series(folder, name="*.h5"):
     """The .h5 field series in a participant's output folder: that of the run, not that of its shapes, unless they are named."""
     for file in sorted(pathlib.Path(folder).glob(name)):
-        if file.name == SHAPES != name:
+        if file.name in SHAPES and file.name != name:
             continue
         with h5py.File(file, "r") as f:
             if f.attrs.get("format") in (b"couplet fields", "couplet fields"):

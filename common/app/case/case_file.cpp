@@ -2,7 +2,6 @@
 #include "common/app/case/case_file.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 #include "common/app/case/case_roles.hpp"
@@ -69,7 +68,10 @@ std::string find_participant(const CommandLine& command_line, const Program& pro
     if (!command_line.participant.empty() && command_line.participant != coupler_name)
       throw Error("The coupler takes no --participant: it couples the participants named in {}.", source);
     if (!file.coupled)
-      throw Error("{}:1:1: the `coupling` section is missing, so the coupler has nothing to do.", source);
+      throw Error(
+          "{}:1:1: the `coupling` section is missing, so the coupler has nothing to do: add the section "
+          "(docs/config.md), or run each participant alone, without the coupler.",
+          source);
     return coupler_name;
   }
   std::vector<std::string> names, mine;

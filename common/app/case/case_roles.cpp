@@ -73,6 +73,7 @@ class Cast {
     const Expected* who = find(*name);
     if (who == nullptr) return unknown(key, *name);
     if (who->program == "?") return;  // reported elsewhere
+    look_at_interface(*who);
     const coupling::Player* player = coupling::player_of(who->program);
     // Other programs declare their data at the start, but only the project's own programs have the mesh link.
     std::string problem;
@@ -87,6 +88,24 @@ class Cast {
     if (!problem.empty())
       say(key, fmt::format("'{}' is run by {}, which cannot be the {}: {}{}", *name, who->program,
                            contract.role, problem, others(contract)));
+  }
+
+  /// Programs whose boundary meets another participant only at patches of type interface need one. A fluid
+  /// whose walls move by themselves has no structure.
+  void look_at_interface(const Expected& who) {
+    if (who.program != "solid_solver" &&
+        !(who.program == "fluid_solver" && config::text_of(document_, "coupling.structure.participant")))
+      return;
+    const std::string key = "participants." + who.participant + ".boundaries";
+    const std::vector<std::string> patches = config::keys_of(document_, key);
+    const bool has_any = std::ranges::any_of(patches, [&](const std::string& patch) {
+      return config::text_of(document_, key + "." + patch + ".type") == "interface";
+    });
+    if (!patches.empty() && !has_any)
+      say(key,
+          fmt::format(
+              "'{}' is coupled, but none of its patches is an interface: set `type: interface` where it meets the other participant",
+              who.participant));
   }
 
   void look_at_exchange() {

@@ -259,7 +259,8 @@ Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expect
   const std::string errors = configuration_errors(attendants);
   const bool all_placed = std::none_of(attendants.begin(), attendants.end(),
                                        [](const Attendant& a) { return a.participant.empty(); });
-  if (!errors.empty()) return cannot_start(errors, !all_placed && attendants.size() > 1);
+  // Without a `coupling` section no launch line of several programs could start.
+  if (!errors.empty()) return cannot_start(errors, coupled && !all_placed && attendants.size() > 1);
   if (const std::string text = disagreement(attendants); !text.empty()) return cannot_start(text, false);
 
   const bool one_program = std::all_of(attendants.begin(), attendants.end(), [&](const Attendant& a) {

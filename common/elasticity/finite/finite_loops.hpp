@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "common/elasticity/finite/finite_edges.hpp"
 #include "common/elasticity/finite/finite_places.hpp"

@@ -2,14 +2,16 @@
 #include "common/elasticity/symmetric/surface_pressure.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace couplet::elastic {
 namespace {
 
 /// Triangle between the node of a face and one of its edges, or in 2-D a line between node and corner.
 struct Piece {
-  std::array<Index, 3> at;      ///< locations
-  std::array<Tensor3, 3> turn;  ///< da/dx of each corner
+  std::array<Index, 3> at;            ///< locations
+  std::array<std::size_t, 3> corner;  ///< of the face from 1; 0 for its node
+  std::array<Tensor3, 3> turn;        ///< da/dx of each corner
   Vec3 area;
   std::size_t n;  ///< number of corners
 };
@@ -27,7 +29,9 @@ void visit_pieces(const mesh::Mesh& mesh, Index face, const Position& position, 
   const Index node = mesh.cells.n_local() + face - mesh.n_interior, first_point = n_node_places(mesh);
   if (mesh.dim == 3) {
     for (std::size_t k = 0; k < points.size(); ++k) {
-      Piece piece{{node, first_point + points[k], first_point + points[(k + 1) % points.size()]}, {}, {}, 3};
+      const std::size_t next = (k + 1) % points.size();
+      Piece piece{
+          {node, first_point + points[k], first_point + points[next]}, {0, k + 1, next + 1}, {}, {}, 3};
       std::array<Vec3, 3> x;
       for (std::size_t s = 0; s < 3; ++s) x[s] = position(piece.at[s]);
       piece.area = 0.5 * (x[1] - x[0]).cross(x[2] - x[0]);
@@ -38,15 +42,21 @@ void visit_pieces(const mesh::Mesh& mesh, Index face, const Position& position, 
   }
   Tensor3 right = Tensor3::Zero();
   right(0, 1) = 1, right(1, 0) = -1;
-  for (const auto& [from, to] :
-       {std::pair{first_point + points[0], node}, std::pair{node, first_point + points[1]}})
-    take(Piece{{from, to, -1}, {Tensor3(-right), right, {}}, right * (position(to) - position(from)), 2});
+  const auto half = [&](Index from, Index to, std::size_t first, std::size_t second) {
+    take(Piece{{from, to, -1},
+               {first, second, 0},
+               {Tensor3(-right), right, {}},
+               right * (position(to) - position(from)),
+               2});
+  };
+  half(first_point + points[0], node, 1, 0);
+  half(node, first_point + points[1], 0, 2);
 }
 
-void add_blocks_of(const Piece& piece, double pressure, std::vector<PlaceBlock>& to) {
+void add_blocks_of(const Piece& piece, const std::array<double, 5>& pressure, std::vector<PlaceBlock>& to) {
   for (std::size_t r = 0; r < piece.n; ++r)
     for (std::size_t s = 0; s < piece.n; ++s)
-      to.push_back({piece.at[r], piece.at[s], pressure / double(piece.n) * piece.turn[s]});
+      to.push_back({piece.at[r], piece.at[s], pressure[piece.corner[r]] / double(piece.n) * piece.turn[s]});
 }
 
 Vec3 position(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index place) {
@@ -65,14 +75,20 @@ void FollowerPressure::set(const mesh::Mesh& mesh, const mesh::Geometry& geometr
                            std::span<const double> pressure) {
   faces_.clear();
   tangent_.clear();
-  for (std::size_t i = 0; i < pressure.size(); ++i) {
-    if (pressure[i] == 0) continue;
+  const std::size_t n = std::size_t(mesh.boundary.n_owned()), n_places = mesh.dim == 2 ? 3 : 5;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::array<double, 5> here;
+    here.fill(pressure.empty() ? 0 : pressure[i]);
+    if (pressure.size() > n) std::ranges::copy(pressure.subspan(n + i * n_places, n_places), here.begin());
+    if (std::ranges::all_of(here, [](double p) { return p == 0; })) continue;
     const Index f = mesh.n_interior + Index(i);
     Vec3 area = Vec3::Zero();
     visit_pieces(
         mesh, f, [&](Index place) { return position(mesh, geometry, place); },
         [&](const Piece& piece) { area += piece.area; });
-    faces_.push_back({f, area.dot(geometry.face_area[f]) < 0 ? -pressure[i] : pressure[i]});
+    if (area.dot(geometry.face_area[f]) < 0)
+      for (double& p : here) p = -p;
+    faces_.push_back({f, here});
   }
 }
 
@@ -84,9 +100,11 @@ Vec3 FollowerPressure::add_forces(SymmetricSpace& space) {
   };
   for (const Loaded& loaded : faces_)
     visit_pieces(space.mesh(), loaded.face, now, [&](const Piece& piece) {
-      const Vec3 inner = loaded.pressure * piece.area;
-      total -= inner;
-      for (std::size_t s = 0; s < piece.n; ++s) space.force(piece.at[s]) += inner / double(piece.n);
+      for (std::size_t s = 0; s < piece.n; ++s) {
+        const Vec3 inner = loaded.pressure[piece.corner[s]] * piece.area / double(piece.n);
+        total -= inner;
+        space.force(piece.at[s]) += inner;
+      }
       add_blocks_of(piece, loaded.pressure, tangent_);
     });
   return total;

@@ -215,12 +215,29 @@ void SymmetricSpace::spread_around(Index f, const Vec3& force_on_base) {
     force(place_of_point(v)) += circumference(2 * geometry_.points[v][0] + middle) / 12 * force_on_base;
 }
 
+/// Adds the differences from an even force at the corners of a face, and the opposite of their sum at its node.
+void SymmetricSpace::spread_within(Index f, std::span<const double> of_corners) {
+  const Tensor3 taken = Tensor3::Identity() - rows_.at(f).passing;
+  const double ring = is_axisymmetric(rows_) ? circumference(geometry_.face_centre[f][0]) : 1;
+  const auto points = mesh_.face_points[f];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 here = ring * (taken * vector_at(of_corners, Index(i), mesh_.dim));
+    force(place_of_point(points[i])) += here;
+    force(node_of_face(f)) -= here;
+  }
+}
+
 void SymmetricSpace::spread_face_forces(std::span<const double> forces) {
+  const std::size_t n_whole = std::size_t(mesh_.boundary.n_owned()) * std::size_t(mesh_.dim),
+                    n_within = std::size_t(mesh_.dim == 2 ? 4 : 12);
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
-    Vec3 here = vector_at(forces, f - mesh_.n_interior, mesh_.dim);
+    const Index b = f - mesh_.n_interior;
+    Vec3 here = vector_at(forces, b, mesh_.dim);
+    if (!here.isZero(0)) here -= (rows_.at(f).passing * here).eval();
+    if (rows_.mirrored(f)) continue;
+    if (forces.size() > n_whole)
+      spread_within(f, forces.subspan(n_whole + std::size_t(b) * n_within, n_within));
     if (here.isZero(0)) continue;
-    here -= (rows_.at(f).passing * here).eval();
-    if (here.isZero(0) || rows_.mirrored(f)) continue;
     is_axisymmetric(rows_) ? spread_around(f, here) : spread_over_base(f, here);
   }
 }

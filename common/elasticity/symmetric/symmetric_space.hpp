@@ -50,6 +50,7 @@ class SymmetricSpace {
   void negate_forces();
   void add_springs(std::span<const double> known);
   void add_mass_forces(double factor);
+  /// Forces as in ElasticKernel::add_face_forces().
   void spread_face_forces(std::span<const double> forces);
   void spread_cell_forces(std::span<const double> forces);
   void set_density(std::span<const double> of_cells);
@@ -87,6 +88,7 @@ class SymmetricSpace {
   void visit_trace(Index f, const Take& take) const;
   void spread_over_base(Index f, const Vec3& force_on_base);
   void spread_around(Index f, const Vec3& force_on_base);
+  void spread_within(Index f, std::span<const double> of_corners);
   /// Force k (u - g) of the springs for the mean trace of a face.
   Vec3 pull_of_springs(Index f, std::span<const double> known) const;
   void held_at_points(std::span<const Index> patch_of, bool moved, std::vector<Wrench>& result);

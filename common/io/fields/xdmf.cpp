@@ -91,7 +91,7 @@ std::uint64_t points_of(std::int64_t code) { return std::ranges::find(kinds, cod
 
 void write(const std::filesystem::path& index, const Series& series) {
   std::string text =
-      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
+      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
       "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const Entry& entry : series.entries) text += grid(series, entry);
   base::write_file(index, text + "    </Grid>\n  </Domain>\n</Xdmf>\n");

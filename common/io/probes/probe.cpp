@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/probes/probe.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <ranges>

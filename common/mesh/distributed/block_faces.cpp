@@ -2,7 +2,6 @@
 #include "common/mesh/distributed/block_faces.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include "common/base/error.hpp"
 #include "common/mesh/distributed/match_faces.hpp"

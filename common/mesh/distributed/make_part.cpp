@@ -2,7 +2,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "common/base/error.hpp"

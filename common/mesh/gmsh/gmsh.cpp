@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -71,8 +72,13 @@ fs::path including(const fs::path& source, const fs::path& folder) {
 std::string reason(const ProgramEnd& end) {
   if (end.signal == SIGXCPU) return "the limit of 4 hours of processor time was exceeded";
   if (end.signal == SIGXFSZ) return "a file exceeded 64 GB";
-  return end.signal != 0 ? fmt::format("ended by signal {}", end.signal)
-                         : fmt::format("exit code {}", end.code);
+  constexpr int of_signals = 128;  // exit codes of a sandbox or shell whose program was ended by a signal
+  if (const int signal = end.signal != 0 ? end.signal : end.code - of_signals; signal > 0)
+    return fmt::format(
+        "gmsh itself crashed or was killed: signal {}, {}; often another cell size, 'Mesh.Algorithm' or 'Mesh.Algorithm3D' in the "
+        "geometry avoids a crash, and 'gmsh -3 FILE' shows where it happens",
+        signal, strsignal(signal));
+  return fmt::format("exit code {}", end.code);
 }
 
 /// File name beside the result, unique to this process. Several programs of a job may mesh the same file at

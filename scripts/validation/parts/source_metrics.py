@@ -2,6 +2,7 @@
 """Metrics of the sources, counted with regular expressions rather than a compiler: good to a few per cent, and the same from one commit to the next.
 Every measure returns (what it found, whether the limit is met)."""
 import importlib
+import json
 import os
 import re
 import resource
@@ -87,6 +88,27 @@ def judging_words(job):
     text = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items()).lower()
     found = [word for word in JUDGING_WORDS if word in text]
     return f"{len(found)} beside diagnostic and finding: {', '.join(found) or 'none'}", not found
+
+
+# Ten cases of different kinds as runs of seconds: (case, keys, whether it is a single static solve).
+TEN = (("cook", (".mesh-parameters={n: 64, shape: 0}",), True), ("elliptic-plate", (), True), ("filleted-bracket", (), True), ("bent-beam", (), True),
+       ("vibrating-cantilever", ("simulation.end-time=10 s",), False), ("cavity", ("simulation.end-time=4 s",), False),
+       ("cylinder", (".mesh-parameters={n: 24}", "simulation.end-time=0.4 s"), False), ("perpendicular-flap", ("simulation.end-time=0.3 s",), False),
+       ("plate-drop", ("simulation.end-time=0.04 s",), False), ("thermocline-andasol", ("simulation.end-time=10 day", ".report.run-in=2 day"), False))
+
+
+def share_of_diagnostics(job, most, most_of_static):
+    """By the timer that every run has, over the processor time of its process; of a coupled job the participant with the largest share. The timer also
+    counts while other processes run, hence the least of three runs, and over the time on the clock if that is longer."""
+    found = {}
+    for case, keys, is_static in TEN:
+        runs = [job.case(case, (*keys, f"simulation.name={case}-{i}")) for i in range(3)]
+        reports = [[json.loads(f.read_text()) for f in run.folder.glob("*/run.json")] for run in runs]
+        spent = lambda r: max(r["processor"], r["wall"] - r["phases"].get("waiting for the coupler", 0))
+        share = min(max(r["phases"].get("diagnostics", 0) / spent(r) for r in some) for some in reports)
+        found[case] = (share, most_of_static if is_static else most)
+    text = ", ".join(f"{case} {100 * share:.1f} %" for case, (share, _) in found.items())
+    return text, all(share <= limit for share, limit in found.values())
 
 
 # -- classes ------------------------------------------------------------------------------------------------------------

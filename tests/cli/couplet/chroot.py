@@ -93,7 +93,7 @@ def used(system, user, entry):
     check("pictures", len(pictures) > 3, pictures)
     said = system.must("python3 -c \"import couplet; print(couplet.Results('mine/out').fields('fluid').field(-1, 'velocity').shape)\"", user=user, folder=home)
     check("import couplet", said.startswith("("), said)
-    said = system.must("bash -c 'source /usr/share/bash-completion/completions/couplet; COMP_CWORD=1; COMP_WORDS=(couplet re); _couplet; echo ${COMPREPLY[*]}'", user=user)
+    said = system.must("bash -c 'source /usr/share/bash-completion/completions/couplet; COMP_CWORD=1; COMP_WORDS=(couplet res); _couplet; echo ${COMPREPLY[*]}'", user=user)
     check("completion", said.strip() == "resume", said)
     system.must("apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends man-db")
     for page in ("couplet", "couplet-run", "fluid_solver"):

@@ -51,7 +51,7 @@ def pages(prefix, home):
     said = run(prefix, home, "man", "couplet-run") if shutil.which("man") else None
     check("man couplet-run", said is None or "--slurm" in said.stdout, said and said.stderr)
     script = (f"source {prefix}/share/bash-completion/completions/couplet; COMP_CWORD={{0}}; COMP_WORDS=({{1}}); _couplet; echo ${{{{COMPREPLY[*]}}}}")
-    for words, number, wanted in (("couplet re", 1, "resume"), ("couplet run --sl", 2, "--slurm"), ("couplet new x --from perpendicular-", 4, "perpendicular-flap")):
+    for words, number, wanted in (("couplet res", 1, "resume"), ("couplet run --sl", 2, "--slurm"), ("couplet new x --from perpendicular-", 4, "perpendicular-flap")):
         said = run(prefix, home, script.format(number, words), shell="bash")
         check(f"bash completes '{words}'", said.stdout.strip() == wanted, said.stdout + said.stderr)
     if shutil.which("zsh"):

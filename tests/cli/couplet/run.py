@@ -51,7 +51,7 @@ def by_hand(folder):
     check("--print shows the launch line alone", printed.returncode == 0 and printed.stdout.startswith("mpirun ") and not (folder / "a/out").exists(), printed.stderr)
     ran = call(bin_, "run", case)
     lines = ran.stdout.strip().splitlines()
-    check("a run ends with one line", ran.returncode == 0 and re.match(r"done in [\d.]+ s: results in \S+out, picture: couplet plot ", lines[-1]), lines[-1:])
+    check("a run ends with one line", ran.returncode == 0 and re.fullmatch(r"done in [\d.]+ s: results in \S+out", lines[-3]) and lines[-2].startswith("picture: couplet plot ") and lines[-1].startswith("more: couplet report "), lines[-3:])
     check("what the programs say is passed on", any("t=0.03/0.03 s" in line for line in lines))
     shutil.copytree(folder / "a/out", folder / "by-couplet")
     shutil.rmtree(folder / "a/out")
@@ -154,6 +154,16 @@ def stop(folder):
     check("resume goes on on other ranks", others.returncode == 0 and "done in" in others.stdout, others.stdout[-200:] + others.stderr)
     one, other = ([float(word) for word in (run / "solid/probes.csv").read_text().splitlines()[-1].split(",")] for run in (folder / "whole", folder / "stopped/out"))
     check("to what the undisturbed run leaves, within the solvers' tolerance", len(one) == len(other) and max(abs(a - b) for a, b in zip(one, other)) <= 1e-5 * max(map(abs, one)), (one, other))
+    newest = max((folder / "a/out/checkpoints").glob("step-*"))
+    content = (newest / "solid.h5").read_bytes()
+    os.truncate(newest / "solid.h5", 100)
+    earlier = call(bin_, "resume", folder / "a/out", "--print")
+    check("a damaged checkpoint is named and left out", f"{newest} is damaged and is left out" in earlier.stderr and newest.name not in earlier.stdout, earlier.stdout + earlier.stderr)
+    (newest / "solid.h5").write_bytes(content)
+    shutil.copytree(folder / "whole", folder / "truncated")
+    os.truncate(folder / "truncated/solid/solid.h5", 1000)
+    same = call(bin_, "compare", folder / "whole", folder / "truncated")
+    check("compare names a truncated file", same.returncode == 2 and "truncated/solid/solid.h5: cannot be read" in same.stderr, same.stderr)
     edited = folder / "copied/case.yaml"
     edited.write_text(edited.read_text().replace("density: ", "density: 2", 1))
     of_copy = call(bin_, "resume", folder / "copied/out")
@@ -194,6 +204,9 @@ def stop(folder):
 def wrong(folder):
     """A bad case ends with exit code 2 and what to do, and leaves nothing."""
     case = case_in(folder / "a", bin_)
+    for change in ("participants.solid.program=plate_modal", "participants.solid={program: plate_modal}"):
+        line = ask(bin_, "run", case, "--print", "--set", change)
+        check(f"{change}: this program is started", "bin/plate_modal " in line.stdout and "solid_solver" not in line.stdout, line.stdout + line.stderr)
     for change, said in (("participants.solid.material.density=heavy", "'heavy' is not a number"), ("participants.fluid.densty=1", "densty")):
         for command in ("run", "check"):
             result = ask(bin_, command, case, "--set", change)

@@ -7,9 +7,10 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "tests/cli/wrong"), str(ROOT / "tests/support")]
-import plant_table
+import table
 from checks import said
 
+WEATHER = next(c.files for c in table.CASES if c.name == "right plant")
 FILES = ("summary.csv", "days.csv", "plant.csv")
 
 
@@ -24,7 +25,7 @@ def main(program):
         text = (ROOT / "tests/cli/wrong/plant.yaml").read_text()
         text = text.replace("time-step: 15 min}", "time-step: 15 min, checkpoint: {interval: 9 h, keep: 9}}").replace("1 day,", "2 day,")
         (folder / "case.yaml").write_text(text)
-        for file, content in plant_table.weather().items():
+        for file, content in WEATHER.items():
             (folder / file).write_text(content)
         run(program, folder)
         whole = {file: (folder / "out/tank" / file).read_text() for file in FILES}

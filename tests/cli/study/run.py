@@ -9,11 +9,12 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "tests/cli/wrong")]
-import plant_table
+import table
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 from checks import check  # noqa: E402
 
+WEATHER = next(c.files for c in table.CASES if c.name == "right plant")
 STUDY = """
 study:
   variants:
@@ -27,7 +28,7 @@ study:
 
 def study(build, folder, text, *options):
     (folder / "case.yaml").write_text((ROOT / "tests/cli/wrong/plant.yaml").read_text() + text)
-    for name, content in plant_table.weather().items():
+    for name, content in WEATHER.items():
         (folder / name).write_text(content)
     return subprocess.run([ROOT / "scripts/couplet", "study", folder / "case.yaml", f"--build={build}", *options], capture_output=True,
                           text=True)

@@ -434,6 +434,10 @@ def wrong():
         check("an error that nobody catches ends the job", done.returncode != 0 and "time step size of -1" in done.stderr, done.returncode)
         done = launch(folder, {"Left": [*bad, "leave"], "Right": good})
         check("a program that leaves early ends the job with its name", done.returncode != 0 and 'The participant "Left" ended before the coupling was over' in done.stderr, done.stderr[-300:])
+        imported(folder, configuration("parallel-explicit", initialize="false"))
+        for number, code, said in ((1, 0, ""), (0, 1, 'The participant "Left" ended before the coupling was over')):
+            done = launch(folder, {name: [python, here / "small.py", "leave", name, "precice-config.xml", number] for name in ("Left", "Right")})
+            check("programs that leave together end the job, one alone is an error", done.returncode == code and said in done.stdout + done.stderr, (done.returncode, done.stdout[-300:], done.stderr[-300:]))
         words = {name: [*programs["c++"], name, "precice-config.xml", 1] for name in ("Left", "Right")}
         imported(folder, configuration("serial-explicit"))
         case = folder / "case.yaml"
@@ -513,6 +517,7 @@ GOOD = configuration("serial-implicit", substeps="false")
 BAD = {  # replaced, by what, what is said
     "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: <receive-mesh> with api-access is not supported: direct access"),
     "just-in-time mapping": ('from="Right-Mesh" to="Left-Mesh" constraint', 'from="Right-Mesh" constraint', "just-in-time mapping"),
+    "remeshing": ("<precice-configuration", '<precice-configuration experimental="true" allow-remeshing="true"', "with allow-remeshing is not supported: meshes that change during the run"),
     "actions": ("<m2n:sockets", '<action:summation /><m2n:sockets', "<action:summation> is not supported: actions on data"),
     "gradients": ("mapping:nearest-neighbor direction", "mapping:nearest-neighbor-gradient direction", "mapping with gradients"),
     "scaled": ('constraint="consistent"', 'constraint="scaled-consistent-surface"', 'with constraint "scaled-consistent-surface" is not supported'),
@@ -558,6 +563,9 @@ def imports():
         file.write_text(GOOD.replace('<max-iterations value="50" />', ""))
         done = ask("--force")
         check("no limit of iterations is noted", done.returncode == 0 and "without max-iterations a window ends after 10000" in done.stdout, done.stdout)
+        file.write_text(GOOD.replace("IQN-ILS", "IQN-IMVJ"))
+        done = ask("--force")
+        check("IQN-IMVJ is taken as IQN-ILS, and noted", done.returncode == 0 and "IQN-IMVJ is taken as IQN-ILS" in done.stdout and "iqn-ils" in case.read_text(), done.stdout)
         file.write_text(configuration("serial-implicit", degree=3))
         done = ask("--force")
         check("a higher degree is taken as it is", done.returncode == 0 and "waveform" not in done.stdout, done.stdout)

@@ -11,7 +11,7 @@ case, me, xml, number = *sys.argv[1:4], float(sys.argv[4])
 p, mesh = precice.Participant(me, xml, 0, 1), f"{me}-Mesh"
 other = {"Left": "Right", "Right": "Left"}.get(me)
 points, elements, K = np.zeros((1, 2)), (), np.array([2.0, 1.0, 0.5]) * number
-if case == "time":      # the one writes t, the other 10 t
+if case in ("time", "leave"):  # the one writes t, the other 10 t
     reads, answer = [f"Displacement-{other}"], lambda t, _: {f"Displacement-{me}": [t if me == "Left" else 10 * t]}
 elif case == "springs":  # -K x on the one side, x = (F + 1000 N)/number on the other: linear, and the same for all numbers but for units
     points, reads = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), [f"Displacement-{other}"]
@@ -33,6 +33,9 @@ ids = p.set_mesh_vertices(mesh, points)
 if len(elements):
     (p.set_mesh_edges if len(elements[0]) == 2 else p.set_mesh_triangles)(mesh, ids[np.array(elements)])
 p.initialize()
+if case == "leave" and me in ("Left", number and "Right"):  # while the coupling is ongoing
+    p.finalize()
+    sys.exit()
 t = kept = 0.0
 windows, passes = [], 0
 while p.is_coupling_ongoing():

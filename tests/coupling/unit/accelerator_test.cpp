@@ -126,26 +126,21 @@ TEST(Aitken, a_factor_is_never_far_above_the_maximum) {
 }
 
 TEST(FixedPoint, velocity_follows_the_combinations_of_the_displacement) {
-  for (const Type type : {Type::constant, Type::aitken, Type::iqn_ils, Type::iqn_mvj}) {
+  for (const Type type : {Type::constant, Type::aitken, Type::iqn_ils}) {
     const auto result = solve(linear_map({-4, 0.2}, {1, 1}), 2, *make(type, 0.2));
     for (int i = 0; i < 2; ++i) EXPECT_NEAR(result.x.rider[i], 10 * result.x.unknown[i], 1e-8);
   }
 }
 
 TEST(FixedPoint, without_convergence_it_says_how_far_it_came) {
-  try {
-    solve(linear_map({-3.}, {1.}), 1, *make(Type::constant, 1), 1e-10, 5);
-    FAIL() << "it converged";
-  } catch (const SolveFailure& failure) {
-    EXPECT_STREQ(
-        failure.what(),
-        "the coupling did not converge in 5 iterations: the relative residual is 1.33e+00 (tolerance "
-        "1.0e-10).");
-  }
+  EXPECT_EQ(support::error_of<SolveFailure>(
+                [&] { solve(linear_map({-3.}, {1.}), 1, *make(Type::constant, 1), 1e-10, 5); }),
+            "the coupling did not converge in 5 iterations: the relative residual is 1.33e+00 (tolerance "
+            "1.0e-10).");
 }
 
 TEST(FixedPoint, a_residual_that_is_not_finite_is_a_failure) {
-  for (const Type type : {Type::aitken, Type::iqn_ils, Type::iqn_mvj})
+  for (const Type type : {Type::aitken, Type::iqn_ils})
     EXPECT_THROW(solve(linear_map({NAN}, {1.}), 1, *make(type)), SolveFailure);
 }
 

@@ -3,6 +3,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "coupler/output/interface_output.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::exchange_test {
@@ -192,13 +193,8 @@ TEST(Links, data_not_yet_given_are_left_out) {
 }
 
 TEST(Links, what_does_not_fit_is_named) {
-  const auto message = [](const std::vector<Side>& s) -> std::string {
-    try {
-      const Links links(MPI_COMM_SELF, s, nearest());
-      return "";
-    } catch (const Error& e) {
-      return e.what();
-    }
+  const auto message = [](const std::vector<Side>& s) {
+    return support::error_of([&] { const Links links(MPI_COMM_SELF, s, nearest()); });
   };
   auto wrong = sides();
   wrong[1].interface.takes.push_back({"pressure", "Pa", Place::faces, 1});
@@ -214,6 +210,21 @@ TEST(Links, what_does_not_fit_is_named) {
   wrong.push_back(wrong[0]);
   wrong.back().name = "ground";
   EXPECT_THAT(message(wrong), HasSubstr("'wall' takes 'heat', which both 'bed' and 'ground' give"));
+}
+
+TEST(InterfaceFiles, hold_every_value_of_places_and_faces) {
+  Interface i{3, {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {Vec3(0.5, 0.5, 0)}, {Vec3(0, 0, 2)}, {}, {}};
+  i.face_offset = {0, 3}, i.face_vertices = {0, 1, 2};
+  i.gives = {{"displacement", "m", Place::vertices}}, i.takes = {{"pressure-force", "N", Place::faces}};
+  const fs::path folder = fs::temp_directory_path() / fmt::format("couplet-vtp-{}", ::getpid());
+  const std::vector<Side> sides{{MPI_COMM_SELF, "plate", i}};
+  InterfaceOutput(MPI_COMM_SELF, folder, sides, NAN)
+      .write(0.5, 3, {{{"displacement", {1, 2, 3, 4, 5, 6, 7, 8, 9}}}}, {{{"pressure-force", {-1, -2, -3}}}});
+  std::ifstream file(folder / "plate-000003.0.vtp");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  for (const char* numbers : {"0 0 0 2 0 0 0 2 0", "1 2 3 4 5 6 7 8 9", "-1 -2 -3"})
+    EXPECT_THAT(text, HasSubstr(fmt::format("format=\"ascii\">\n{} \n", numbers)));
+  fs::remove_all(folder);
 }
 
 }  // namespace couplet::exchange_test

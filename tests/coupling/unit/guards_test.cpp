@@ -297,13 +297,9 @@ TEST(Places, a_load_that_is_not_finite_is_named_with_its_place) {
   Exchange data{{"pressure-force", std::vector<double>(8, 1.)}};
   EXPECT_NO_THROW(require_finite(MPI_COMM_SELF, data, fluid, fluid.gives, "fluid"));
   data["pressure-force"][5] = NAN;
-  try {
-    require_finite(MPI_COMM_SELF, data, fluid, fluid.gives, "fluid");
-    FAIL();
-  } catch (const SolveFailure& failure) {
-    EXPECT_STREQ(failure.what(),
-                 "'fluid' gave a 'pressure-force' that is not finite at face 2, (0.625, 0, 0).");
-  }
+  EXPECT_EQ(support::error_of<SolveFailure>(
+                [&] { require_finite(MPI_COMM_SELF, data, fluid, fluid.gives, "fluid"); }),
+            "'fluid' gave a 'pressure-force' that is not finite at face 2, (0.625, 0, 0).");
 }
 
 }  // namespace couplet::guards_test

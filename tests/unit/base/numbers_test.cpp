@@ -28,12 +28,8 @@ TEST(Numbers, counts_that_are_none_or_more_than_follow_are_refused) {
   from_numbers(two, list, "sums");
   EXPECT_EQ(list.size(), 2u);
   EXPECT_THROW(from_numbers(more, list, "sums"), Error) << "one is left";
-  try {
-    from_numbers({}, list, "step errors");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "The checkpoint's step errors are damaged. Use an earlier one.");
-  }
+  EXPECT_EQ(support::error_of([&] { from_numbers({}, list, "step errors"); }),
+            "The checkpoint's step errors are damaged. Use an earlier one.");
 }
 
 }  // namespace couplet::numbers_test

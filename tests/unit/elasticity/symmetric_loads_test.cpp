@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads of the symmetric operator are the transposes of what it measures.
 #include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/symmetric/surface_pressure.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/support/test.hpp"
@@ -78,6 +79,37 @@ void check_mass(BoxCells cells) {
 TEST_P(SymmetricLoads, no_mass_belongs_to_known_and_unknown_displacements) {
   const bool plane = GetParam() == BoxCells::quadrilaterals || GetParam() == BoxCells::triangles;
   plane ? check_mass<2>(GetParam()) : check_mass<3>(GetParam());
+}
+
+// Areas are of second order in the displacements, so that the difference of two of them is the derivative exactly.
+TEST_P(SymmetricLoads, tangent_of_a_follower_pressure_is_the_derivative_of_its_forces) {
+  RawMesh raw = make_box(GetParam(), {3, 2, 2}, Vec3::Zero(), Vec3(1.1, 1.0, 1.2));
+  const auto [mesh, geometry] = distribute(MPI_COMM_SELF, raw);
+  const ElasticOperator rows(mesh, geometry, std::vector<BoundaryRow>(mesh.patches.size(), free_row()), lame);
+  SymmetricSpace space(mesh, rows);
+  FollowerPressure pressure;
+  pressure.set(mesh, geometry, noise(std::size_t(mesh.n_flux_faces() - mesh.n_interior), 1));
+  const auto forces = [&](const std::vector<double>& u, const auto& add) {
+    space.fill(u, {});
+    space.clear_forces();
+    add();
+    const std::size_t places = space.n_nodes() + std::size_t(mesh.points.n_local());
+    return std::vector<double>(space.forces(), space.forces() + places * SymmetricSpace::stride);
+  };
+  const std::vector<double> u = noise(rows.n_unknowns(), 2), v = noise(rows.n_unknowns(), 3);
+  std::vector<double> there = u, back = u;
+  for (std::size_t i = 0; i < u.size(); ++i) there[i] += v[i], back[i] -= v[i];
+  const auto add = [&] { pressure.add_forces(space); };
+  const std::vector<double> plus = forces(there, add), minus = forces(back, add);
+  forces(u, add);
+  const std::vector<double> tangent = forces(v, [&] { pressure.add_tangent(space); });
+  double wrong = 0, size = 0;
+  for (std::size_t i = 0; i < tangent.size(); ++i) {
+    wrong = std::max(wrong, std::abs((plus[i] - minus[i]) / 2 - tangent[i]));
+    size = std::max(size, std::abs(tangent[i]));
+  }
+  EXPECT_GT(size, 0.1);
+  EXPECT_LT(wrong, 1e-12 * size);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SymmetricLoads,

@@ -227,14 +227,10 @@ TEST(KrylovSolver, says_what_was_reached_when_it_fails) {
   const std::size_t n = 200;
   KrylovSolver solver("displacement", MPI_COMM_WORLD, n, convect, identity);
   std::vector<double> b(n, 1.0), x(n, 0.0);
-  try {
-    solver.solve(b, x, {1e-12, 3});
-    FAIL() << "three iterations cannot be enough";
-  } catch (const SolveFailure& e) {
-    EXPECT_THAT(e.what(), ::testing::HasSubstr("displacement"));
-    EXPECT_THAT(e.what(), ::testing::HasSubstr("tolerance 1.000e-12"));
-    EXPECT_THAT(e.what(), ::testing::HasSubstr("3 of at most 3 iterations"));
-  }
+  const std::string said = support::error_of<SolveFailure>([&] { solver.solve(b, x, {1e-12, 3}); });
+  EXPECT_THAT(said, ::testing::HasSubstr("displacement"));
+  EXPECT_THAT(said, ::testing::HasSubstr("tolerance 1.000e-12"));
+  EXPECT_THAT(said, ::testing::HasSubstr("3 of at most 3 iterations"));
 }
 
 using Lanes = ComponentMultigrid::Lanes;

@@ -6,7 +6,7 @@
 #include "common/mesh/topology.hpp"
 #include "common/mesh/touching_faces.hpp"
 #include "support.hpp"
-#include "tests/support/box.hpp"
+#include "tests/support/apart.hpp"
 
 namespace couplet::distributed_test {
 using namespace mesh;
@@ -362,7 +362,7 @@ TEST(TouchingFaces, are_found_and_tied_on_all_cells) {
 
 /// Two squares side by side, `gap` apart, the second one with n cells per side.
 RawMesh two_squares(int n, double gap) {
-  return testing::beside(make_box(BoxCells::quadrilaterals, {4, 4, 1}, {0, 0, 0}, {1, 1, 0}),
+  return support::beside(make_box(BoxCells::quadrilaterals, {4, 4, 1}, {0, 0, 0}, {1, 1, 0}),
                          make_box(BoxCells::quadrilaterals, {n, n, 1}, {1 + gap, 0, 0}, {2 + gap, 1, 0}));
 }
 

@@ -58,7 +58,9 @@ TEST_F(Geo, names_are_found_as_they_stand) {
   const GeoScript s = script(
       "DefineConstant [ n = 8, h = {0.1, Name \"size, or [so]\"} , m ];\n"
       "Physical Curve(\"top\") = {1}; Physical Line(\"bottom\", 7) = {2}; Physical Surface(\"all\") = {1};"
-      "Physical Volume(Sprintf(\"v%g\", 1)) = {1};");
+      "Physical Volume(Sprintf(\"v%g\", 1)) = {1}; Extrude {0, 0, h} { Surface{1}; Layers{n / m2}; Layers{m}; }"
+      " Transfinite Curve {1, 3} = n2 Using Progression 1.1;");
+  EXPECT_EQ(s.counts, (std::map<std::string, bool>{{"m", true}, {"n2", true}}));
   EXPECT_THAT(s.constants, ElementsAre("n", "h", "m"));
   ASSERT_TRUE(s.groups[1] && s.groups[2]);
   EXPECT_THAT(*s.groups[1], ElementsAre("top", "bottom"));

@@ -109,4 +109,20 @@ TEST_P(GeometryOf, translation_sweeps_face_vector_times_distance) {
   for (Index f = 0; f < mesh.n_faces(); ++f) EXPECT_NEAR(swept[f], d.dot(geometry.face_area[f]), 1e-14);
 }
 
+TEST(Geometry, of_a_face_without_area_has_its_centre_between_its_corners) {
+  const auto [mesh, geometry] =
+      distribute(MPI_COMM_SELF, make_box(BoxCells::hexahedra, {1, 1, 1}, Vec3::Zero(), Vec3::Ones()));
+  std::vector<Vec3> wedge(geometry.points);
+  for (Vec3& x : wedge)
+    if (x.x() > 0.5) x.y() = 0.5;
+  const Geometry g = compute_geometry(mesh, wedge);
+  int found = 0;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    if (g.face_area[f].norm() > 1e-15) continue;
+    ++found;
+    EXPECT_LT((g.face_centre[f] - Vec3(1, 0.5, 0.5)).norm(), 1e-15);
+  }
+  EXPECT_EQ(found, 1);
+}
+
 }  // namespace couplet::geometry_test

@@ -64,6 +64,13 @@ TEST_F(ReadInp, surfaces_and_node_sets_are_patches_and_sections_zones) {
   EXPECT_EQ(area_of(raw, "rest"), Vec3(-1, 2, 0));
 }
 
+TEST_F(ReadInp, generated_sets_step_by_one_where_no_step_is_given_and_the_rest_is_unnamed) {
+  const RawMesh raw = read(two_cubes + cubes + "*NSET, NSET=lid, GENERATE\n15, 18, 3\n16, 17\n");
+  EXPECT_THAT(raw.patches, ElementsAre("lid", "rest"));
+  EXPECT_EQ(area_of(raw, "lid"), Vec3(0, 0, 1));
+  EXPECT_EQ(area_of(raw, "rest"), Vec3(0, 0, -1));
+}
+
 TEST_F(ReadInp, faces_are_numbered_as_in_the_manuals) {
   const auto normals = [&](const std::string& element, int faces) {
     std::vector<Vec3> all;

@@ -196,15 +196,11 @@ TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {
   const auto nowhere = make_weather(constant, ".");
   EXPECT_FALSE(nowhere->has_site());
   EXPECT_NO_THROW(require_sun(0, *nowhere, "x"));
-  try {
-    require_sun(0.4, *nowhere, "participants.tank.insulation.solar-absorptance");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(
-        error.what(),
-        HasSubstr(
-            "participants.tank.insulation.solar-absorptance: solar heating of the cover needs the sun's height"));
-  }
+  EXPECT_THAT(
+      support::error_of(
+          [&] { require_sun(0.4, *nowhere, "participants.tank.insulation.solar-absorptance"); }),
+      HasSubstr(
+          "participants.tank.insulation.solar-absorptance: solar heating of the cover needs the sun's height"));
   WeatherParameters file;
   file.kind = WeatherKind::file;
   file.file = std::string(WEATHER_FOLDER) + "/granada_aldeire_surrogate.csv.gz";

@@ -88,13 +88,8 @@ TEST(Weather, a_winter_goes_over_the_new_year) {
 }
 
 TEST(Weather, a_day_that_the_record_lacks_is_refused) {
-  const auto complaint = [](const WeatherPeriod& period) -> std::string {
-    try {
-      Weather(invented(100, 10), period);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "nothing";
+  const auto complaint = [](const WeatherPeriod& period) {
+    return support::error_of([&] { Weather(invented(100, 10), period); });
   };
   const char* holds = "; it covers 04-11 to 04-20";
   EXPECT_THAT(complaint({98, 105}),

@@ -113,8 +113,8 @@ TEST(Parts, of_a_fluid_that_no_cell_connects_need_an_outlet_each) {
   const auto told = [](int apart, const std::string& last, FluidParameters p) {
     RawMesh raw = quads(4, 4, 1);
     for (int i = 1; i <= apart; ++i)
-      support::add_apart(
-          raw, make_box(BoxCells::quadrilaterals, {3, 4, 1}, Vec3(2 * i, 0, 0), Vec3(2 * i + 1, 1, 1)));
+      raw = support::beside(std::move(raw), make_box(BoxCells::quadrilaterals, {3, 4, 1}, Vec3(2 * i, 0, 0),
+                                                     Vec3(2 * i + 1, 1, 1)));
     p.boundaries["xmin"] = boundary(BoundaryType::no_slip);
     raw.patches.push_back("last");
     for (Index b = 0; b < raw.boundary_points.size(); ++b) {

@@ -183,12 +183,7 @@ TEST(PrescribedMotion, an_impulse_at_the_start_is_said) {
 }
 
 std::string refusal(const FluidParameters& p) {
-  try {
-    Alone run(p);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "accepted";
+  return support::error_of([&] { Alone run(p); });
 }
 
 TEST(PrescribedMotion, what_cannot_be_is_refused_by_name) {

@@ -6,6 +6,7 @@
 #include "fluid_solver/motion/rotation.hpp"
 #include "participant_case.hpp"
 #include "ring_mesh.hpp"
+#include "tests/support/apart.hpp"
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/fluid/fluid_case.hpp"
 
@@ -180,21 +181,10 @@ RawMesh two_boxes(int dim, int below, int above) {
   RawMesh raw = mesh::make_box(cells, {below, 5, dim == 2 ? 1 : below}, Vec3::Zero(), Vec3::Ones());
   const RawMesh upper = mesh::make_box(cells, {above, 5, dim == 2 ? 1 : above}, Vec3(0, 1 + thickness, 0),
                                        Vec3(1, 2 + thickness, 1));
-  const auto shift = static_cast<Index>(raw.points.size());
   const auto patches = static_cast<int>(raw.patches.size());
-  raw.points.insert(raw.points.end(), upper.points.begin(), upper.points.end());
-  raw.cell_type.insert(raw.cell_type.end(), upper.cell_type.begin(), upper.cell_type.end());
-  raw.cell_zone.insert(raw.cell_zone.end(), upper.cell_zone.begin(), upper.cell_zone.end());
-  const auto append = [&](mesh::Csr& to, const mesh::Csr& from) {
-    for (Index i = 0; i < from.size(); ++i) {
-      std::vector<Index> row(from[i].begin(), from[i].end());
-      for (Index& v : row) v += shift;
-      to.push_row(row);
-    }
-  };
-  append(raw.cell_points, upper.cell_points);
-  append(raw.boundary_points, upper.boundary_points);
-  for (const int patch : upper.boundary_patch) raw.boundary_patch.push_back(patch + patches);
+  const std::size_t first = raw.boundary_patch.size();
+  raw = support::beside(std::move(raw), upper);
+  for (std::size_t b = first; b < raw.boundary_patch.size(); ++b) raw.boundary_patch[b] += patches;
   for (const std::string& name : upper.patches) raw.patches.push_back("up" + name);
   return raw;
 }

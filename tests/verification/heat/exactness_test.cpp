@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What conduction must reproduce to round-off on any mesh.
 #include "common/mesh/distributed/mesh_block.hpp"
+#include "tests/support/apart.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::exactness_test {
@@ -189,9 +190,9 @@ TEST(LayeredSlab, the_flux_through_layers_is_exact) {
 
 // Two bars of 1 m with 10 W/(m K) and 100 K between their ends: 500 W.
 TEST(TouchingBars, conduct_heat_where_they_are_tied) {
-  MeshBlock block =
-      block_of(MPI_COMM_WORLD, beside(make_box(BoxCells::hexahedra, {2, 2, 2}, {0, 0, 0}, {1, 1, 1}),
-                                      make_box(BoxCells::hexahedra, {2, 2, 2}, {1, 0, 0}, {2, 1, 1})));
+  MeshBlock block = block_of(MPI_COMM_WORLD,
+                             support::beside(make_box(BoxCells::hexahedra, {2, 2, 2}, {0, 0, 0}, {1, 1, 1}),
+                                             make_box(BoxCells::hexahedra, {2, 2, 2}, {1, 0, 0}, {2, 1, 1})));
   block.tie = true;
   HeatParameters p = steady();
   p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "300");

@@ -2,6 +2,7 @@
 // A plate in a square that moves as told, for the tests of the mover.
 #pragma once
 
+#include "common/mesh/load.hpp"
 #include "mesh_mover/mover.hpp"
 #include "tests/support/own_folder.hpp"
 #include "tests/support/test.hpp"
@@ -13,6 +14,30 @@ inline double largest_difference(MPI_Comm comm, const std::vector<double>& a, co
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     worst = std::max(worst, std::abs(a[i] - b[i]));
   return parallel::max(comm, worst);
+}
+
+inline Parameters all_patches(const mesh::Mesh& mesh, BoundaryMotion motion) {
+  Parameters p;
+  p.dimension = mesh.dim;
+  for (const mesh::Patch& patch : mesh.patches) p.boundaries[patch.name].motion = motion;
+  return p;
+}
+
+/// `dim` values of the field f per point.
+template <class F>
+std::vector<double> at_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const F& f) {
+  std::vector<double> values;
+  for (const Vec3& x : geometry.points) {
+    const Vec3 d = f(x);
+    values.insert(values.end(), d.data(), d.data() + mesh.dim);
+  }
+  return values;
+}
+
+inline mesh::LoadedMesh perturbed_box(mesh::BoxCells cells, int n) {
+  mesh::RawMesh raw = mesh::make_box(cells, {n, n, n}, Vec3::Zero(), Vec3::Ones());
+  mesh::perturb_interior(raw, 0.2, 7);
+  return mesh::distribute(MPI_COMM_WORLD, raw);
 }
 
 inline Parameters plate_in_a_square(Method method, Form form, double chi = 1) {
@@ -45,6 +70,30 @@ inline void run(Mover& mover, double from, double to, int steps) {
     mover.solve({});
     mover.accept_step();
   }
+}
+
+/// The same mover on one rank, with a folder of its own.
+inline app::ParticipantContext alone(app::ParticipantContext c = context()) {
+  c.comm = MPI_COMM_SELF;
+  c.output_folder = support::own_folder() / ("alone-" + std::to_string(parallel::comm_rank(MPI_COMM_WORLD)));
+  std::filesystem::create_directories(c.output_folder);
+  return c;
+}
+
+/// Largest difference to a reference on one rank, over all ranks.
+inline double difference_to(const Mover& reference, const Mover& mover,
+                            const std::vector<double>& displacement) {
+  const int dim = mover.mesh().dim;
+  std::vector<double> by_id(reference.displacement().size());
+  for (Index v = 0; v < reference.mesh().points.n_local(); ++v)
+    for (int c = 0; c < dim; ++c)
+      by_id[dim * reference.mesh().point_id[v] + c] = reference.displacement()[dim * v + c];
+  double worst = 0;
+  for (Index v = 0; v < mover.mesh().points.n_local(); ++v)
+    for (int c = 0; c < dim; ++c)
+      worst =
+          std::max(worst, std::abs(by_id[dim * mover.mesh().point_id[v] + c] - displacement[dim * v + c]));
+  return parallel::max(MPI_COMM_WORLD, worst);
 }
 
 inline void turn_by(Parameters& p, const std::string& angle) {

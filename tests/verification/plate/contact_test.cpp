@@ -209,12 +209,7 @@ std::string refusal(const ContactParameters& contact, double amplitude = 0) {
   p.contact = contact;
   p.initial_amplitudes = {amplitude};
   const mesh::RawMesh raw = square(4);
-  try {
-    const Structure plate(p, PlateContext{}, &raw);
-    return "";
-  } catch (const Error& error) {
-    return error.what();
-  }
+  return support::error_of([&] { const Structure plate(p, PlateContext{}, &raw); });
 }
 
 // A seat that reaches into the structure at the start is a wound spring: 1 kJ that nobody asked for.

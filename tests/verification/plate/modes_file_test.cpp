@@ -3,6 +3,7 @@
 #include "common/io/hdf5.hpp"
 #include "common/modes/modal_checks.hpp"
 #include "common/modes/modal_model.hpp"
+#include "plate_modal/motion/surface.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 
@@ -204,12 +205,30 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
   EXPECT_NE(damaged([](ModalModel& m) { m.frequency[3] = 0.5 * m.frequency[2]; }).find("lower frequency"),
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape[5] = NAN; }).find("not finite"), std::string::npos);
-  EXPECT_NE(damaged([](ModalModel& m) { m.faces.index[4] = 999; }).find("refers to vertex 999"),
-            std::string::npos);
+  says("refers to vertex 999", [](ModalModel& m) { m.faces.index[4] = 999; });
+  says("refers to vertex 998", [](ModalModel& m) { m.faces.index.back() = 998; });
   EXPECT_NE(damaged([](ModalModel& m) { m.participation.resize(12); }).find("participation"),
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape.resize(m.vertex_shape.size() - 6); }).find("rows"),
             std::string::npos);
+}
+
+// A square of which one corner is lifted by 1: its mean is 1/4, it turns by 1/4 about both axes, and the saddle
+// that is left has 1/4 at each corner.
+TEST(SurfaceMotion, of_a_corner_is_a_rigid_motion_and_a_saddle_of_the_same_size) {
+  ModalModel model;
+  model.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  model.faces.offset = {0, 4}, model.faces.index = {0, 1, 2, 3};
+  model.frequency = {1};
+  model.vertex_shape.assign(12, 0), model.vertex_shape.back() = 1;
+  model.participation.assign(3, 0);
+  average_faces(model);
+  const RigidMotion motion = rigid_motion(model, 0);
+  EXPECT_LT((motion.translation - Vec3(0, 0, 0.25)).norm(), 1e-14);
+  EXPECT_LT((motion.rotation - Vec3(0.25, 0.25, 0)).norm(), 1e-14);
+  EXPECT_NEAR(motion.misfit, 0.5, 1e-14);
+  const double lift = 3;
+  EXPECT_EQ(Surface(model).motion({&lift, 1}).back(), lift);
 }
 
 TEST(ModalMass, is_the_mass_times_the_square_of_a_shape_that_is_everywhere_the_same) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large strain in time: rigid rotation, a pressure that turns with its surface, energy and momenta of a free body.
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/finite_support.hpp"
 
 namespace couplet::testing::finite_motion_test {
 using namespace mesh;
@@ -30,20 +30,6 @@ TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
       EXPECT_LT(parallel::max(solid->body().mesh().comm, most), 1e-9 * p.material.youngs_modulus) << law;
     }
   }
-}
-
-/// A pressure that follows the top.
-SolidParameters busy(int dim, MethodParameters::VolumeStrain volume) {
-  SolidParameters p = box_parameters(dim);
-  p.kinematics = SolidParameters::Kinematics::finite_strain;
-  p.material = {1000, 1e6, 0.3};
-  p.material.law = "mooney-rivlin";
-  p.material.law_coefficients = {0.3};
-  p.method.volume_strain = volume;
-  p.boundaries["xmin"] = clamped(dim);
-  p.boundaries["ymin"] = boundary(Type::symmetry);
-  p.boundaries["ymax"] = pressed("1e5*t");
-  return p;
 }
 
 // A pressure on all of a closed surface that turns and deforms leaves no resultant; on one side it is p times the

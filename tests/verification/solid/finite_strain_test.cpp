@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large strain: bending against converged references, rigid rotation, Newton's tail, ranks, restart, refusals.
 #include "solid_solver/equilibrium/finite_strain.hpp"
-#include "common/elasticity/finite/finite_kernel.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/support/saved_state.hpp"
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/finite_support.hpp"
 
 namespace couplet::testing::finite_strain_test {
 using namespace mesh;
@@ -15,35 +14,19 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
 
-constexpr double E = 15.293e6, side = 0.2, length = 2;
+constexpr double side = beam_side, length = beam_length;
 
-/// Case E: a cantilever of square section, its tip pulled along the diagonal by K E I / L^2, L = 10 sides.
 SolidParameters bent(const std::string& law, double K) {
   SolidParameters p = box_parameters(3);
-  p.kinematics = SolidParameters::Kinematics::finite_strain;
-  p.material = {1000, E, 0.3};
+  p.material = {1000, 15.293e6, 0.3};
   p.material.law = law;
-  p.boundaries["zmin"] = clamped(3);
-  const double inertia = std::pow(side, 4) / 12, force = K * E * inertia / (length * length);
-  const std::string pull = fmt::format("t*{:.17g}", force / (side * side) / std::sqrt(2.0));
-  p.boundaries["zmax"] = boundary(Type::traction, {pull, pull, "0"});
-  return p;
-}
-
-RawMesh beam(BoxCells cells, int n, int along) {
-  return make_box(cells, {n, n, along}, Vec3(-side / 2, -side / 2, 0), Vec3(side / 2, side / 2, length));
-}
-
-/// Of the middle of the tip, over the length, on all ranks.
-double deflection(const Solid& solid) {
-  const Vec3 tip = displacement_at(solid, Vec3(0, 0, length));
-  return std::hypot(tip[0], tip[1]) / length;
+  return testing::bent(p, K);
 }
 
 TEST(FiniteStrain, bends_as_converged_finite_elements_do) {
-  const auto svk = stepped(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1.6));
+  const auto svk = stepped(beam(2, 20), bent("saint-venant-kirchhoff", 1.6));
   EXPECT_NEAR(deflection(*svk), 0.43134, 0.01 * 0.43134);
-  const auto neo = stepped(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1.6));
+  const auto neo = stepped(beam(2, 20), bent("neo-hookean", 1.6));
   EXPECT_NEAR(deflection(*neo), 0.430758, 0.01 * 0.43);
 }
 
@@ -54,8 +37,8 @@ TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
     return displacement_at(solid, Vec3(side / 2, side / 2, length));
   };
   for (const double K : {0.1, 1.6}) {
-    const auto coarse = make_solid(beam(BoxCells::hexahedra, 1, 10), bent("neo-hookean", K)),
-               fine = make_solid(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", K));
+    const auto coarse = make_solid(beam(1, 10), bent("neo-hookean", K)),
+               fine = make_solid(beam(2, 20), bent("neo-hookean", K));
     const diagnostics::ErrorParts parts = support::observe(*coarse, 1, 1).diagnostics().errors();
     step(*fine, 1);
     const double wrong = (tip(*coarse) - tip(*fine)).norm() / tip(*fine).norm();
@@ -67,10 +50,10 @@ TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
 
 TEST(FiniteStrain, equals_small_strain_under_small_loads) {
   SolidParameters p = bent("", 1e-6);
-  const auto large = make_solid(beam(BoxCells::hexahedra, 2, 20), p);
+  const auto large = make_solid(beam(2, 20), p);
   p.kinematics = SolidParameters::Kinematics::small_strain;
   p.method.face_gradient = FaceGradient::symmetric;
-  const auto small = make_solid(beam(BoxCells::hexahedra, 2, 20), p);
+  const auto small = make_solid(beam(2, 20), p);
   step(*large, 1);
   step(*small, 1);
   EXPECT_NEAR(deflection(*large), deflection(*small), 1e-5 * deflection(*small));
@@ -78,7 +61,7 @@ TEST(FiniteStrain, equals_small_strain_under_small_loads) {
 
 // Residuals square from one iteration to the next near the end, less what the inexact solves leave.
 TEST(FiniteStrain, newton_ends_superlinearly) {
-  const auto solid = stepped(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
+  const auto solid = stepped(beam(2, 20), bent("neo-hookean", 1));
   const auto& tail = dynamic_cast<const FiniteStrain&>(solid->body().equilibrium()).iterates();
   ASSERT_GE(tail.size(), 4U);
   EXPECT_LE(tail.size(), 12U);
@@ -88,7 +71,7 @@ TEST(FiniteStrain, newton_ends_superlinearly) {
 }
 
 TEST(FiniteStrain, ranks_agree) {
-  const RawMesh raw = beam(BoxCells::hexahedra, 2, 20);
+  const RawMesh raw = beam(2, 20);
   const auto whole = make_solid(raw, bent("neo-hookean", 1), MPI_COMM_SELF),
              parts = make_solid(raw, bent("neo-hookean", 1));
   step(*whole, 1);
@@ -146,12 +129,12 @@ TEST(FiniteStrain, a_stretched_bar_gives_way_by_its_tangent) {
 }
 
 TEST(FiniteStrain, restart_in_the_middle_of_the_load_is_bit_for_bit) {
-  expect_same_after_restart(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 4), 0.25, 0.5);
+  expect_same_after_restart(beam(2, 20), bent("neo-hookean", 4), 0.25, 0.5);
 }
 
 TEST(FiniteStrain, failed_load_names_the_worst_cell_and_leaves_the_state) {
   if (comm_size(MPI_COMM_WORLD) > 2) return;  // its many linear iterations wait for each other on few cores
-  const auto solid = make_solid(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1));
+  const auto solid = make_solid(beam(2, 20), bent("saint-venant-kirchhoff", 1));
   step(*solid, 0.5);
   const std::vector<double> kept = solid->stepper().state().cell_u;
   solid->begin_step({0.5, 400, coupling::Scheme::standalone, 1});
@@ -161,7 +144,7 @@ TEST(FiniteStrain, failed_load_names_the_worst_cell_and_leaves_the_state) {
 }
 
 TEST(FiniteStrain, reactions_balance_the_load) {
-  const auto solid = stepped(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
+  const auto solid = stepped(beam(2, 20), bent("neo-hookean", 1));
   const auto reactions = solid->fields().reactions(solid->fields().point_displacement());
   const Vec3 load = solid->fields().total_load();
   ASSERT_EQ(reactions.size(), 1U);
@@ -170,32 +153,6 @@ TEST(FiniteStrain, reactions_balance_the_load) {
 
 constexpr std::array kinds{BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
                            BoxCells::tetrahedra,     BoxCells::prisms,    BoxCells::mixed};
-
-std::vector<double> noise(std::size_t n, double size, unsigned seed) {
-  std::vector<double> values(n);
-  for (std::size_t i = 0; i < n; ++i) values[i] = size * std::sin(12.9898 * double(i + 1) * seed + seed);
-  return values;
-}
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double here = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) here += a[i] * b[i];
-  return sum(MPI_COMM_WORLD, here);
-}
-
-/// Supports of several kinds, a pressure that follows the top.
-SolidParameters busy(int dim, MethodParameters::VolumeStrain volume) {
-  SolidParameters p = box_parameters(dim);
-  p.kinematics = SolidParameters::Kinematics::finite_strain;
-  p.material = {1000, 1e6, 0.3};
-  p.material.law = "mooney-rivlin";
-  p.material.law_coefficients = {0.3};
-  p.method.volume_strain = volume;
-  p.boundaries["xmin"] = clamped(dim);
-  p.boundaries["ymin"] = boundary(Type::symmetry);
-  p.boundaries["ymax"] = pressed("1e5*t");
-  return p;
-}
 
 // Forces are the energy's derivative, the tangent is the forces', and symmetric but for the pressure's rim.
 TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
@@ -210,36 +167,13 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       const auto kernel = std::make_unique<elastic::FiniteKernel>(
           solid->body().mesh(), solid->body().elastic(), std::vector<const elastic::FiniteLaw*>{law.get()});
       const std::size_t n = solid->body().elastic().n_unknowns();
-      const std::vector<double> u = noise(n, 0.02, 1), v = noise(n, 1, 2), w = noise(n, 1, 3);
-      const double h = 1e-6;
-      std::vector<double> up = u, down = u, force(n), ahead(n), behind(n), kv(n), kw(n);
-      for (std::size_t i = 0; i < n; ++i) up[i] += h * v[i], down[i] -= h * v[i];
-      const auto compare = [&] {
-        kernel->linearise(up, {}, 0, ahead);
-        kernel->linearise(down, {}, 0, behind);
-        kernel->linearise(u, {}, 0, force);
-        kernel->apply_tangent(v, {}, 0, kv);
-        double gap = 0, size = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-          gap += std::pow((ahead[i] - behind[i]) / (2 * h) - kv[i], 2);
-          size += kv[i] * kv[i];
-        }
-        EXPECT_LT(std::sqrt(sum(MPI_COMM_WORLD, gap)), 1e-6 * std::sqrt(sum(MPI_COMM_WORLD, size)));
-      };
-      compare();
-      kernel->apply_tangent(w, {}, 0, kw);
-      EXPECT_NEAR(dot(w, kv), dot(v, kw), 1e-10 * std::sqrt(dot(kv, kv) * dot(w, w)));
-      kernel->linearise(up, {}, 0, ahead);
-      const double most = sum(MPI_COMM_WORLD, kernel->energy());
-      kernel->linearise(down, {}, 0, behind);
-      const double least = sum(MPI_COMM_WORLD, kernel->energy());
-      EXPECT_NEAR((most - least) / (2 * h), dot(force, v), 1e-5 * std::sqrt(dot(force, force) * dot(v, v)));
+      expect_derivatives(*kernel, n);
       std::vector<double> pressure(solid->body().mesh().boundary.n_owned(), 0);
       for (Index f = solid->body().mesh().n_interior; f < solid->body().mesh().n_flux_faces(); ++f)
         if (solid->body().geometry().face_centre[f][1] > 1 - 1e-9)
           pressure[f - solid->body().mesh().n_interior] = 3e5;
       kernel->set_pressure(pressure);
-      compare();
+      expect_derivatives(*kernel, n, false);
     }
 }
 

@@ -4,7 +4,7 @@
 #include "common/elasticity/finite/finite_kernel.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
 #include "solid_solver/laws/laws.hpp"
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/finite_support.hpp"
 
 namespace couplet::testing::incompressible_test {
 using namespace mesh;
@@ -91,12 +91,6 @@ TEST(Incompressible, a_ring_under_a_pressure_that_follows_is_that_of_the_closed_
     RecordProperty("order_fine", fmt::format("{:.2f}", std::log2(errors[1] / errors[2])));
   EXPECT_GT(order, 1.8);
   EXPECT_LT(std::abs(errors[1]), 0.003);
-}
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  double result = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) result += a[i] * b[i];
-  return parallel::sum(MPI_COMM_WORLD, result);
 }
 
 /// |w . K v - v . K w| over the larger of them for two rough fields, K the tangent of a pressed and deformed ring; all of

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plane stress at large strain: sheets whose answer is known, any law, near incompressibility, a free sheet in space,
 // second order, tangent, ranks, restart.
-#include "common/elasticity/finite/finite_kernel.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/support/saved_state.hpp"
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/finite_support.hpp"
 
 namespace couplet::testing::large_sheet_test {
 using namespace mesh;
@@ -213,31 +212,7 @@ TEST(LargeSheet, condensed_tangent_is_the_derivative_of_the_forces_and_symmetric
       const auto kernel =
           std::make_unique<elastic::FiniteKernel>(solid->body().mesh(), solid->body().elastic(),
                                                   std::vector<const elastic::FiniteLaw*>{own.get()}, true);
-      const std::size_t n = solid->body().elastic().n_unknowns();
-      std::vector<double> u(n), v(n), w(n), up(n), down(n), force(n), ahead(n), behind(n), kv(n), kw(n);
-      const double h = 1e-6;
-      for (std::size_t i = 0; i < n; ++i) {
-        u[i] = 0.03 * std::sin(12.9898 * double(i + 1));
-        v[i] = std::sin(78.233 * double(i + 1)), w[i] = std::cos(37.7 * double(i + 1));
-        up[i] = u[i] + h * v[i], down[i] = u[i] - h * v[i];
-      }
-      kernel->linearise(up, {}, 0, ahead);
-      const double most = kernel->energy();
-      kernel->linearise(down, {}, 0, behind);
-      const double least = kernel->energy();
-      kernel->linearise(u, {}, 0, force);
-      kernel->apply_tangent(v, {}, 0, kv);
-      kernel->apply_tangent(w, {}, 0, kw);
-      double gap = 0, size = 0, work = 0, forces = 0, one = 0, other = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        gap += std::pow((ahead[i] - behind[i]) / (2 * h) - kv[i], 2), size += kv[i] * kv[i];
-        work += force[i] * v[i], forces += force[i] * force[i];
-        one += w[i] * kv[i], other += v[i] * kw[i];
-      }
-      const auto all = [](double x) { return sum(MPI_COMM_WORLD, x); };
-      EXPECT_LT(std::sqrt(all(gap)), 1e-6 * std::sqrt(all(size)));
-      EXPECT_NEAR(all((most - least) / (2 * h)), all(work), 1e-5 * std::sqrt(all(forces) * double(n)));
-      EXPECT_NEAR(all(one), all(other), 1e-9 * std::sqrt(all(size) * double(n)));
+      expect_derivatives(*kernel, solid->body().elastic().n_unknowns(), true, 1e-9);
     }
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thermal strain at large strain: free and held bodies, a ring against its ordinary differential equation, tangent,
 // ranks, restart.
-#include "common/elasticity/finite/finite_kernel.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/support/saved_state.hpp"
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/finite_support.hpp"
 
 namespace couplet::testing::large_thermal_test {
 using namespace mesh;
@@ -200,28 +199,7 @@ TEST(LargeThermalStrain, tangent_is_the_derivative_of_the_forces) {
       for (Index f = 0; f < mesh.n_flux_faces(); ++f)
         stretch.push_back(1 + 0.2 * solid->body().geometry().face_centre[f][0]);
       kernel->set_stretch(stretch);
-      const std::size_t n = solid->body().elastic().n_unknowns();
-      std::vector<double> u(n), v(n), up(n), down(n), force(n), ahead(n), behind(n), kv(n);
-      const double h = 1e-6;
-      for (std::size_t i = 0; i < n; ++i) {
-        u[i] = 0.02 * std::sin(12.9898 * double(i + 1));
-        v[i] = std::sin(78.233 * double(i + 1));
-        up[i] = u[i] + h * v[i], down[i] = u[i] - h * v[i];
-      }
-      kernel->linearise(up, {}, 0, ahead);
-      const double most = sum(MPI_COMM_WORLD, kernel->energy());
-      kernel->linearise(down, {}, 0, behind);
-      const double least = sum(MPI_COMM_WORLD, kernel->energy());
-      kernel->linearise(u, {}, 0, force);
-      kernel->apply_tangent(v, {}, 0, kv);
-      double gap = 0, size = 0, work = 0, forces = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        gap += std::pow((ahead[i] - behind[i]) / (2 * h) - kv[i], 2), size += kv[i] * kv[i];
-        work += force[i] * v[i], forces += force[i] * force[i];
-      }
-      EXPECT_LT(std::sqrt(sum(MPI_COMM_WORLD, gap)), 1e-6 * std::sqrt(sum(MPI_COMM_WORLD, size)));
-      EXPECT_NEAR((most - least) / (2 * h), sum(MPI_COMM_WORLD, work),
-                  1e-5 * std::sqrt(sum(MPI_COMM_WORLD, forces) * double(n)));
+      expect_derivatives(*kernel, solid->body().elastic().n_unknowns());
     }
 }
 

@@ -2,6 +2,7 @@
 // Quantities of interest of linear static bodies: their errors by the dual problem beside the true ones.
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/body/stress.hpp"
+#include "solid_solver/output/dual_problem.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/verification/solid/support.hpp"
 
@@ -109,6 +110,31 @@ TEST(Quantities, of_linear_fields_have_no_error_on_any_cells) {
     for (const QuantityEstimate& q : all)
       EXPECT_LT(q.error(), 1e-6 * std::abs(q.value)) << name(cells) << " " << q.name;
     EXPECT_NEAR(all[1].value, 1e6, 1);
+  }
+}
+
+TEST(Quantities, rows_of_a_stress_give_the_stress_of_a_linear_field) {
+  for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra}) {
+    const Solid solid(distribute(MPI_COMM_WORLD, bar(cells, 2)), sheared(3), SolidContext{});
+    const SolidBody& body = solid.body();
+    const Vec3 slope(3, -2, 1);  // of the displacement along the bar, which is 0 at its clamped end
+    std::vector<double> u;
+    const auto add = [&](const Vec3& x) {
+      u.insert(u.end(), {slope[0] * x[0], slope[1] * x[0], slope[2] * x[0]});
+    };
+    for (Index c = 0; c < body.mesh().cells.n_owned(); ++c) add(body.geometry().cell_centre[c]);
+    for (const Index f : body.elastic().unknown_faces()) add(body.geometry().face_centre[f]);
+    const DualProblem dual(body, u, std::vector<double>(body.prescribed().size() * 3, 0));
+    Tensor3 weights, strain = Tensor3::Zero();
+    weights << 1, 0.5, 0, 0.5, -2, 0.3, 0, 0.3, 0.7;
+    strain.col(0) = 0.5 * slope, strain.row(0) += 0.5 * slope.transpose();
+    const Index cell = 0;
+    const std::vector<double> rows = dual.of_stress({&cell, 1}, weights);
+    double sum = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) sum += rows[i] * u[i];
+    const Tensor3 stress = body.elastic().stress(cell, strain);
+    EXPECT_NEAR(parallel::sum(MPI_COMM_WORLD, sum), weights.cwiseProduct(stress).sum(),
+                1e-11 * stress.norm());
   }
 }
 

@@ -2,14 +2,11 @@
 // Patches that move as rigid bodies under a remote load: rigid to round-off, in equilibrium, on any ranks, at rest and in motion.
 #include <Eigen/Dense>
 
-#include "common/config/load.hpp"
 #include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing::rigid_patch_test {
 using namespace mesh;
-
-using ::testing::HasSubstr;
 
 /// U, w of the faces of a patch by least squares about a point, and the largest deviation from them. Collective.
 struct Motion {
@@ -152,33 +149,6 @@ TEST(RigidPatches, give_the_same_displacement_on_any_number_of_ranks) {
   p.boundaries["xmax"] = rigid(Vec3(1e6, 2e6, -1e6), Vec3(2, 1, 1), 3);
   p.boundaries["ymax"] = rigid(Vec3::Zero(), Vec3::Zero(), 3);
   expect_same_on_ranks(distorted_box(BoxCells::tetrahedra), p, 1e-9);
-}
-
-TEST(RigidPatches, say_what_they_cannot_have) {
-  const auto told = [](const std::string& text, const std::string& wanted) {
-    SolidParameters p;
-    const auto errors = config::load(
-        config::Document::parse(
-            "mesh: a.msh\nmaterial: {density: 7800, youngs-modulus: 200 GPa, poissons-ratio: 0.3}\n"
-            "boundaries:\n  root: {type: symmetry}\n"
-            "  head: {type: remote-load, point: [0, 0, 1], force: [1, 0, 0], coupling: rigid}\n" +
-                text,
-            "case.yaml"),
-        "", [&](config::Section& s) { declare(s, p); });
-    EXPECT_THAT(errors, ::testing::Contains(HasSubstr(wanted))) << text;
-  };
-  told("kinematics: finite-strain\n", "is limited to small rotations");
-  told("solution-method: {face-gradient: thesis}\n", "requires 'face-gradient: symmetric'");
-  told("solution-method: {type: block-coupled}\n", "requires 'face-gradient: symmetric'");
-  told("output: {modes: 3}\n", "do not support a remote-load");
-  SolidParameters p;
-  EXPECT_THAT(config::load(
-                  config::Document::parse(
-                      "mesh: a.msh\nmaterial: {density: 7800, youngs-modulus: 200 GPa, poissons-ratio: 0.3}\n"
-                      "boundaries: {head: {type: remote-load, point: [0, 0, 1], coupling: rigid}}\n",
-                      "case.yaml"),
-                  "", [&](config::Section& s) { declare(s, p); }),
-              ::testing::IsEmpty());
 }
 
 }  // namespace couplet::testing::rigid_patch_test

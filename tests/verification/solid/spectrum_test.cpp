@@ -272,4 +272,19 @@ TEST_P(Growth, is_removed_by_dissipative_schemes_and_by_a_little_damping) {
   }
 }
 
+// Without the massless row: K = [4 0; 0 6] - [1 2]^T [3 1] / 2 = [2.5 -0.5; -3 5], whose eigenvalues are 2 and 5.5; the mass is 2 kg.
+TEST(Spectrum, is_that_of_the_cells_once_massless_rows_are_eliminated) {
+  const auto [mesh, geometry] =
+      distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {1, 1, 1}, Vec3::Zero(), Vec3::Ones()));
+  Eigen::Matrix3d a;
+  a << 4, 0, 1, 0, 6, 2, 3, 1, 2;
+  const std::vector<double> mass{2};
+  const auto found = spectrum(mesh, mass, 3, [&](std::span<const double> x, std::span<double> y) {
+    Eigen::Map<Vec3>(y.data()) = a * Eigen::Map<const Vec3>(x.data());
+  });
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_LT(std::abs(found[0] - 1.), 1e-12);
+  EXPECT_LT(std::abs(found[1] - 2.75), 1e-12);
+}
+
 }  // namespace couplet::testing::spectrum_test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thesis's own method at large strain: its printed deflections, frames, exactness, ranks, restart, refusals.
 #include "tests/support/saved_state.hpp"
-#include "tests/verification/solid/support.hpp"
+#include "tests/verification/solid/finite_support.hpp"
 
 namespace couplet::testing::updated_lagrangian_test {
 using namespace mesh;
@@ -10,7 +10,7 @@ using namespace parallel;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr double E = 15.293e6, side = 0.2, length = 2;
+constexpr double E = 15.293e6;
 
 SolidParameters large(const std::string& law) {
   SolidParameters p = box_parameters(3);
@@ -22,26 +22,7 @@ SolidParameters large(const std::string& law) {
   return p;
 }
 
-/// Case E: a cantilever of square section, its tip pulled along the diagonal by K E I / L^2 times t.
-SolidParameters bent(double K) {
-  SolidParameters p = large("saint-venant-kirchhoff");
-  p.boundaries["zmin"] = clamped(3);
-  const double force = K * E * std::pow(side, 4) / 12 / (length * length);
-  const std::string pull = fmt::format("t*{:.17g}", force / (side * side) / std::sqrt(2.0));
-  p.boundaries["zmax"] = boundary(Type::traction, {pull, pull, "0"});
-  return p;
-}
-
-RawMesh beam(int n, int along) {
-  return make_box(BoxCells::hexahedra, {n, n, along}, Vec3(-side / 2, -side / 2, 0),
-                  Vec3(side / 2, side / 2, length));
-}
-
-/// Of the middle of the tip, over the length, on all ranks.
-double deflection(const Solid& solid) {
-  const Vec3 tip = displacement_at(solid, Vec3(0, 0, length));
-  return std::hypot(tip[0], tip[1]) / length;
-}
+SolidParameters bent(double K) { return testing::bent(large("saint-venant-kirchhoff"), K); }
 
 // Table 3.6, mesh 1. In one load step the frame is the undeformed body (total Lagrangian), in four it moves along.
 TEST(UpdatedLagrangian, repeats_the_printed_deflections_in_both_frames) {
@@ -121,8 +102,8 @@ TEST(UpdatedLagrangian, pressure_follows_the_surface_as_with_newton) {
 
 /// A stub in place of a beam: a fifth as long and loaded by so much more, it takes some dozens of iterations.
 RawMesh stub() {
-  return make_box(BoxCells::hexahedra, {2, 2, 3}, Vec3(-side / 2, -side / 2, length - 0.4),
-                  Vec3(side / 2, side / 2, length));
+  return make_box(BoxCells::hexahedra, {2, 2, 3}, Vec3(-beam_side / 2, -beam_side / 2, beam_length - 0.4),
+                  Vec3(beam_side / 2, beam_side / 2, beam_length));
 }
 
 TEST(UpdatedLagrangian, ranks_agree) {

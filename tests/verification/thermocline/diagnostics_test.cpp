@@ -48,6 +48,10 @@ TEST(Diagnostics, findings_turn_at_their_limits_and_belong_to_what_is_left_out) 
   expect(p, "resolved-grains", 20, true);
   p.filler.conductivity = 0.01;
   expect(p, "resolved-grains", 20, false);
+  TankParameters liquid = p;
+  for (BedLayer& layer : liquid.bed.layers) layer.porosity = 1;
+  const auto of_liquid = finding(liquid, "resolved-grains");
+  EXPECT_FALSE(of_liquid && of_liquid->number > 0) << "there are no grains";
   EXPECT_FALSE(finding(p, "implicit-advection")) << "it is explicit";
   p.bed.advection = Advection::implicit;
   expect(p, "implicit-advection", 0.05, false);

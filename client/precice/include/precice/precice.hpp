@@ -88,6 +88,8 @@ class Participant {
   void stopLastProfilingSection();
 
  private:
+  void construct(string_view participantName, string_view configurationFileName, int solverProcessIndex,
+                 int solverProcessSize, void* communicator);
   std::unique_ptr<couplet::dropin::Session> session_;
 };
 

@@ -18,7 +18,7 @@ def declare(parser):
 
 def ask(arguments, question):
     """Yields (participant, exit code, answer, complaint) of all our programs of the case, asked concurrently."""
-    case = Case(arguments.case, build_of(arguments.bin))
+    case = Case(arguments.case, build_of(arguments.bin)).changed(arguments.set)
     expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
     sets = [word for s in arguments.set for word in ("--set", s)]
     asked = {}
@@ -45,14 +45,25 @@ def problem_of_plot(case):
     return ""
 
 
+def problem_of_programs(case):
+    """Error in what runs the participants that only the whole case shows. Empty if there is none."""
+    if len(case.participants) > 1 and not case.data.get("coupling"):
+        return f"{case.file}: {len(case.participants)} participants, but no section 'coupling': add it, or run one of them: couplet run --participant NAME"
+    for name in case.participants:
+        program = case.program(name)
+        if not program.exists() and case.guest(name) is None and not case.coupled:
+            return f"{case.file}: participants.{name}.program: there is no program '{program.name}'; Couplet has {', '.join(OURS[1:])}."
+    return ""
+
+
 def run(arguments):
     worst, told = 0, []
     for name, code, answer, complaint in ask(arguments, "--check"):
         worst = max(worst, code if code >= 0 else 1)
         if code:  # every program reports general errors, but once is enough
             told += [line for line in (complaint or answer).rstrip().splitlines() if line not in told]
-    problem = problem_of_plot(Case(arguments.case))
-    if problem:
+    case = Case(arguments.case, build_of(arguments.bin))
+    for problem in filter(None, (problem_of_plot(case), problem_of_programs(case))):
         worst, told = max(worst, 2), [*told, problem]
     print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     if worst == 0:

@@ -6,7 +6,7 @@ import math
 import pathlib
 import re
 
-from couplet.runs.case import expect, load
+from couplet.runs.case import Wrong, expect, load
 from couplet.runs.results import Results, read_csv
 
 COST = re.compile(r"seconds|waiting|working|processor|clock|so far|iterations|residual")
@@ -23,7 +23,7 @@ def declare(parser):
     parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
     parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another run")
     parser.add_argument("--tolerance", type=share, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (default: 0)")
-    parser.add_argument("--all", action="store_true", help="also lists equal values")
+    parser.add_argument("--all", action="store_true", help="also lists values that are equal or within the tolerance")
 
 
 def flat(node, name=""):
@@ -64,9 +64,12 @@ def arrays(folder):
     for file in sorted(folder.glob("*/*.h5")):
         if file.parent.name == "checkpoints":
             continue
-        with h5py.File(file, "r") as series:
-            raw = {}
-            series.visititems(lambda name, item: raw.update({name: np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
+        raw = {}
+        try:
+            with h5py.File(file, "r") as series:
+                series.visititems(lambda name, item: raw.update({name: np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
+        except (OSError, RuntimeError) as error:
+            raise Wrong(f"{file}: cannot be read, and may be truncated ({error})") from None
         found.update({f"{file.relative_to(folder)}: {name}": values for name, values in by_number(raw).items()})
     return found
 
@@ -140,7 +143,7 @@ def run(arguments):
     found = list(differences(*runs, arguments.tolerance))
     expect(found, f"{runs[0]} and {runs[1]}: have no tables and fields to compare; did the runs fail?")
     apart_ones = [(name, words) for name, words, _ in found if words != "equal"]
-    for name, words in [(n, w) for n, w, _ in found] if arguments.all else apart_ones:
+    for name, words in [(n, w) for n, w, far in found if far or arguments.all]:
         print(f"{name}: {words}")
     beyond = sum(far for _, _, far in found)
     told = "equal bit for bit" if not apart_ones else f"{len(apart_ones)} differ" + (f", {beyond} by more than {arguments.tolerance:g}" if arguments.tolerance else "")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM (incompressible, laminar flow for
+"""Writes the fields of a run for other programs (--to vtk: .vtu files with a .pvd in each participant's folder vtk/, of an output folder instead of a
+case), or a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM (incompressible, laminar flow for
 icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key without a counterpart there is an error that names it.
 `couplet study --peers` runs both and compares them."""
 import pathlib
@@ -8,11 +9,11 @@ import tempfile
 
 from couplet.runs.case import Case, expect, with_changes
 
-TO = ("calculix", "openfoam")
+TO = ("calculix", "openfoam", "vtk")
 
 
 def declare(parser):
-    parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
+    parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml; for vtk the output folder of a run")
     parser.add_argument("--to", required=True, choices=TO, help="the target program")
     parser.add_argument("--folder", type=pathlib.Path, metavar="FOLDER", help="output folder (default: PROGRAM next to the case)")
     parser.add_argument("--participant", metavar="NAME", help="participant to export, if the case has several")
@@ -47,6 +48,13 @@ def made(case, arguments, work):
 def run(arguments):
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
     expect(arguments.element is None or arguments.to == "calculix", "--element: is of --to calculix")
+    if arguments.to == "vtk":
+        from couplet.vtk import write
+        expect(arguments.case.is_dir(), f"{arguments.case}: there is no such output folder")
+        lists = write(arguments.case)
+        expect(lists, f"{arguments.case}: there are no field series (*/*.h5) in it")
+        print("written, open in ParaView:", *lists, sep="\n  ")
+        return 0
     case = Case(arguments.case)
     folder = arguments.folder or case.file.parent / arguments.to
     expect(not folder.exists() or folder.is_dir() and not any(folder.iterdir()), f"--folder {folder}: exists and is not empty; choose a new name")

@@ -10,6 +10,8 @@ from couplet.runs import folder as folders
 from couplet.runs.case import Case, expect
 from couplet.runs.job import Job
 
+SHAPE = {"case": str, "ranks": dict, "sets": list, "flags": list, "with": dict}  # of the record
+
 
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
@@ -17,6 +19,7 @@ def declare(parser):
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="changes a value, such as simulation.end-time='10 s'")
     parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="command that starts an external participant; give it again, because a resumed run starts only programs of Couplet")
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
+    parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, as the run was allowed to; give it again, because the folder may be another's")
     parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
     parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
 
@@ -26,15 +29,18 @@ def run(arguments):
     expect(folder.is_dir(), f"{arguments.folder}: there is no such folder")
     record = folders.read_record(folder)
     expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
+    expect(all(isinstance(record.get(key), kind) for key, kind in SHAPE.items()) and all(isinstance(n, int) for n in record["ranks"].values()), f"{folder / folders.RECORD}: is damaged. Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
     file, found = pathlib.Path(os.path.normpath(folder / record["case"])), folders.checkpoint(folder)
     expect(file.is_file(), f"{arguments.folder}: its case is not at {file}. Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'} --set simulation.output.folder={shlex.quote(str(folder))}")
     expect(found, f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {shlex.quote(str(file))}")
-    case, played_by = Case(file, build_of(arguments.bin)), {name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}
+    sets = [*record["sets"], f"simulation.output.folder={folder}", *arguments.set]
+    case, played_by = Case(file, build_of(arguments.bin)).changed(sets), {name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}
     for name in [record["alone"]] if record["alone"] else case.participants:  # the folder may be another's: nothing is started that only it names
         command = record["with"].get(name) or case.guest(name)
         expect(not command or name in played_by, f"'{name}' is run by a program that is not Couplet's. If you trust it, give its command again: --with {name}={shlex.quote(shlex.join(map(str, command or [])))}")
+    expect(arguments.allow_commands or "--allow-commands" not in record["flags"], f"{arguments.folder}: its run let the .geo run commands. If you trust the case, give --allow-commands again")
     flags = [*record["flags"], *(["--restart-with-changes"] if arguments.restart_with_changes and "--restart-with-changes" not in record["flags"] else []), "--restart", str(folder / "checkpoints" / found)]
-    job = Job(case, {**record["ranks"], **ranks_of(arguments.ranks, case)}, [*record["sets"], f"simulation.output.folder={folder}", *arguments.set],
+    job = Job(case, {**record["ranks"], **ranks_of(arguments.ranks, case)}, sets,
               flags, record["alone"], played_by)
     if arguments.print:
         print(job.line())

@@ -152,13 +152,12 @@ def line_of_picture(job, out):
     if not job.case.has_picture or (job.alone and job.case.coupled):
         return f"couplet plot {shlex.quote(out)}"
     elsewhere = job.output.absolute() != output_of(job.case, ()).absolute()
-    return f"couplet plot {shlex.quote(shown(job.case.file))}" + (f" --out {shlex.quote(out)}" if elsewhere else "")
+    return f"couplet plot {shlex.quote(shown(job.case.file))}" + (f" --out {shlex.quote(out)}" if elsewhere else "") + (" --allow-commands" if job.case.draws_itself else "")
 
 
 def picture_of(job):
     """Draws the picture of the case. Returns its part of the last line."""
-    done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file), *(["--out", str(job.output)] if "plot" in job.case.data else [])], capture_output=True, text=True, env={
-        **os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[2])})
+    done = subprocess.run([sys.executable, places.command(), "plot", str(job.case.file), "--allow-commands", *(["--out", str(job.output)] if "plot" in job.case.data else [])], capture_output=True, text=True)
     name = next((line.removeprefix("picture: ") for line in reversed(done.stdout.splitlines()) if line.endswith(".png")), None)
     if done.returncode != 0:
         return f"no picture ({(done.stderr.strip().splitlines() or ['couplet plot failed'])[-1]})"
@@ -166,13 +165,13 @@ def picture_of(job):
 
 
 def finish(job, code, picture):
-    """Prints the last line: where the results are, or what failed and what to do."""
+    """Prints the last lines: where the results are, or what failed and what to do."""
     out, took = shown(job.output), span(job.seconds)
     again = f"couplet resume {shlex.quote(out)}"
     if code == 0 or code == 4:
         look = picture_of(job) if picture else f"picture: {line_of_picture(job, out)}"
-        doubt = ", but the result is provably useless (above; docs/findings.md)" if code == 4 else ""
-        print(f"done in {took}{doubt}: results in {out}, {look}", flush=True)
+        doubt = ", but the result is useless" if code == 4 else ""
+        print(f"done in {took}{doubt}: results in {out}", look, f"more: couplet report {shlex.quote(out)}", sep="\n", flush=True)
         return code
     if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
         print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; continue: {again}", file=sys.stderr)

@@ -98,7 +98,12 @@ def draw_bodies(axes, panel, out, series, i, ways):
 
 
 def draw_map(axes, panel, polygons, values):
-    drawn = PolyCollection(polygons, array=values, cmap=panel.get("colours", "viridis"), edgecolors="face", linewidths=0.1)
+    finite = values[np.isfinite(values)]
+    least, most = (finite.min(), finite.max()) if finite.size else (0, 0)
+    is_signed = min(-least, most) > 0.1 * max(-least, most)  # colors that diverge from zero
+    drawn = PolyCollection(polygons, array=values, cmap=panel.get("colours", "RdBu_r" if is_signed else "viridis"), edgecolors="none", antialiaseds=False)  # smoothed edges would leave white lines
+    if is_signed:
+        drawn.set_clim(-max(-least, most), max(-least, most))
     axes.add_collection(drawn)
     if "mesh" in panel:
         axes.add_collection(PolyCollection(polygons, facecolors="none", edgecolors=panel["mesh"], linewidths=0.07, alpha=0.4))

@@ -97,6 +97,7 @@ def source_of(curve, case, out, where):
     if "points" in curve:
         return Source({"x": np.array(curve["points"], float)[:, 0], "y": np.array(curve["points"], float)[:, 1]}, {}, "a list of points")
     if "python" in curve:
+        expect(case.trusted, f"{where}.python: a function beside the case draws this curve. If you trust it, add --allow-commands")
         file, function = (part.strip() for part in curve["python"].split(":"))
         found = getattr(module(str(case.file.parent / file)), function, None)
         expect(found, f"{where}.python: {file} has no function '{function}'.")

@@ -12,7 +12,7 @@ from couplet.precice.elements import MAPPED, REFUSED, SILENT, WITHOUT_EFFECT, di
 
 KINDS = {"nearest-neighbor": ("nearest", 0), "nearest-projection": ("projection", 1), "rbf": ("rbf", 2)}
 MEASURES = ("relative-convergence-measure", "absolute-convergence-measure", "absolute-or-relative-convergence-measure")
-ACCELERATIONS = {"constant": "constant", "aitken": "aitken", "IQN-ILS": "iqn-ils", "IQN-IMVJ": "iqn-mvj"}
+ACCELERATIONS = {"constant": "constant", "aitken": "aitken", "IQN-ILS": "iqn-ils", "IQN-IMVJ": "iqn-ils"}
 
 
 class Import:
@@ -213,6 +213,8 @@ class Import:
             values["filter"] = float(f.get("limit"))
             if f.get("type") != "QR2":
                 self._note(f, f"the filter {f.get('type')} is taken as QR2: a column goes by its own size")
+        if kind == "IQN-IMVJ":
+            self._note(a, "IQN-IMVJ is taken as IQN-ILS, which needs fewer passes here")
         coupling["acceleration"] = values
 
     # -- maps ---------------------------------------------------------------------------------------------------------

@@ -120,6 +120,14 @@ class Case:
             expect(self.file.is_file(), f"{self.asked}: case: {self.file} does not exist.")
             self.data = {**(load(words_of(self.file), self.file) or {}), "study": study}
         self.participants = self.data.get("participants") or {}
+        self.trusted = False  # True: Python that lies beside the case may draw its picture
+
+    def changed(self, sets):
+        """The case with the participants and programs that arguments of --set give it."""
+        case, own = copy.copy(self), re.compile(r"(participants(\.[^.]+(\.program)?)?|coupling)=")
+        case.data = with_changes(self.data, dict(s.split("=", 1) for s in sets if own.match(s)))
+        case.participants = case.data.get("participants") or {}
+        return case
 
     @property
     def study(self):
@@ -131,6 +139,11 @@ class Case:
     def has_picture(self):
         """Returns true if the case has a section `plot` or a plot.py."""
         return "plot" in self.data or (self.file.parent / "plot.py").is_file()
+
+    @property
+    def draws_itself(self):
+        """Returns true if Python beside the case draws its picture, or a curve of it."""
+        return "'python':" in str(self.data["plot"]) if "plot" in self.data else self.has_picture
 
     @property
     def coupled(self):
@@ -171,11 +184,11 @@ class Case:
 
     def guest(self, participant, played_by=None):
         """Command of an external program, which does not read the case: the given one, else a file of that name beside the case, with the participant's
-        name. None for our programs."""
+        name. None for our programs, and if there is none: another program beside ours, such as a shell, is never started."""
         if played_by and participant in played_by:
             return played_by[participant]
         program = self.program(participant)
-        if program.exists() or program.name in OURS:
+        if program.name in OURS:
             return None
         for name in (program.name, program.name + ".py"):
             beside = self.file.parent / name

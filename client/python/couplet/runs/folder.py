@@ -75,11 +75,21 @@ def sets_since(folder, seconds):
     return [file.parent.name for file in (pathlib.Path(folder).absolute() / "checkpoints").glob("step-*/set.txt") if file.stat().st_mtime >= seconds]
 
 
+def is_damaged(file):
+    """Returns true if a list of the files of a checkpoint is truncated, or one of them has not the size in the list."""
+    text = file.read_text(errors="replace")
+    sizes = {file.parent / name: int(size) for size, name in re.findall(r"^file (\d+) \w+ (.+)$", text, re.M)}
+    return not re.search(r"^digest \w+$", text, re.M) or any(not f.is_file() or f.stat().st_size != size for f, size in sizes.items())
+
+
 def checkpoint(folder):
     """Name of the complete checkpoint with the latest time that the recorded run wrote or started from; None if there is none. Those of another run
-    in the folder may belong to another case. The id of a run begins with its start, which a copy of the folder keeps."""
+    in the folder may belong to another case. The id of a run begins with its start, which a copy of the folder keeps. A damaged one is named and left out."""
     all_sets = pathlib.Path(folder).absolute() / "checkpoints"
-    found = [(re.search("^run (.*)$", file.read_text(errors="replace"), re.M), file.parent.name) for file in all_sets.glob("step-*/set.txt")]
+    damaged = sorted(filter(is_damaged, all_sets.glob("step-*/set.txt")))
+    for file in damaged:
+        print(f"warning: {file.parent} is damaged and is left out", file=sys.stderr)
+    found = [(re.search("^run (.*)$", file.read_text(errors="replace"), re.M), file.parent.name) for file in all_sets.glob("step-*/set.txt") if file not in damaged]
     runs = sorted((run[1], name) for run, name in found if run and re.match("[0-9a-f]{12}-", run[1]))
     record = read_record(folder)
     begun = record["restart"] and pathlib.Path(os.path.normpath(all_sets.parent / record["restart"])) if "restart" in record else None

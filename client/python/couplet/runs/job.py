@@ -16,7 +16,7 @@ import time
 
 from couplet import places
 from couplet.runs import folder as folders
-from couplet.runs.case import COUPLER, Case, expect, load, mapping_of
+from couplet.runs.case import COUPLER, OURS, Case, expect, load, mapping_of
 from couplet.runs.process import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
 
@@ -57,6 +57,7 @@ class Job:
     `played_by` is {participant: command of the external program}; `alone` runs only this participant."""
 
     def __init__(self, case: Case, ranks=None, sets=(), flags=(), alone=None, played_by=None):
+        case = case.changed(sets)
         self.case, self.ranks, self.sets, self.flags = case, dict(ranks or {}), list(sets), list(flags)
         self.alone, self.played_by = alone, dict(played_by or {})
         expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
@@ -66,7 +67,7 @@ class Job:
         self.command = [str(w) for w in case.command({}, alone, self.ranks, self.sets, self.flags, self.played_by)]
         for name in [alone] if alone else known:
             program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
-            expect(program.exists() or case.guest(name, self.played_by),
+            expect(program.name in OURS and program.exists() or case.guest(name, self.played_by),
                    f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent} and not beside the case. "
                    f"Give its command: --with {name}='COMMAND ...'")
         self.output = output_of(case, self.sets)
@@ -166,7 +167,7 @@ class Job:
         temporary = os.environ.get("TMPDIR") or "/tmp"
         expect(self.command[0] != "mpirun" or not os.path.isdir(temporary) or shutil.disk_usage(temporary).free >= LEAST_TEMPORARY, f"{temporary} is full, and mpirun needs it for files of its own. Make room there, or set TMPDIR to another folder")
         self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
-        former, began = folders.read_record(self.output) if "--restart" in self.flags else {}, time.time()
+        former, began = folders.read_record(self.output), time.time()
         self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),
                                         start_new_session=True, preexec_fn=ends_with_us)
         before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
@@ -180,7 +181,9 @@ class Job:
         self.seconds = time.monotonic() - self.started
         if not self.recorded and code == 0 and (self.output / folders.LOCK).exists():  # may precede the next poll
             folders.write_record(self.output, self.record())
-        if self.recorded and former and code not in (0, 3, 4) and not folders.sets_since(self.output, began):  # rejected, for example for a --set: the next resume must not use it
+        started = any(file.stat().st_mtime >= began for file in self.output.glob("*/effective.yaml"))
+        if self.recorded and former and code not in (0, 3, 4) and not (started if "--restart" not in self.flags else folders.sets_since(self.output, began)):
+            # Rejected, for example for a --set: the record of the results that are there remains, and the next resume does not use this one.
             folders.write_record(self.output, former)
         return code if code >= 0 else 128 - code
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Output of a run on a terminal: participants, one status line that renews itself, findings above it, and at the end the work of each participant,
-error contributions and warnings. In a file, or with --verbose, the programs' own lines are kept."""
+"""Output of a run on a terminal: participants, one status line that renews itself, findings above it, and at the end the results and the verdict. In a file, or with --verbose, the programs' own lines are kept."""
 import re
 import shutil
 import sys
@@ -98,27 +97,16 @@ class Digest(Screen):
                 self.unsaid.append(line)
 
     def end(self, code):
-        """Prints the work of each participant, the error contributions, and the location of all output."""
+        """Prints the results, the verdict and the number of further warnings."""
+        from couplet.command.report import MOST_ROWS, rows, verdict
         from couplet.runs.results import Results
         self.clear()
         if code not in (0, 3, 4):
             print(*self.unsaid[-30:] if code == 2 else (), sep="\n", end="\n" if code == 2 and self.unsaid else "", file=sys.stderr)
             return
         results = Results(self.job.output)
-        mine = [self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants]
-        reports = [(name, results.report(name)) for name in results.participants() if name in mine]
-        print("             steps  iterations  at work [s]  memory [MB]")
-        for name, report in [r for r in reports if r[1]][:8]:
-            working = report.get("processor-working") or report.get("processor", 0)
-            print(f"{name:12} {report.get('steps', 0):5}  {report.get('iterations', 0):10}  {working:11.1f}  {report.get('memory-all', 0):11.0f}")
-        known = [item for item in results.budget().items() if item[0] in mine]
-        for name, parts in ([item for item in known if item[0] == "coupler"] or known)[:4]:  # the coupler's is that of the job
-            told = results.report(name)["errors"]
-            lines = [f"estimated error of {name}: " + ", ".join(f"{part} {value:.2g}" for part, value in sorted(parts.items(), key=lambda p: -p[1]))]
-            lines += [f"  the model dominates: {told['model-by']}"] * (parts.get("model") == max(parts.values()) > 0)
-            lines += [f"  could be omitted: {told['could-be-omitted']}"] * bool(told.get("could-be-omitted"))
-            for line in lines:
-                print(textwrap.shorten(line, width(), placeholder=" ...") if not line.startswith(" ") else "  " + textwrap.shorten(line, width() - 2, placeholder=" ..."))
+        names = [name for name in results.participants() if name in ([self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants])]
+        print(*rows(results, names, MOST_ROWS - 2 * len(names)), *verdict(results, names), sep="\n")
         hidden = len(self.told) - MOST_FINDINGS
         if hidden > 0:
             print(f"{hidden} more warnings in the logs")

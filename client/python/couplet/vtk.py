@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the fields of a run as .vtu files, one an output, with a .pvd that lists them as a series in time: what every version of ParaView and VTK, meshio and
+most other programs read. Coordinates are those of the moved mesh."""
+import base64
+import pathlib
+
+import h5py
+import numpy as np
+
+from couplet.series import FieldSeries
+
+VTK = {1: 1, 2: 3, 4: 5, 5: 9, 6: 10, 7: 14, 8: 13, 9: 12}  # type of cell in VTK, by XDMF code
+NAMES = {np.dtype("f8"): "Float64", np.dtype("i8"): "Int64", np.dtype("u1"): "UInt8"}
+
+
+def array(name, values):
+    values = np.ascontiguousarray(values)
+    data = values.tobytes()
+    text = base64.b64encode(np.uint64(len(data)).tobytes() + data).decode()
+    components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim > 1 else ""
+    return f'<DataArray type="{NAMES[values.dtype]}" Name="{name}"{components} format="binary">{text}</DataArray>\n'
+
+
+def padded(values):
+    """Vectors in two dimensions get a third component, and tensors keep their number."""
+    values = np.asarray(values, "f8")
+    return np.pad(values, ((0, 0), (0, 1))) if values.ndim == 2 and values.shape[1] == 2 else values
+
+
+def grid(series, i):
+    """Text of one .vtu."""
+    cells, points = series.cells, padded(series.coordinates(i))
+    step = series.file["steps"][series.steps[i]]
+    text = f'<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n'
+    text += f"<Points>\n{array('Points', points)}</Points>\n<Cells>\n"
+    text += array("connectivity", np.concatenate([np.asarray(c, "i8") for c in cells]) if len(cells) else np.zeros(0, "i8"))
+    text += array("offsets", np.cumsum([len(c) for c in cells], dtype="i8")) + array("types", np.array([VTK[c] for c in series.codes], "u1")) + "</Cells>\n"
+    for place, word in (("points", "PointData"), ("cells", "CellData")):
+        text += f"<{word}>\n" + "".join(array(name, padded(values[...])) for name, values in step.get(place, {}).items()) + f"</{word}>\n"
+    return text + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
+
+
+def write(folder):
+    """Writes the series of all participants below an output folder to their folders vtk/. Returns the .pvd files."""
+    lists = []
+    for file in sorted(pathlib.Path(folder).glob("*/*.h5")):
+        with h5py.File(file, "r") as content:
+            if content.attrs.get("format") not in ("couplet fields", b"couplet fields", "couplet surface", b"couplet surface"):
+                continue
+        series, place = FieldSeries(file), file.parent / "vtk"
+        place.mkdir(exist_ok=True)
+        entries = ""
+        for i, time in enumerate(series.times):
+            name = f"{file.stem}-{i:06d}.vtu"
+            (place / name).write_text(grid(series, i))
+            entries += f'<DataSet timestep="{time:.12g}" part="0" file="{name}"/>\n'
+        lists.append(place / f"{file.stem}.pvd")
+        lists[-1].write_text(f'<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">\n<Collection>\n{entries}</Collection>\n</VTKFile>\n')
+    return lists

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "common/base/types.hpp"
+#include "common/diagnostics/error_parts.hpp"
+
+namespace couplet::diagnostics {
+
+/// Row of the results at the end of a run.
+struct Result {
+  std::string name, unit;
+  std::vector<double> values;
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< estimated, relative; NaN if unknown
+  std::string place{};                                      ///< "at (1, 0, 0) m"
+};
+std::string place_text(const Vec3& place);
+
+/// Adds the row of the largest value over the ranks, with its place. Collective.
+void set_largest(MPI_Comm comm, const char* name, const char* unit, double value, const Vec3& place);
+/// Adds a row, or replaces the one of this name. Call it on rank 0.
+void set_result(Result result);
+/// Storage for the last row of a table whose columns ("tip x [m]") are results, such as probes.csv. nullptr
+/// for any other table. Components of a vector share a row.
+std::vector<double>* results_of_table(const std::string& file, const std::vector<std::string>& columns);
+/// All rows: those that were set, then those of tables.
+std::vector<Result> results();
+
+/// Block of at most 80 columns and `most` rows: results at `time` [s] of a participant, then `verdict`.
+std::string results_text(const std::string& participant, double time, std::size_t most,
+                         const std::vector<std::string>& verdict);
+/// "estimated error 1.3 % of the solution, mostly mesh", or that it is unknown. Neglected effects are excluded.
+std::string error_summary(const std::vector<NamedErrors>& participants);
+/// Cheapest change that lowers the largest contribution, with its gain and price. Empty if there is none.
+std::string best_change(const std::vector<NamedErrors>& participants);
+
+/// Verdict in at most three lines: the error, warnings that were not accepted, and the best next change.
+std::vector<std::string> verdict(const std::vector<NamedErrors>& participants);
+
+}  // namespace couplet::diagnostics
