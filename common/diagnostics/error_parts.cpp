@@ -168,7 +168,7 @@ std::optional<Part> worst_part(const std::vector<NamedErrors>& participants) {
 std::string error_summary(const std::vector<NamedErrors>& participants) {
   const auto worst = worst_part(participants);
   if (!worst) return "the error is not estimated";
-  return fmt::format("estimated error {:.2g} % of the solution, mostly {}", 100 * total_error(participants),
+  return fmt::format("estimated numerical error {:.2g} %, mostly {}", 100 * total_error(participants),
                      worst->kind->words);
 }
 

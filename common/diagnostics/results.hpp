@@ -34,7 +34,7 @@ std::vector<Result> results();
 /// Block of at most 80 columns and `most` rows: results at `time` [s] of a participant, then `verdict`.
 std::string results_text(const std::string& participant, double time, std::size_t most,
                          const std::vector<std::string>& verdict);
-/// "estimated error 1.3 % of the solution, mostly mesh", or that it is unknown. Neglected effects are excluded.
+/// "estimated numerical error 1.3 %, mostly mesh", or that it is unknown. Neglected effects are excluded.
 std::string error_summary(const std::vector<NamedErrors>& participants);
 /// Cheapest change that lowers the largest contribution, with its gain and price. Empty if there is none.
 std::string best_change(const std::vector<NamedErrors>& participants);
