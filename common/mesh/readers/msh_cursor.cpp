@@ -7,12 +7,40 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 namespace couplet::mesh {
 namespace {
 
 constexpr std::size_t window = 1 << 25;  // bytes, a multiple of the page size
+
+/// Types of one shape, as pairs of gmsh's number and the number of nodes.
+struct MshShape {
+  int dim;
+  CellType cell;
+  std::vector<std::array<int, 2>> types;
+};
+const std::vector<MshType>& msh_types() {
+  static const std::vector<MshType> all = [] {
+    using enum CellType;
+    std::vector<MshType> types;
+    for (const auto& [dim, cell, of_shape] : std::initializer_list<MshShape>{
+             {0, triangle, {{15, 1}}},
+             {1, triangle, {{1, 2}, {8, 3}, {26, 4}, {27, 5}, {28, 6}}},
+             {2, triangle, {{2, 3}, {9, 6}, {20, 9}, {21, 10}, {22, 12}, {23, 15}, {24, 15}, {25, 21}}},
+             {2,
+              quadrilateral,
+              {{3, 4}, {10, 9}, {16, 8}, {36, 16}, {37, 25}, {38, 36}, {39, 12}, {40, 16}, {41, 20}}},
+             {3, tetrahedron, {{4, 4}, {11, 10}, {29, 20}, {30, 35}, {31, 56}}},
+             {3, hexahedron, {{5, 8}, {12, 27}, {17, 20}, {92, 64}, {93, 125}}},
+             {3, prism, {{6, 6}, {13, 18}, {18, 15}, {90, 40}, {91, 75}}},
+             {3, pyramid, {{7, 5}, {14, 14}, {19, 13}, {118, 30}, {119, 55}}}})
+      for (const auto& [gmsh, n_nodes] : of_shape) types.push_back({gmsh, n_nodes, dim, cell});
+    return types;
+  }();
+  return all;
+}
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
@@ -142,6 +170,15 @@ std::string MshCursor::quoted() {
   if (last == std::string_view::npos) fail("Expected a name in quotation marks.");
   at_ = last + 1;
   return std::string(text_.substr(first + 1, last - first - 1));
+}
+
+const MshType& MshCursor::type_or_fail(int gmsh) const {
+  const auto found = std::ranges::find(msh_types(), gmsh, &MshType::gmsh);
+  if (found != msh_types().end()) return *found;
+  fail(fmt::format(
+      "Element type {} is not supported: expected a line, triangle, quadrilateral, tetrahedron, hexahedron, prism "
+      "or pyramid.",
+      gmsh));
 }
 
 }  // namespace couplet::mesh

@@ -10,7 +10,6 @@
 
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
-#include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {
 namespace {
@@ -74,51 +73,6 @@ class MshGroups {
   std::map<int, int> number_of_tag_;
   int default_ = -1;
 };
-
-/// Type of elements. Those of higher order have nodes beside their corners.
-struct MshType {
-  int gmsh, n_nodes;
-  int dim = 0;
-  CellType cell = CellType::triangle;  ///< for types that may be cells
-  /// Number of its corners, the first of its nodes.
-  int corners() const { return dim < 2 ? dim + 1 : shape_of(cell).n_points; }
-};
-
-/// Types of one shape, as pairs of gmsh's number and the number of nodes.
-struct MshShape {
-  int dim;
-  CellType cell;
-  std::vector<std::array<int, 2>> types;
-};
-const std::vector<MshType>& msh_types() {
-  static const std::vector<MshType> all = [] {
-    using enum CellType;
-    std::vector<MshType> types;
-    for (const auto& [dim, cell, of_shape] : std::initializer_list<MshShape>{
-             {0, triangle, {{15, 1}}},
-             {1, triangle, {{1, 2}, {8, 3}, {26, 4}, {27, 5}, {28, 6}}},
-             {2, triangle, {{2, 3}, {9, 6}, {20, 9}, {21, 10}, {22, 12}, {23, 15}, {24, 15}, {25, 21}}},
-             {2,
-              quadrilateral,
-              {{3, 4}, {10, 9}, {16, 8}, {36, 16}, {37, 25}, {38, 36}, {39, 12}, {40, 16}, {41, 20}}},
-             {3, tetrahedron, {{4, 4}, {11, 10}, {29, 20}, {30, 35}, {31, 56}}},
-             {3, hexahedron, {{5, 8}, {12, 27}, {17, 20}, {92, 64}, {93, 125}}},
-             {3, prism, {{6, 6}, {13, 18}, {18, 15}, {90, 40}, {91, 75}}},
-             {3, pyramid, {{7, 5}, {14, 14}, {19, 13}, {118, 30}, {119, 55}}}})
-      for (const auto& [gmsh, n_nodes] : of_shape) types.push_back({gmsh, n_nodes, dim, cell});
-    return types;
-  }();
-  return all;
-}
-
-const MshType& type_or_fail(const MshCursor& in, int gmsh) {
-  const auto found = std::ranges::find(msh_types(), gmsh, &MshType::gmsh);
-  if (found != msh_types().end()) return *found;
-  in.fail(fmt::format(
-      "Element type {} is not supported: expected a line, triangle, quadrilateral, tetrahedron, hexahedron, prism "
-      "or pyramid.",
-      gmsh));
-}
 
 /// Nodes tag, tag + 1, ... are points index, index + 1, ...
 struct NodeRun {
@@ -304,7 +258,7 @@ class MshReader {
     in_.skip(3);  // number of elements, smallest and largest tag
     for (std::size_t b = 0; b < n_blocks; ++b) {
       const int dim = in_.integer(), tag = in_.integer();
-      const MshType& type = type_or_fail(in_, in_.integer());
+      const MshType& type = in_.type_or_fail(in_.integer());
       const std::size_t n = in_.count();
       const auto entity = groups_of_entity_.find({dim, tag});
       elements_.push_back({&type, tag, {}, n, in_.place(), 1, 8});
@@ -320,13 +274,13 @@ class MshReader {
       if (!in_.binary) {
         const std::size_t place = in_.place();
         in_.integer();  // number of the element
-        const MshType& type = type_or_fail(in_, in_.integer());
+        const MshType& type = in_.type_or_fail(in_.integer());
         find_element_22(type, in_.integer(), place, 3, true);
         ++done;
         continue;
       }
       // Header for a run of elements of one type.
-      const MshType& type = type_or_fail(in_, in_.integer());
+      const MshType& type = in_.type_or_fail(in_.integer());
       const int count = in_.integer(), n_tags = in_.integer();
       if (count < 1) in_.fail("A block of elements is empty.");
       for (int i = 0; i < count; ++i) {

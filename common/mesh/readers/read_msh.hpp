@@ -10,8 +10,18 @@
 #include "common/base/error.hpp"
 #include "common/mesh/distributed/mesh_block.hpp"
 #include "common/mesh/mesh.hpp"
+#include "common/mesh/topology.hpp"
 
 namespace couplet::mesh {
+
+/// Type of elements. Those of higher order have nodes beside their corners.
+struct MshType {
+  int gmsh, n_nodes;
+  int dim = 0;
+  CellType cell = CellType::triangle;  ///< for types that may be cells
+  /// Number of its corners, the first of its nodes.
+  int corners() const { return dim < 2 ? dim + 1 : shape_of(cell).n_points; }
+};
 
 /// Memory-mapped .msh file that is read from front to back. Pages are released after reading, so that a rank
 /// never holds a large file.
@@ -26,6 +36,8 @@ class MshCursor {
 
   /// Throws Error "file:line: ..." (for binary files "file, byte n, in $Section: ...").
   [[noreturn]] void fail(const std::string& what) const;
+  /// Type of this number. Throws Error, see fail(), if it is not supported.
+  const MshType& type_or_fail(int gmsh) const;
   const std::filesystem::path& file() const { return file_; }
 
   std::size_t place() const { return at_; }
