@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A terminal of 80 by 24. Usage: terminal.py BIN PART; parts: command (couplet run), program (a program started by itself; and by mpirun)"""
+"""A terminal of 80 by 24. Usage: terminal.py BIN PART; parts: command (couplet run), program (a program started by itself; and by mpirun),
+shipped (couplet run of twelve shipped cases; a bar of `scripts/validate newcomer`)"""
 import fcntl
 import os
 import pathlib
@@ -45,6 +46,27 @@ def looks_right(name, text):
     return re.findall(r"\r\x1b\[K(t=[^\n\r]*)", text)
 
 
+def last_screen(name, text):
+    """It holds results with a number and the verdict, and nothing is cut."""
+    last = "\n".join(line.rpartition(RENEW)[2] for line in text.rstrip("\n").split("\n")[-24:])
+    good = re.search(r"^Results of '\w+' at t = .*\n  .*\d", last, flags=re.M) and re.search(r"^Verdict: ", last, flags=re.M) and "..." not in last
+    check(f"{name}: the last screen shows results and the verdict", good, last)
+
+
+SHIPPED = {"cantilever": None, "lame-cylinder": None, "elastic-bar": None, "buckling-column": None, "cavity": 2, "taylor-green-2d": None, "plate-square": None, "plate-drop": None,
+           "thermocline-solar-one": None, "schumann": None, "moving-mesh": 0.1, "perpendicular-flap": 0.3}  # with an earlier end [s]
+
+
+def shipped(folder):
+    """All programs, alone and coupled."""
+    for name, last in SHIPPED.items():
+        more = [] if last is None else ["--set", f"simulation.end-time={last}"]
+        code, text, errors = on_terminal(ROOT / "scripts/couplet", "run", ROOT / "configs" / name, "--bin", bin_, "--set", f"simulation.output.folder={folder / name}", *more)
+        check(f"{name}: it ends", code in (0, 4), text + errors)
+        last_screen(name, text)
+        looks_right(name, text)
+
+
 def command(folder):
     """couplet run: of coupled jobs, too, with at least three renewals of the status."""
     case = case_in(folder / "a", bin_, end_time=0.3)
@@ -52,8 +74,7 @@ def command(folder):
                         ("solid", (ROOT / "configs/cantilever", "--set", f"simulation.output.folder={folder / 'solid'}"))):
         code, text, _ = on_terminal(ROOT / "scripts/couplet", "run", *words)
         check(f"{name}: it ends well", code == 0 and "done in" in text.splitlines()[-3], text[-400:])
-        last = text.rpartition(RENEW)[2]
-        check(f"{name}: the last screen shows results and the verdict", "Results of '" in last and "\nVerdict: " in last and last.count("\n") < 24 and "..." not in last, last)
+        last_screen(name, text)
         statuses = looks_right(name, text)
         check(f"{name}: a status line that renews itself", name != "flap" or len(statuses) >= 3 and all("to go" in s for s in statuses) and "steps/s" in statuses[-1], statuses[-3:])
         check(f"{name}: it can be resumed", call(bin_, "resume", folder / {"tank": "tank", "solid": "solid"}.get(name, "a/out"), "--print").stdout.startswith(("mpirun ", str(bin_))))
@@ -105,5 +126,5 @@ def program(folder):
 
 
 with tempfile.TemporaryDirectory(prefix="couplet-terminal-") as scratch:
-    {"command": command, "program": program}[what](pathlib.Path(scratch))
+    {"command": command, "program": program, "shipped": shipped}[what](pathlib.Path(scratch))
 end()
