@@ -3,6 +3,7 @@
 // writes the result of the test given by --run_test to RESULTS/<rank>.
 #include "integration.hpp"
 
+#include <boost/test/tools/fpc_tolerance.hpp>
 #include <boost/test/tree/traverse.hpp>
 #include <boost/test/tree/visitor.hpp>
 #include <cstdio>
@@ -103,6 +104,8 @@ int main(int argc, char** argv) {
   int rank = 0, down = 0;
   MPI_Init(&argc, &argv);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  // The tolerance of preCICE's own main program for numbers without one.
+  boost::test_tools::fpc_tolerance<double>() = boost::test_tools::fpc_tolerance<float>() = 1e-9;
   const int result = boost::unit_test::unit_test_main(precice::nothing, argc, argv);
   std::ofstream(std::string(std::getenv("RESULTS")) + "/" + std::to_string(rank)) << result;
   MPI_Finalized(&down);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What preCICE's integration tests take from its testing headers, for their run on this project's library. integration.py places the
-// names of those headers before it; their sources stay as they were fetched.
+// Stands for preCICE's testing headers while its integration tests run, unchanged, on this project's library. integration.py makes
+// headers of their names that include this one.
 #pragma once
 
 #include <mpi.h>
