@@ -136,10 +136,19 @@ GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& ge
   const bool varies = b.table || uses_space(velocity_);
   turns_ = is_wall(b) && (b.rotation || varies);
   if (varies) corners_ = corners_of(mesh, geometry, patch);
+  steady_ = !table_ && !b.rotation &&
+            std::ranges::none_of(velocity_, [](const fv::Expression& e) { return e.uses_time(); });
 }
 
 template <int D>
 void GivenVelocity<D>::evaluate(double t, std::span<const Vec3> places, Vec<D>* w) const {
+  without_ramp(t, places, w);
+  const double factor = ramp_factor(parameters_, t);
+  for (std::size_t i = 0; factor != 1 && i < places.size(); ++i) w[i] *= factor;
+}
+
+template <int D>
+void GivenVelocity<D>::without_ramp(double t, std::span<const Vec3> places, Vec<D>* w) const {
   const std::size_t n = places.size();
   if (n == 0) return;
   const std::span<double> values(w->data(), n * D);
@@ -157,22 +166,26 @@ void GivenVelocity<D>::evaluate(double t, std::span<const Vec3> places, Vec<D>* 
     const Vec3 omega = turning_(Vec3::Zero(), t) * (D == 2 ? Vec3::UnitZ() : Vec3(r->axis.normalized()));
     for (std::size_t i = 0; i < n; ++i) w[i] += omega.cross(places[i] - r->centre).template head<D>();
   }
-  const double factor = ramp_factor(parameters_, t);
-  for (std::size_t i = 0; factor != 1 && i < n; ++i) w[i] *= factor;
 }
 
 template <int D>
 void GivenVelocity<D>::average(double t, std::span<const Vec3> centres, Vec<D>* w) const {
   if (corners_.empty()) return evaluate(t, centres, w);
-  for (std::size_t i = 0; i < centres.size(); ++i)
-    w[i] = fv::mean_over_face(corners_[i], Vec3::Zero(), [&](const Vec3& x) {
-             const Vec3 place = centres[i] + x;
-             Vec<D> here;
-             evaluate(t, {&place, 1}, &here);
-             Vec3 value = Vec3::Zero();
-             value.template head<D>() = here;
-             return value;
-           }).whole.template head<D>();
+  if (!steady_ || !std::ranges::equal(centres, mean_at_)) {
+    mean_at_.assign(centres.begin(), centres.end());
+    mean_.resize(centres.size());
+    for (std::size_t i = 0; i < centres.size(); ++i)
+      mean_[i] = fv::mean_over_face(corners_[i], Vec3::Zero(), [&](const Vec3& x) {
+                   const Vec3 place = centres[i] + x;
+                   Vec<D> here;
+                   without_ramp(t, {&place, 1}, &here);
+                   Vec3 value = Vec3::Zero();
+                   value.template head<D>() = here;
+                   return value;
+                 }).whole.template head<D>();
+  }
+  const double factor = ramp_factor(parameters_, t);
+  for (std::size_t i = 0; i < centres.size(); ++i) w[i] = factor * mean_[i];
 }
 
 template class GivenVelocity<2>;

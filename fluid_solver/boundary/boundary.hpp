@@ -85,6 +85,7 @@ class GivenVelocity {
   void average(double t, std::span<const Vec3> centres, Vec<D>* w) const;
 
  private:
+  void without_ramp(double t, std::span<const Vec3> places, Vec<D>* w) const;
   FaceRange faces_;
   const mesh::Patch* patch_;
   BoundaryParameters parameters_;
@@ -95,6 +96,10 @@ class GivenVelocity {
   fv::Expression turning_;              // [rad/s], if a rotation is given
   bool turns_ = false;
   FaceCorners corners_;  // empty unless the velocity varies in space
+  bool steady_ = false;  // but for the ramp
+  // Means without the ramp, kept until the faces move or, if not steady, until the next call.
+  mutable std::vector<Vec3> mean_at_;
+  mutable Vectors<D> mean_;
 };
 
 /// Reads the velocities of a boundary from its file, in `dimension` components. Throws Error with file:line.

@@ -116,7 +116,7 @@ struct SubStep {
 template <int D>
 struct Step : SubStep<D> {
   History<D> by;
-  /// What the implicit predictor takes for the pressure of this step; nullptr if there is none yet.
+  /// Pressure that the implicit predictor uses for this step; nullptr if there is none yet.
   std::shared_ptr<const PressureLevel<D>> guess = by.pressure[0];
 
   double begin() const { return by.time; }

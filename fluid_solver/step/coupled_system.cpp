@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/linalg/acceleration.hpp"
+#include "common/parallel/collective.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
 
 namespace couplet::fluid {
@@ -16,7 +17,8 @@ namespace {
 // pressure drop of a channel is right to 0.4 %.
 constexpr double largest_splitting = 0.2;
 constexpr int most_passes = 60, early_passes = 12;
-constexpr double early_share = 0.7;  // of the first error, which must be left after the early passes
+constexpr double early_share =
+    0.7;  // largest share of the first error that may be left after the early passes
 constexpr linalg::Acceleration pass_acceleration{linalg::Acceleration::Type::anderson, 1, 20};
 
 }  // namespace
@@ -43,25 +45,48 @@ Vectors<D> FractionalStep<D>::friction_of(const Vectors<D>& x) const {
   return rate;
 }
 
-/// Relative residual of the coupled system. The projection changes the velocity by dt/rho grad(p - guess), whose friction is not
-/// in the momentum equation that the predictor solved. The scale is the pressure gradient or the friction of level n, whichever
-/// is larger.
+/// Largest sum of g over V of a cell [1/m^2]. The mesh is at rest.
 template <int D>
-double FractionalStep<D>::splitting_error(const PressureLevel<D>& now) const {
+double FractionalStep<D>::stiffness() {
+  if (stiffness_ > 0) return stiffness_;
+  const Placement<D>& at = *step_.to;
+  std::vector<double> sums(mesh_.cells.n_local(), 0.0);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    sums[mesh_.owner[f]] += at.conductance[f];
+    if (f < mesh_.n_interior) sums[mesh_.neighbour[f]] += at.conductance[f];
+  }
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) stiffness_ = std::max(stiffness_, sums[c] / at.volume[c]);
+  return stiffness_ = parallel::max(mesh_.comm, stiffness_);
+}
+
+/// Relative residual of the coupled system, or a bound of it that is small enough. The projection changes the velocity by
+/// dt/rho grad(p - guess), whose friction is not in the momentum equation that the predictor solved. The scale is the pressure
+/// gradient or the friction of level n, whichever is larger.
+template <int D>
+double FractionalStep<D>::splitting_error(const PressureLevel<D>& now) {
   if (prediction_.weight == 0 || !step_.guess) return 0;
-  Vectors<D> change = now.gradient;
-  for (std::size_t c = 0; c < change.size(); ++c) change[c] -= step_.guess->gradient[c];
-  const Vectors<D> left = friction_of(change);
+  const Vectors<D>&gradient = now.gradient, &guess = step_.guess->gradient,
+        &viscous = prediction_.rates.viscous;
   const std::vector<double>& volume = step_.to->volume;
   double sums[3] = {};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    sums[0] += left[c].squaredNorm() / volume[c];
-    sums[1] += volume[c] * now.gradient[c].squaredNorm();
-    sums[2] += prediction_.rates.viscous[c].squaredNorm() / volume[c];
+    sums[0] += volume[c] * (gradient[c] - guess[c]).squaredNorm();
+    sums[1] += volume[c] * gradient[c].squaredNorm();
+    sums[2] += viscous[c].squaredNorm() / volume[c];
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  const double scale = std::max(sums[1], scene_.fluid.rho * scene_.fluid.rho * sums[2]);
-  return scale > 0 ? std::sqrt(sums[0] / scale) : 0;
+  const double scale = std::sqrt(std::max(sums[1], scene_.fluid.rho * scene_.fluid.rho * sums[2]));
+  if (!(scale > 0)) return 0;
+  // The eigenvalues of friction are at most twice its diagonal.
+  const double bound =
+      2 * prediction_.weight * scene_.fluid.nu * step_.dt * stiffness() * std::sqrt(sums[0]) / scale;
+  if (bound <= largest_splitting) return bound;
+  Vectors<D> change = gradient;
+  for (std::size_t c = 0; c < change.size(); ++c) change[c] -= guess[c];
+  const Vectors<D> left = friction_of(change);
+  double square = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) square += left[c].squaredNorm() / volume[c];
+  return std::sqrt(parallel::sum(mesh_.comm, square)) / scale;
 }
 
 /// A step's predictor and projection precondition the coupled system [griffith2009]. Anderson acceleration of the pressure that the
