@@ -239,12 +239,4 @@ std::string problem_of(const config::ExpressionText& text) {
   }
 }
 
-std::string problem_of(const std::vector<config::ExpressionText>& texts, int n) {
-  if (std::ssize(texts) != n)
-    return fmt::format("{} components are given, but the {}-dimensional scene needs {}", texts.size(), n, n);
-  for (const config::ExpressionText& text : texts)
-    if (std::string problem = problem_of(text); !problem.empty()) return problem;
-  return "";
-}
-
 }  // namespace couplet::fv

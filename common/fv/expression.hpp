@@ -46,8 +46,7 @@ class Expression {
 std::vector<Expression> make_expressions(const std::vector<config::ExpressionText>& texts, int dim,
                                          const std::string& where);
 
-/// Problem of the texts for a configuration check. Empty if there are `n` and they can be parsed.
-std::string problem_of(const std::vector<config::ExpressionText>& texts, int n);
+/// Returns what is wrong with a text for a configuration check; empty if it can be parsed.
 std::string problem_of(const config::ExpressionText& text);
 
 }  // namespace couplet::fv

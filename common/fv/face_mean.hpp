@@ -20,7 +20,7 @@ struct FaceMean {
 /// It finds what is at least a tenth of a face wide.
 FaceMean mean_over_face(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face,
                         const std::function<Vec3(const Vec3&)>& f);
-/// The same for a face with these corners, two in 2-D.
+/// Does so for a face with these corners, two in 2-D.
 FaceMean mean_over_face(std::span<const Vec3> corners, const Vec3& center,
                         const std::function<Vec3(const Vec3&)>& f);
 

@@ -43,7 +43,7 @@
 
 namespace couplet::support {
 
-/// What the error of this kind says in which a call ends; empty if it ends in none.
+/// Returns the message of the error of this kind that a call throws; empty if it throws none.
 template <class Kind = Error, class Call>
 std::string error_of(const Call& call) {
   try {

@@ -95,9 +95,6 @@ TEST(Expression, refuses_values_that_are_not_finite) {
 TEST(Expression, needs_one_component_a_dimension) {
   EXPECT_EQ(make_expressions({{"0"}, {"x"}}, 2, "value").size(), 2u);
   EXPECT_THROW(make_expressions({{"0"}, {"x"}}, 3, "value"), Error);
-  EXPECT_EQ(problem_of({{"0"}, {"x"}}, 2), "");
-  EXPECT_EQ(problem_of({{"0"}, {"x"}}, 3), "2 components are given, but the 3-dimensional scene needs 3");
-  EXPECT_THAT(problem_of({{"0"}, {"u"}}, 2), ::testing::HasSubstr("unknown name 'u'"));
 }
 
 }  // namespace couplet::expression_test

@@ -72,7 +72,7 @@ inline void run(Mover& mover, double from, double to, int steps) {
   }
 }
 
-/// The same mover on one rank, with a folder of its own.
+/// Makes this mover on one rank, with a folder of its own.
 inline app::ParticipantContext alone(app::ParticipantContext c = context()) {
   c.comm = MPI_COMM_SELF;
   c.output_folder = support::own_folder() / ("alone-" + std::to_string(parallel::comm_rank(MPI_COMM_WORLD)));

@@ -24,7 +24,7 @@ inline mesh::RawMesh beam(int n, int along) {
                         Vec3(beam_side / 2, beam_side / 2, beam_length));
 }
 
-/// Of the middle of the tip, over the length, on all ranks.
+/// Deflection of the middle of the tip over the length, on all ranks.
 inline double deflection(const Solid& solid) {
   const Vec3 tip = displacement_at(solid, Vec3(0, 0, beam_length));
   return std::hypot(tip[0], tip[1]) / beam_length;
