@@ -84,6 +84,10 @@ def by_hand(folder):
         report.write_text(re.sub(r'"processor-working": [\d.e-]+', f'"processor-working": {seconds}', report.read_text()))
     shared = call(bin_, "run", case, "-n", "6", "--print")
     check("-n 6 is divided by the work measured", re.search(r"-n 3 \S*fluid_solver", shared.stdout) and shared.stdout.count("-n 1 ") == 3, shared.stdout + shared.stderr)
+    for text in ("{", "[]"):
+        report.write_text(text)
+        told = call(bin_, "report", folder / "a/out")
+        check("a damaged run.json is named", told.returncode == 2 and f"{report}: this is not the report of a run" in told.stderr and "Traceback" not in told.stderr, told.stderr)
     shutil.rmtree(folder / "a/out")
     foreseen = call(bin_, "run", case, "-n", "5", "--print")
     check("or by the work expected", re.search(r"-n 2 \S*fluid_solver", foreseen.stdout) and foreseen.stdout.count("-n 1 ") == 3, foreseen.stdout + foreseen.stderr)

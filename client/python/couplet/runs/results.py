@@ -4,6 +4,8 @@ import csv
 import json
 import pathlib
 
+from couplet.runs.case import expect
+
 
 def read_csv(file, heads=None):
     """Columns of a CSV by their heads (given, or from its first line). Texts are kept, and a truncated row (of a running job) is skipped."""
@@ -82,9 +84,16 @@ class Results:
         return {name: parts for name, parts in told.items() if parts}
 
     def report(self, participant):
-        """Content of run.json, which every program writes at its end."""
+        """Content of run.json, which every program writes at its end; {} before. Raises Wrong if it is damaged."""
         path = self.folder / participant / "run.json"
-        return json.loads(path.read_text()) if path.exists() else {}
+        if not path.exists():
+            return {}
+        try:
+            told = json.loads(path.read_text())
+        except ValueError:
+            told = None
+        expect(isinstance(told, dict), f"{path}: this is not the report of a run, or it is damaged")
+        return told
 
     def steps(self, participant):
         """Columns of steps.csv: time, dt, iterations, error, energy, seconds of each accepted step."""
