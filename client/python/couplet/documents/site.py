@@ -21,6 +21,7 @@ REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" fo
              "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/meshes.md", "docs/input-data.md", "docs/expressions.md", "docs/quantities.md",
              "docs/plots.md", "docs/checkpoints.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
 EXPLANATION = ("docs/theory.md", "docs/coupling.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
+GENERATED = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/stability.md")
 LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
 CONFIG = """site_name: Couplet
 docs_dir: {docs}
@@ -124,10 +125,19 @@ def label(page):
     return title[0].upper() + title[1:]
 
 
+def is_for_users(page):
+    """True for the pages that users read, except the READMEs of cases."""
+    return str(page) in (*TUTORIALS, *REFERENCE, *EXPLANATION, "README.md", "docs/README.md") or page.parts[:2] == ("docs", "how-to")
+
+
+def is_generated(page):
+    """True for pages that programs or scripts write as a whole."""
+    return str(page) in GENERATED or page.parts[:2] == ("docs", "keys")
+
+
 def for_developers(there):
     """{title of a group: its pages}: what users do not need."""
-    users = {pathlib.Path(p) for p in (*TUTORIALS, *REFERENCE, *EXPLANATION, "README.md", "docs/README.md")}
-    rest = [p for p in there if p not in users and p.parts[0] != "configs" and p.parts[:2] != ("docs", "how-to")]
+    rest = [p for p in there if not is_for_users(p) and p.parts[0] != "configs"]
     groups = {"The project": [], "Validation": [], "Source folders": []}
     for page in rest:
         validation = page.parts[:2] == ("docs", "validation")
