@@ -20,7 +20,7 @@ constexpr double boundary_share = 0.25;
 constexpr double level_share = 1e-4;
 // Excess over the kinetic energy that counts as divergence.
 constexpr double largest_excess = 0.5;
-// omega h^2/nu above which friction no longer stabilizes a rotating frame (docs/theory.md).
+// omega h^2/nu above which friction no longer stabilizes a rotating frame (docs/theory/fluid-models.md).
 constexpr double fast_frame = 4;
 // Decay of the reference energy per sub-step. A reversing flow is at rest briefly, so its current energy is
 // no measure.
