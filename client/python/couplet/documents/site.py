@@ -21,7 +21,7 @@ REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" fo
              "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/meshes.md", "docs/input-data.md", "docs/expressions.md", "docs/quantities.md",
              "docs/plots.md", "docs/checkpoints.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
 THEORY = tuple(f"docs/theory/{name}.md" for name in ("README", "solid", "solid-gradients", "solid-motion", "solid-solution", "heat-contact", "fluid", "fluid-models", "mesh-motion", "coupling"))
-EXPLANATION = ("docs/coupling.md", "docs/mapping.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
+EXPLANATION = ("docs/coupling.md", "docs/mapping.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/plant.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
 GENERATED = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/stability.md")
 # MathJax as Debian packages it, with the parts that the configuration below loads.
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
