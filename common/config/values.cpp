@@ -113,7 +113,7 @@ std::string with_absolute_files(const std::string& text, const std::filesystem::
   if (text.find("table") == std::string::npos) return text;
   std::string result;
   std::size_t from = 0;
-  // Of two adjacent quoted words the first is the file, the second its column.
+  // Two adjacent quoted words are a file and its column.
   for (std::size_t open = text.find('"'); open != std::string::npos; open = text.find('"', from)) {
     const std::size_t close = text.find('"', open + 1);
     if (close == std::string::npos) break;

@@ -51,7 +51,7 @@ class Links {
                               const std::vector<double>& values) const;
   MPI_Comm comm_;
   std::vector<std::string> names_;
-  // By participant: numbers of this rank's vertices and faces.
+  // Numbers of this rank's vertices and faces, per participant.
   std::vector<std::vector<std::size_t>> entries_;
   std::vector<Link> links_;
   std::vector<std::string> notes_;

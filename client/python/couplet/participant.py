@@ -155,7 +155,7 @@ class Client:
                 return EVENTS[self.operation]
 
     def read(self, datum):
-        """(places, components) of this process; zeros if nobody has given it yet. After the last event: as the others gave it last."""
+        """Returns (places, components) of this process; zeros if nobody has given it yet. After the last event: as the others gave it last."""
         entry = next(d for d in self._takes if d[0] == datum)
         return self._input.get(datum, numpy.zeros(self._shape(entry)))
 
@@ -224,7 +224,7 @@ class Client:
         return [0, *(int(c) for c in counts.cumsum())]
 
     def _peers(self):
-        """(rank of the coupler, slice of own vertices, slice of own faces) for all ranks with common entries."""
+        """Returns (rank of the coupler, slice of own vertices, slice of own faces) for all ranks with common entries."""
         ranks, mine = self._link.ranks, self.comm.rank
         list_ = []
         for c in range(ranks):

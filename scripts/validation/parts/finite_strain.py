@@ -34,7 +34,7 @@ def hook(job, across, sides, wanted):
 
 
 def slopes(job):
-    """Of three meshes halved twice, by what they differ from each other."""
+    """Returns the orders of convergence from the differences between three meshes, each halved."""
     runs = [beam(job, n, 10 * n, "neo-hookean", 5) for n in (2, 4, 8)]
     u = [value for _, value in runs]
     of_u = math.log2((u[1] - u[0]) / (u[2] - u[1])) if (u[1] - u[0]) * (u[2] - u[1]) > 0 else 0

@@ -30,7 +30,7 @@ SCENES = {
 
 
 def moved(job, scene, method):
-    """(least scaled Jacobian of the mesh, where it was refused and why; None where it came to the end)"""
+    """Returns (least scaled Jacobian of the mesh, where it was refused and why; None where it came to the end)"""
     mesh, dimension, parameters, end, steps, still, moving = SCENES[scene]
     sides = [f"{name}: {{type: {kind}}}" for kind, names in re.findall(r"(\w+):([^,]*)", still) for name in names.split()]
     sides += [f"{name}: {{type: moving, motion: {{{motion}}}}}" for name, motion in moving.items()]
@@ -62,7 +62,7 @@ POINTS = ("; where the source's control points lie is unknown: its instants at a
 
 
 def meshed(words):
-    """The same parameters for the mesh of the fluid and of the mover; '~' for the file's own, 46 k cells."""
+    """Sets equal parameters for the meshes of fluid and mover; '~' keeps those of the file (46 k cells)."""
     return tuple(f"participants.{p}.mesh-parameters={words}" for p in ("fluid", "mover"))
 
 
@@ -77,13 +77,13 @@ def valve(job, keys=()):
 
 
 def lift(run, point=1):
-    """(time [s], lift of a point [m])"""
+    """Returns (time [s], lift of a point [m])"""
     found = run.probes("reed")
     return found["time [s]"], START + found[f"point-{point} z [m]"]
 
 
 def first_cycle(run):
-    """(time of the largest lift of point 1, least lift after it, its time): the cycle goes from the start to that least lift."""
+    """Returns (time of the largest lift of point 1, least lift after it, its time): the cycle goes from the start to that least lift."""
     t, z = lift(run)
     highest = int(np.argmax(z))
     after = highest + int(np.argmin(z[highest:]))
@@ -121,13 +121,13 @@ def energy(job):
 
 
 def contact(run):
-    """(times in contact [s], largest penetration [m])"""
+    """Returns (times in contact [s], largest penetration [m])"""
     found = run.table("reed", "contact.csv")
     return found["time [s]"][found["force [N]"] > 0], found["penetration [m]"].max()
 
 
 def landing(job, keys):
-    """In air that compresses, with 100 cm^3 of it upstream: (lift of point 1 [mm], frequency [Hz], whether it lands and opens again, words)."""
+    """Returns, for compressible air with 100 cm^3 upstream, (lift of point 1 [mm], frequency [Hz], whether it lands and opens again, words)."""
     run = valve(job, (*AIR, *keys))
     t, z = lift(run)
     at, least, end = first_cycle(run)
@@ -140,14 +140,14 @@ def landing(job, keys):
 
 
 def closing(job):
-    """Whether the reed comes back to its seat, on two meshes and with two steps."""
+    """Checks that the reed returns to its seat, on two meshes and with two steps."""
     found = {name: landing(job, keys) for name, keys in IN_AIR.items()}
     highest, f, returns, _ = found["6.8 k cells"]
     return ("; ".join(f"{name}: {words}" for name, (*_, words) in found.items()), returns and abs(highest / 3.07 - 1) <= 0.1 and abs(f / 57.9 - 1) <= 0.1)
 
 
 def areas(run):
-    """(lift of point 2 [m], effective flow area of the whole valve [mm^2]) while it opens for the first time."""
+    """Returns (lift of point 2 [m], effective flow area of the whole valve [mm^2]) while it opens for the first time."""
     found = run.table("fluid", "flow-areas.csv")
     at = np.interp(found["time [s]"], *lift(run, 2))
     until = int(np.argmax(at)) + 1
@@ -155,7 +155,7 @@ def areas(run):
 
 
 def fine_areas(job):
-    """At lifts of point 2 of 1, 2, 3 mm, opening, on 6.8 k and 46 k cells; how far each curve leaves the straight lines between points 0.25 mm apart."""
+    """Returns flow areas at lifts of point 2 of 1, 2, 3 mm, opening, on 6.8 k and 46 k cells; how far each curve leaves the straight lines between points 0.25 mm apart."""
     curves, knots, rough = [areas(valve(job)), areas(valve(job, FINE))], np.arange(1e-3, 3.01e-3, 0.25e-3), 0
     found = np.array([np.interp((1e-3, 2e-3, 3e-3), *curve) for curve in curves])
     apart = np.abs(found[0] / found[1] - 1).max()

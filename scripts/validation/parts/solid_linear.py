@@ -19,7 +19,7 @@ def thick_peak(job, damping, gradient, mesh, step, wanted, limit):
 
 # -- dynamics ---------------------------------------------------------------------------------------------------------
 def vibration(job, scheme, dt):
-    """(period, decay of the amplitude a period) of the free vibration of case C."""
+    """Returns (period, decay of the amplitude a period) of the free vibration of case C."""
     run = job.case("vibrating-cantilever", (f"simulation.time-step={dt}", "simulation.output.interval=100", ".solution-method={face-gradient: thesis}",
                                             f".time-scheme.type={scheme}"))
     module = job.beside("configs/vibrating-cantilever/vibration.py")
@@ -27,7 +27,7 @@ def vibration(job, scheme, dt):
 
 
 def elongation(job, dt):
-    """Beside the period of the same mesh without error in time: the trapezoidal one at 0.1 s less its elongation, which goes with the square of the step, from 0.2 s."""
+    """Returns the elongation relative to the period of the same mesh without error in time. That period is the trapezoidal one at 0.1 s minus its elongation, which grows with the square of the step and follows from 0.2 s."""
     fine, coarse = (vibration(job, "trapezoidal", step)[0] for step in (0.1, 0.2))
     period = fine - (coarse - fine) / 3
     found = {scheme: vibration(job, scheme, dt) for scheme in ("euler", "three-point", "trapezoidal", "bathe")}
@@ -94,7 +94,7 @@ def memory(job, method):
 
 
 def reproduced(found):
-    """Of {what: {name: (ratio, the published one or None)}}: each within a factor of 1.5 of what the thesis has."""
+    """Checks {what: {name: (ratio, the published one or None)}}: each within a factor of 1.5 of the thesis."""
     text = "; ".join(f"{what}: " + ", ".join(f"{name} {ratio:.2f}" + (f" ({wanted})" if wanted else "") for name, (ratio, wanted) in ratios.items())
                      for what, ratios in found.items())
     return text, all(wanted is None or 1 / 1.5 <= ratio / wanted <= 1.5 for ratios in found.values() for ratio, wanted in ratios.values())

@@ -9,7 +9,7 @@ VARIANTS = ("B", "AR1", "AR2", "CO1", "CO2", "S1", "L1", "L2", "T1")
 ROWS = {"Q_SF": ("Q_SF", 0.5, None), "Q_C/Q_excess": ("Q_C/Q_excess", 6, 10), "eta_th": ("eta_th", 6, 10), "h_th/h_bed": ("h_th/h_bed", 6, 10), "B_D": ("B_D", None, 10),
         "t_charge": ("charge time", None, 10), "t_discharge": ("discharge time", None, 10), "FoS_static": ("FoS_static", None, 8)}
 SMOOTH = "smooth-"
-# What is outside with smooth days, and which reading fails there.
+# Lists the entries that are outside with smooth days, and the reading that fails there.
 CAUSES = {"A t_charge S1": "weather: these days have 5.9 h of excess, the published ones 5.3",
           "G FoS_static AR2": "not a reading of weather or control: the plates' share of the lower wall; 2.84 with the surrogate's days",
           "G CO2": "start of the season: the tank begins empty a month before; with half a year before it (year-CO2) all six entries are inside"}
@@ -38,7 +38,7 @@ def study(job, cases, names, out, *words):
 
 
 def read(file, quantity="quantity"):
-    """{column: {quantity: number}} of a table with one column a variant."""
+    """Returns {column: {quantity: number}} of a table with one column a variant."""
     with open(file, newline="") as lines:
         rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     return {column: {row[quantity]: float(row[column]) for row in rows if row[column]} for column in rows[0] if column not in (quantity, "unit")}

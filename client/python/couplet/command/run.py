@@ -71,7 +71,7 @@ def ranks_of(words, case, here=True):
 
 
 def relays(words, case):
-    """{participant: command of its relay in the job}. Prints how the participants must be started."""
+    """Returns {participant: command of its relay in the job}. Prints how the participants must be started."""
     found = {}
     for word in words:
         name, _, listen = word.partition("=")

@@ -68,7 +68,7 @@ def title_of(page):
 
 
 def target_of(page, link, there):
-    """(link within the site, file to be copied) of a relative link. (None, None) if it has no target."""
+    """Returns (link within the site, file to be copied) of a relative link. (None, None) if it has no target."""
     path, _, anchor = link.partition("#")
     target = pathlib.Path(os.path.normpath(page.parent / path)) if path else page
     if (ROOT / target).is_dir():
@@ -140,7 +140,7 @@ def is_generated(page):
 
 
 def for_developers(there):
-    """{title of a group: its pages}: what users do not need."""
+    """Returns {title of a group: its pages}: what users do not need."""
     rest = [p for p in there if not is_for_users(p) and p.parts[0] != "configs"]
     groups = {"The project": [], "Validation": [], "Source folders": []}
     for page in rest:

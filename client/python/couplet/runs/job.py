@@ -78,7 +78,7 @@ class Job:
         return shlex.join(self.command)
 
     def record(self):
-        """How the job was started, without absolute paths: a copied or moved folder refers to the files in its new place."""
+        """Command that started the job, without absolute paths, so that a copied or moved folder refers to the files in its new place."""
         flags, at = self.flags, self.flags.index("--restart") if "--restart" in self.flags else None
         return {"case": os.path.relpath(self.case.file, self.output), "restart": None if at is None else os.path.relpath(flags[at + 1], self.output),
                 "ranks": self.ranks, "sets": [s for s in self.sets if not s.startswith("simulation.output.folder=")], "flags": flags if at is None else flags[:at] + flags[at + 2:],

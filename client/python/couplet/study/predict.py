@@ -44,7 +44,7 @@ class Search:
         return sum(s.spent() for s in self.every)
 
     def predictions(self):
-        """[(series, Prediction)] sorted by cost."""
+        """Returns [(series, Prediction)] sorted by cost."""
         found = [(s, p) for s in self.every if s.rows and isinstance(p := s.predict(self.target), Prediction)]
         return sorted(found, key=lambda pair: pair[1].seconds)
 
@@ -83,7 +83,7 @@ class Search:
 
     # -- larger ones
     def candidates(self, best, chosen):
-        """[(seconds, series)] that may still turn out cheaper: without prediction, or with an uncertain one from few runs."""
+        """Returns [(seconds, series)] that may still turn out cheaper: without prediction, or with an uncertain one from few runs."""
         found = []
         for i, series in enumerate(self.every):
             if series is chosen or series.failed or not series.rows or len(series.rows) >= ROUNDS:

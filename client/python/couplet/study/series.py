@@ -42,7 +42,7 @@ def telling(seconds):
 
 
 def power_cost(sizes, seconds):
-    """(a, b, q) of a + b n^q (startup and work), nonnegative, by least squares of the relative misfit, weighted to the latest runs."""
+    """Returns (a, b, q) of a + b n^q (startup and work), nonnegative, by least squares of the relative misfit, weighted to the latest runs."""
     keep = telling(seconds)
     n, t = np.array(sizes, float)[keep], np.array(seconds, float)[keep]
     best = None
@@ -119,7 +119,7 @@ class Series:
         return self.fitted[len(self.rows)]
 
     def fit_of_all(self):
-        """(Fit, "") or (None, reason), of relative errors if the quantity has them."""
+        """Returns (Fit, "") or (None, reason), of relative errors if the quantity has them."""
         if self.known:
             return fits.of_errors(self.sizes(), self.values(), self.formal)
         found, reason = fits.of_values(self.sizes(), self.values(), self.formal)
@@ -133,7 +133,7 @@ class Series:
                                    seen=[(n, e / scale) for n, e in found.seen]), ""
 
     def left(self, row):
-        """(error, bound) of a run. None without a fit."""
+        """Returns (error, bound) of a run. None without a fit."""
         if self.known:
             index = self.rows.index(row)
             return (fits.settled(self.sizes(), self.values(), self.formal)[index],) * 2

@@ -44,7 +44,7 @@ def value_row(row, quantities, results):
 
 
 def series_of(rows):
-    """{series: successful rows by size}."""
+    """Returns {series: successful rows by size}."""
     found = {}
     for row in rows:
         if row.good:
@@ -53,7 +53,7 @@ def series_of(rows):
 
 
 def limits_of(rows, quantity):
-    """{series: Limit or None} of a quantity's values over the sizes."""
+    """Returns {series: Limit or None} of a quantity's values over the sizes."""
     return {name: fits.limit_of([r.point.size for r in some], [r.values[quantity.name] for r in some])
             for name, some in series_of(rows).items()}
 
