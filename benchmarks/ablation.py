@@ -512,7 +512,7 @@ def shares(found):
 
 
 def findings():
-    """Cases of tests/golden/golden.json in which each finding speaks, by its severity; then those that never do."""
+    """Lists the cases of tests/golden/golden.json in which each finding appears, by severity, and then the findings that never appear."""
     golden, spoken, silent = json.loads((ROOT / "tests/golden/golden.json").read_text()), [], []
     for table in sorted(ROOT.glob("*/diagnostics/table.def")):
         for name in re.findall(r'FINDING\(\w+, "([^"]+)"', table.read_text()):

@@ -221,7 +221,7 @@ std::string list_of(const Facts& facts, const std::string& things) {
 
 std::string read_text(const YAML::Node& node) { return scalar(node, "a text"); }
 
-/// Reads a list of names, each of which may stand in it once: a wall listed twice would count twice.
+/// Reads a list of names without repetition, because a wall listed twice would count twice.
 std::vector<std::string> read_texts(const YAML::Node& node, const Facts& facts) {
   std::vector<std::string> texts = read_list(node, facts, list_of(facts, "texts"), read_text);
   for (auto entry = texts.begin(); entry != texts.end(); ++entry)

@@ -59,7 +59,7 @@ class OscillationGuard {
   std::optional<std::string> accepted(const std::vector<double>& x, double dt, coupling::Scheme scheme);
   /// Call after a failed step. Returns a reason if the accepted steps before it had begun to oscillate.
   std::optional<std::string> suspects(coupling::Scheme scheme) const;
-  /// Number of consecutive steps in which it has reversed.
+  /// Number of consecutive steps in which the motion has reversed.
   int turns() const { return turns_; }
 
   /// Data for checkpoints: values equal on all ranks, and `count` values of the motion from `first` on, in

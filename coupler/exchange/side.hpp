@@ -45,7 +45,7 @@ struct PointSet {
   std::vector<GlobalIndex> ids{};        ///< equal on any number of ranks; break ties
   coupling::Starts starts{};             ///< of the whole list
   coupling::Interface::Place place = coupling::Interface::Place::vertices;
-  /// They form a surface of their own within `surface`, which maps by faces do not see.
+  /// These points form a separate surface within `surface`, which maps by faces ignore.
   bool own_surface = false;
 };
 /// Sets positions, ids and starts of a list that is on one rank.

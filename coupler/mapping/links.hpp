@@ -43,7 +43,7 @@ class Links {
   };
   std::vector<Amount> amounts(const std::vector<coupling::Exchange>& given) const;
 
-  /// One sentence per link, and data that nobody takes.
+  /// One sentence per link, and one for data without a receiver.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:

@@ -215,7 +215,7 @@ def write(file, map_, squares):
 
 
 def make(map_, file, runner, fresh=False, workers=1):
-    """Runs the squares that the table does not have and those that are red; it is written after each eight of them. Gives all squares."""
+    """Runs the squares that are missing in the table and those that are red. Writes the table after every eight of them. Returns all squares."""
     squares = {} if fresh else {k: s for k, s in read(file).items() if s.outcome != RED}
     missing = [k for k in keys(map_) if k not in squares]
     with ThreadPoolExecutor(workers) as pool:

@@ -232,7 +232,7 @@ def started(job, case, keys, timeout):
 
 
 def readings(job, case, results, read):
-    """Returns {name: value} of one or several."""
+    """Reads one or several results of a run. Returns {name: value}."""
     found = {}
     for text in (read,) if isinstance(read, str) else read:
         found |= {(text.split(": ", 1)[1] if k in found else k): v for k, v in reading(job, case, results, text).items()}

@@ -29,7 +29,7 @@ class Row:
 
 
 class History:
-    """The commits of a checkout, each asked for once."""
+    """Commits of a checkout. Git is asked once for each."""
 
     def __init__(self, root):
         self.root, self._kept = root, {}

@@ -155,7 +155,7 @@ class Client:
                 return EVENTS[self.operation]
 
     def read(self, datum):
-        """Returns (places, components) of this process; zeros if nobody has given it yet. After the last event: as the others gave it last."""
+        """Returns the data of this process, (places, components): zeros before they are first given, and the last values after the last event."""
         entry = next(d for d in self._takes if d[0] == datum)
         return self._input.get(datum, numpy.zeros(self._shape(entry)))
 

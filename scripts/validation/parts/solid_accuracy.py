@@ -90,7 +90,7 @@ def ours(job, case, h):
 
 
 def theirs(job, case, h):
-    """Folder with the input of the case for CalculiX and what it gave, and the input; motion is no obstacle to modes."""
+    """Returns the folder with CalculiX's input and output for the case, and the input. Cases in motion are allowed for modes."""
     def make():
         data = Case(job.root / "configs" / case / "case.yaml").data
         section = {**data["participants"]["solid"], "analysis": "static", "mesh-parameters": {"h": h}}
