@@ -22,7 +22,7 @@ PetscEnvironment::PetscEnvironment(MPI_Comm program) {
   if (code == 0) code = PetscOptionsSetValue(nullptr, "-skip_petscrc", "true");
   if (code == 0) code = PetscInitializeNoArguments();
   if (code == 0) code = PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-  if (code != 0) throw Error("PETSc could not be initialised.");
+  if (code != 0) throw Error("PETSc could not be initialized.");
 }
 
 PetscEnvironment::~PetscEnvironment() {

@@ -208,7 +208,7 @@ diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::Mes
       velocity_by(GivenBy::flow))
     return without("not available with another of the case's keys");
   if (!p.gaps.empty() && has([](const auto& b) { return condition_of(b).passage == Passage::in; }))
-    return with("what flows into a part that 'gaps' shut off compresses it");
+    return with("inflow compresses a part that 'gaps' shut off");
   if (scene.coupled && p.volume_level == VolumeLevelBy::nobody && velocity_by(GivenBy::structure) &&
       !has(gives_pressure))
     return with("no outlet: an interface that moves compresses the fluid");

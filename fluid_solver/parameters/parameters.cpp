@@ -88,8 +88,8 @@ void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
-          "keys remain in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
+          "keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene has a depth of 1 m");
@@ -219,8 +219,8 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
         b.choice("surface", body.surface,
                  {{"auto", BodySurface::automatic}, {"steps", BodySurface::steps}, {"cut", BodySurface::cut}})
             .doc(
-                "what of a cell the body closes; steps: all or nothing, by the cell's centre, so that each cell "
-                "it gains or loses is a shock to the pressure; cut: what lies inside of it, so that cells "
+                "part of a cell that the body closes; steps: all or nothing, by the cell's center, so that each cell "
+                "it gains or loses is a shock to the pressure; cut: the part inside it, so that cells "
                 "close and open gradually; auto: cut on a moving mesh, steps on one at rest");
       },
       "body",

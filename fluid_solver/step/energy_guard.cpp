@@ -197,7 +197,7 @@ std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, co
         convection, s.dt);
   if (degrees > 40)
     return fmt::format(
-        "A face of that cell is {:.0f} degrees off the line between the cell centres: a smaller step does "
+        "A face of that cell is {:.0f} degrees off the line between the cell centers: a smaller step does "
         "not help; use a mesh without such cells.",
         degrees);
   const double beside_friction = 0.5 * frame_rate * std::pow(s.to.volume[cell], 2. / D) / nu;

@@ -453,7 +453,7 @@ def ended(folder):
     imported(folder, configuration("serial-implicit", end=1e6))
     line = [sys.executable, "-m", "couplet", "run", "case.yaml", "--bin", build / "bin", *(w for n in ("Left", "Right") for w in ("--with", f"{n}={programs['c++'][0]} {n} precice-config.xml 1"))]
     surroundings = {**environment, "PYTHONPATH": str(project / "client/python")}
-    for victim, number, said in (("Right", signal.SIGKILL, "'Right' was ended by signal 9"), ("run", signal.SIGINT, "No state was saved: 'Left', a program on preCICE's interface, keeps no file of its state")):
+    for victim, number, said in (("Right", signal.SIGKILL, "'Right' was ended by signal 9"), ("run", signal.SIGINT, "No state was saved: 'Left', a program on preCICE's interface, writes no checkpoint")):
         process = subprocess.Popen(list(map(str, line)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings)
         for words in process.stdout:
             if "step 3 " in words:
