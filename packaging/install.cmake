@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON) # what was built is installed, no more
 set(share ${CMAKE_INSTALL_DATADIR}/couplet)
 
-install(PROGRAMS scripts/couplet DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(PROGRAMS scripts/couplet scripts/couplet-exec DESTINATION ${CMAKE_INSTALL_BINDIR})
 file(WRITE ${PROJECT_BINARY_DIR}/VERSION "${PROJECT_VERSION}\n")
 install(FILES ${PROJECT_BINARY_DIR}/VERSION DESTINATION ${share}/python/couplet)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${share}) # pages of the site

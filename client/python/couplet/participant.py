@@ -90,7 +90,7 @@ class Client:
             self._end("a process of the job speaks another protocol" +
                       (f": version {others[0]}, this client version {VERSION}" if others else ""))
         world.Split(MPI.UNDEFINED, world.rank)
-        number = world.Get_attr(MPI.APPNUM) or 0
+        number = os.environ.get("COUPLET_PART") or world.Get_attr(MPI.APPNUM) or 0
         fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank), f"{os.getpid()}@{socket.gethostname()}"]
         strings = self._all_strings(world, ("".join(f + "\x1f" for f in fields) + "\x1e").encode())
         participants = [s.split("\x1f")[1] for s in strings]
