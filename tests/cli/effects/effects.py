@@ -102,8 +102,10 @@ cavity = root / "configs/cavity/case.yaml"
 text = ask("fluid_solver", cavity, "--explain", *automatic, "--set", "participants.fluid.dimension=")
 assert "auto: dimension: 2 (the mesh has two-dimensional cells only)" in text and "auto: turbulence: none, laminar" in text, text
 with tempfile.TemporaryDirectory() as folder:
+    (pathlib.Path(folder) / ".petscrc").write_text("-options_view\n")
     out = subprocess.run([str(programs / "solid_solver"), str(cantilever), *automatic, "--set", "participants.solid.analysis=", "--set",
-                          "participants.solid.dimension=", "--set", f"simulation.output.folder={folder}"], capture_output=True, text=True, timeout=100)
+                          "participants.solid.dimension=", "--set", f"simulation.output.folder={folder}"], capture_output=True, text=True, timeout=100, cwd=folder)
+    assert "Option Table" not in out.stdout, out.stdout  # of PETSc, which reads no file beside a case
     assert out.returncode == 0 and "auto: analysis: static" in out.stdout and "auto: dimension: 3" in out.stdout, out.stdout + out.stderr
 
 # Every program lists its cards.
