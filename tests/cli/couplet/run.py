@@ -28,7 +28,7 @@ def left_behind(folder):
             words = file.read_bytes().decode(errors="replace")
         except OSError:
             continue
-        if str(folder) in words and (words.startswith("mpirun") or words.startswith(str(bin_))):
+        if str(folder) in words and words.startswith(("mpirun", "prterun", str(bin_))):
             found.append(words.replace("\0", " ")[:80])
     return found
 
