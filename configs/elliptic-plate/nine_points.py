@@ -109,7 +109,15 @@ def circle(folder):
     """On r = 2.1 m."""
     angle = np.linspace(0, 90, 200)
     on = 2.1 * np.cos(np.radians(angle)), 2.1 * np.sin(np.radians(angle))
-    return {"angle [deg]": angle, "von Mises [MPa]": von_mises(Plate(folder).stress(*on)) / 1e6}
+    stress = Plate(folder).stress(*on) / 1e6
+    return {"angle [deg]": angle, "von Mises [MPa]": von_mises(stress), "sxx [MPa]": stress[:, 0], "syy [MPa]": stress[:, 1]}
+
+
+def stresses(folder):
+    """Largest errors of the stresses xx and yy on r = 2.1 m against the p-FEM computation, over the largest stress."""
+    angle, _, *wanted = np.loadtxt(HERE / "reference/circle_2.1.csv", delimiter=",").T[:4]
+    found, most = circle(folder), np.abs(wanted).max()
+    return {name: np.abs(np.interp(angle, found["angle [deg]"], found[f"s{name} [MPa]"]) - one).max() / most for name, one in zip(("xx", "yy"), wanted)}
 
 
 def reference():

@@ -9,7 +9,7 @@ from couplet.study.quantities import top
 
 def thick_peak(job, damping, gradient, mesh, step, wanted, limit):
     """First maxima of the deflection and of the stress at the bottom. `wanted`: deflection [mm], its time [s] (none: not compared), stress [MPa]."""
-    keys = (".damping={%s}" % damping, ".mesh-parameters={n: %d, nz: %d}" % tuple(mesh), "simulation.end-time=0.0116", f"simulation.time-step={step}",
+    keys = (".damping=" + ("{%s}" % damping if damping else "~"), ".mesh-parameters={n: %d, nz: %d}" % tuple(mesh), "simulation.end-time=0.0116", f"simulation.time-step={step}",
             ".solution-method={type: newton-krylov, face-gradient: %s, relative-tolerance: 1e-8}" % gradient)
     probes = job.case("thick-plate", keys, timeout=6 * 3600).probes("solid")
     (t, w), (_, s) = (top(probes["time [s]"], values) for values in (-1e3 * probes["centre z [m]"], probes["bottom stress-xx [Pa]"] / 1e6))
