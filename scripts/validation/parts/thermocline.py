@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The thermocline tank: its wall, tables 5.5 and 5.6 of the thesis beside ours in two readings, phase change, sizing, cost."""
 import csv
+import json
 import re
+
+import yaml
+
+from couplet import tank
 
 CASES = {"A": ("thermocline-andasol", "table5_5.csv"), "G": ("thermocline-gemasolar", "table5_6.csv")}
 VARIANTS = ("B", "AR1", "AR2", "CO1", "CO2", "S1", "L1", "L2", "T1")
@@ -103,6 +108,18 @@ def others(job, case):
         words.append(f"{name}: " + (", ".join(f"{v} {ours[v]:.3g} ({wanted[v]:g})" for v in far) or "all within"))
     total = len(OTHERS) * len(VARIANTS)
     return f"{total - missed} of {total}; outside, with the published value: {'; '.join(words)}", total - missed >= 0.8 * total
+
+
+def diameters(job, case, chosen, values):
+    """Figure 5.9 with smooth days and the cut-off at the outlet: the least of these diameters, over that of the hot tank, that stores 90 % of the excess."""
+    folder, found = CASES[case][0], {}
+    variant = yaml.safe_load((job.root / "configs" / folder / "case.yaml").read_text())["study"]["variants"][f"{SMOOTH}B"]
+    for ratio in values:
+        keys = (f".diameter={ratio * {'A': 38, 'G': 23}[case]} m", *(f".{key}={json.dumps(value)}" for key, value in variant.items()))
+        found[ratio] = tank.summary(job.case(folder, keys).folder)
+    text = "; ".join(f"{r:g}: {v['Q_C/Q_excess']:.1f} %, {v['eta_th']:.1f} %, {v['FoS_static']:.2f}" for r, v in found.items())
+    least = min((r for r, v in found.items() if v["Q_C/Q_excess"] >= 90), default=None)
+    return f"stored share of the excess, efficiency, static factor of safety at {text}; least that stores 90 %: {least}", least == chosen
 
 
 def melting_layers(job):
