@@ -108,11 +108,8 @@ void declare_iteration(config::Section& s, MethodParameters& m) {
   s.value("anderson-history", m.anderson_history)
       .range(1, 30)
       .doc("number of iterations combined by Anderson's method");
-  s.choice("predictor", m.predictor,
-           {{"none", Predictor::none}, {"euler", Predictor::euler}, {"adams", Predictor::adams}})
-      .doc(
-          "initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73); "
-          "with two velocities (2.74)");
+  s.choice("predictor", m.predictor, {{"none", Predictor::none}, {"euler", Predictor::euler}})
+      .doc("initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73)");
   s.value("corrections-kept", m.corrections_kept)
       .range(0, linalg::ResidualProjection::most)
       .doc(

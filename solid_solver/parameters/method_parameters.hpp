@@ -13,7 +13,7 @@ struct MethodParameters {
   enum class LinearSolver { automatic, direct, bicgstab_ilu, gmres_multigrid };
   enum class Preconditioner { automatic, multigrid, factors, mixed };
   enum class Acceleration { none, aitken, anderson };
-  enum class Predictor { none, euler, adams };
+  enum class Predictor { none, euler };
   enum class VolumeStrain { automatic, faces, cells, shared };
   Type type = Type::automatic;
   FaceGradient face_gradient = FaceGradient::automatic;
