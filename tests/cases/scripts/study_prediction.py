@@ -123,6 +123,12 @@ said = asked(MadeUp(lambda s: 1 + float(s["n"])**-2 + 0.1 * (float(s["n"]) < 20)
                     sizes=(40, 80, 160), multiple=1), 1e-2)
 assert said["met"] and 20 <= said["size"] <= 40, said
 
+# -- three pilots may show an order by chance, and a fourth run confirms it; the coarsest of them that suffices is the answer then, not the fourth
+thickness = {100: 10.28631, 200: 9.977768, 400: 9.957801, 440: 9.957}  # of a tank's front, whose limit is 9.948
+said = asked(MadeUp(lambda s: float(np.interp(float(s["n"]), [*thickness], [*thickness.values()])), lambda s: 0.1 + 8e-4 * float(s["n"]), {}, names=("good",),
+                    sizes=(100, 200, 400), multiple=10), 0.06)
+assert said["met"] and said["size"] == 100, said
+
 # -- the best series changes its sign: it is taken all the same (a tank's limiter beside upwind advection)
 def tank(s):
     n = float(s["n"])

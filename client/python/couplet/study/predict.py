@@ -114,10 +114,11 @@ class Search:
         self.say(f"{series.name}: size {best.size:g} should leave an error of {best.error:.2g} (at most {best.bound:.2g}) and take {best.seconds:.3g} s")
         size = self.next_size(series, best)
         row = self.run(series, size)
-        if size == best.size and row.good and series.meets(row, self.target) and not self.smaller(series, row):
+        reached = [r for r in series.rows if series.meets(r, self.target)]  # a run may have been too little to show that the ones before it suffice
+        if size == best.size and row in reached and reached[0] is row and not self.smaller(series, row):
             self.found = series, row, best
             return True
-        series.misses += size == best.size and row.good and not series.meets(row, self.target)
+        series.misses += size == best.size and row.good and row not in reached
         return False
 
     def next_size(self, series, best):
