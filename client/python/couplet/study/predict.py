@@ -3,7 +3,8 @@
 
 For each series (combination of all axes except the refinement) up to three of the smallest sizes are run. A fit of its values over the sizes
 (fits.py) gives the size that meets the target with an error bound, and seconds(n) = a + b n^q its cost. The series with the lowest predicted cost
-continues with larger sizes until a run meets the target. Series without a fit continue if that costs less than the best prediction. A reason is
+continues with larger sizes until a run meets the target. The target is met only where a second witness confirms the extrapolated error (Series.doubt);
+otherwise one more size is run. Series without a fit continue if that costs less than the best prediction. A reason is
 reported for each rejected series."""
 import json
 import math
@@ -157,13 +158,30 @@ class Search:
         return True
 
     def go(self):
-        self.found = None, None, None
+        self.found, self.doubt = (None, None, None), ""
         self.pilots()
         expect(any(s.rows for s in self.every), "no series could be run: " + "; ".join(f"{s.name}: {s.failed}" for s in self.every))
         for _ in range(ROUNDS + 3 * len(self.every)):
             if self.step():
                 break
+        self.confirm()
         return self.found
+
+    def confirm(self):
+        """Refines once more if nothing but the extrapolation says that the run meets the target."""
+        series, row, best = self.found
+        self.doubt = series.doubt(row) if row is not None else ""
+        if not self.doubt or series.failed:
+            return
+        size = self.following(series)
+        self.say(f"{series.name}: size {row.point.size:g} is not sure to meet the target: {self.doubt}; size {size:g} may confirm it, in about {series.seconds(size):.2g} s")
+        made = self.run(series, size)
+        for one in (row, made) if made.good else ():
+            self.doubt = series.doubt(one)
+            if series.meets(one, self.target) and not self.doubt:
+                self.found = series, one, best
+                return
+        self.doubt = self.doubt or "its error was too large with one more size"
 
 
 def others(search, chosen, row):
@@ -218,8 +236,9 @@ def said(search, series, row, predicted):
     how = "against the reference" if true is not None else f"by extrapolation, at most {max(bound, elsewhere):.3g}"
     first = [f"Cheapest for {quantity.name} to {target:.3g}: {series.name}, size {row.point.size:g} ({settings})",
              f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})" + (f"; seen from {who}" if elsewhere > error else ""),
+             *([f"not confirmed: {search.doubt}"] if search.doubt else []),
              f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); the runs before it took {spent - seconds:.3g} s"]
-    return {"met": reached <= ENOUGH * target, "target": target, "quantity": quantity.name, "series": series.name, "size": row.point.size,
+    return {"met": reached <= ENOUGH * target and not search.doubt, "doubt": search.doubt, "target": target, "quantity": quantity.name, "series": series.name, "size": row.point.size,
             "value": row.values[quantity.name], "predicted error": predicted.error, "predicted seconds": predicted.seconds, "error": reached, "bound": bound, "estimate": error,
             "seconds": seconds, "before": spent - seconds, "others": rest, "lines": first + lines}
 

@@ -15,6 +15,7 @@ GROWTH = 1.4     # ratio of the tried sizes
 NOISE = 0.5      # of the target: maximum standard deviation of values from their fit
 STRIDE = 1.25    # factor of the size after two predictions with too large errors
 FEW = 4          # number of runs up to which the order may be that of coarse runs
+ORDER_OFF, OWN_OFF = 0.5, 2  # largest distance of the observed order from the formal one, and ratio of extrapolated and estimated error, that confirm a run
 ROUNDS = 12      # maximum number of runs of one series
 
 
@@ -148,6 +149,22 @@ class Series:
             return False
         left = self.left(row)
         return left is not None and left[0] <= ENOUGH * target and left[1] <= SURE * target and self.scatter() <= NOISE * target
+
+    def doubt(self, row):
+        """Reason why nothing confirms the extrapolated error of a run: neither the order of the last three sizes nor the run's own estimate. Empty
+        if one of them does, or if the error is known."""
+        error = self.left(row)[0]
+        if self.known or error == 0:
+            return ""
+        last = fits.apart(np.array(self.sizes(), float))[-3:]
+        limit = fits.limit_of([self.sizes()[i] for i in last], [self.values()[i] for i in last])
+        if limit and abs(limit.order - self.formal) <= ORDER_OFF:
+            return ""
+        own = 0 if self.quantity.given.get("absolute") else row.own
+        if own and 1 / OWN_OFF <= error / own <= OWN_OFF:
+            return ""
+        shown = f"the last three sizes show order {limit.order:.2g} instead of {self.formal:g}" if limit else "the last three sizes show no order"
+        return f"{shown}, and the run itself estimates {own:.2g} instead of {error:.2g}" if own else f"{shown}, and the run has no estimate of its own"
 
     def scatter(self):
         return 0.0 if self.known or (fit := self.fit()[0]) is None else fit.deviation
