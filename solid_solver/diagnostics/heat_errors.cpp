@@ -79,10 +79,14 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   // Rates are at mid-steps, whose distance is the mean of both steps.
   if (dt_ > 0 && rate_.size() != n)
     throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
-  if (dt_ > 0)  // the same on all ranks, also on one without cells
-    steps_.add(
+  if (dt_ > 0) {  // the same on all ranks, also on one without cells
+    const time::StepErrors::Seen seen = steps_.add(
         rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
         [this](std::span<const double> cells) { return root_mean_square(mesh_, geometry_, 1, cells); });
+    const double dt = std::pow(seen.dt, seen.order + 1);
+    powers_ += (powers_ > 0 ? 1 : 2) * dt;
+    if (seen.error > 0) at_once_ = powers_ / dt * seen.error / size(now.cells, level_);
+  }
   rate_ = std::move(rate);
   dt_ = now.dt;
 }
@@ -119,13 +123,13 @@ diagnostics::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double
   if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
     return parts;  // uniform temperature has no error
   parts.mesh = root_mean_square(mesh_, geometry_, 1, gaps(heat)) / size;
-  if (!steady_) parts.step = steps_.over_size() * varies / size;
+  if (!steady_) parts.step = std::fmin(steps_.over_size(), at_once_) * varies / size;
   return parts;
 }
 
 void HeatErrors::visit(io::Archive& archive) {
   std::vector<double> numbers = steps_.numbers(), before(steps_.before().begin(), steps_.before().end());
-  archive.common("heat", begun_, level_, dt_, numbers);
+  archive.common("heat", begun_, level_, dt_, powers_, at_once_, numbers);
   archive.field(mesh::Entries::owned_cells, "heat-rate-before", before, 1);
   archive.field(mesh::Entries::owned_cells, "heat-rate", rate_, 1);
   if (archive.reads()) steps_.restore(numbers, before);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,7 +24,9 @@ double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, 
 /// Error of the temperature in heat conduction, relative to its variation: the distance from the mean
 /// temperature before the first step, or of a steady field from its own mean. Collective.
 ///   mesh    difference from a linear fit through each cell's neighbors
-///   step    sum of local errors by the rates of the last three steps, see VelocityErrors; none if steady
+///   step    sum of local errors by the rates of the last three steps, see VelocityErrors; none if steady. Conduction is linear: a
+///           local error C dt^(p+1) d^(p+1)T/dt^(p+1) is by now what the same derivative is now, unless loads vary. The sum is
+///           at most that of all steps with it.
 class HeatErrors {
  public:
   /// Keeps a reference to `mesh`.
@@ -48,6 +51,9 @@ class HeatErrors {
   std::vector<double> rate_;  // of the previous step [K/s]; empty if none
   double dt_ = 0;             // of the previous step; 0 if none
   time::VelocityErrors steps_;
+  double powers_ = 0;  // sum of dt^(p+1)
+  double at_once_ =
+      std::numeric_limits<double>::quiet_NaN();  // relative error with the last derivative in all steps
 };
 
 }  // namespace couplet::solid
