@@ -172,15 +172,12 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "time scheme of the explicit terms; runge-kutta: three stages with a projection each, 2.5 times "
           "longer steps at three times the work, explicit viscous term, mesh at rest");
   s.choice("projection", p.projection,
-           {{"flux-memory", Projection::flux_memory},
-            {"incremental", Projection::incremental},
-            {"non-incremental", Projection::non_incremental}})
+           {{"flux-memory", Projection::flux_memory}, {"incremental", Projection::incremental}})
       .doc(
           "treatment of the difference between face fluxes and averaged cell velocities; flux-memory: "
           "carried over from step to step and smoothed by friction and convection, robust, steady loads "
           "independent of the step; incremental: driven by pressure changes only, second order in time with "
-          "the lowest loss of kinetic energy, but pressure noise is not damped; non-incremental: computed "
-          "anew in each step, first order in time");
+          "the lowest loss of kinetic energy, but pressure noise is not damped");
   s.choice("face-values", p.face_values,
            {{"second-order", FaceValues::second_order},
             {"fourth-order", FaceValues::fourth_order},
