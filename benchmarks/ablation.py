@@ -114,7 +114,7 @@ def text_of(*command, **options):
 
 
 def altered():
-    """{file: its text with the switches}."""
+    """Returns {file: its text with the switches}."""
     texts = {}
     edits = [(file, old, new.replace("OFF", f'is_off_("{program}: {name}")')) for program, some in SWITCHES.items() for name, list_ in some.items() for file, old, new in list_]
     edits += [(file, old, new.replace("one.name_of_timer()", '"diagnostic: " + one.name')) for file, old, new in TIMERS]
@@ -496,7 +496,7 @@ def estimators(found):
 
 
 def shares(found):
-    """Of each diagnostic over all runs, and the run in which it is largest."""
+    """Returns the share of each diagnostic over all runs, and the run in which it is largest."""
     spent_on, whole, most = {}, {}, {}
     for run, one in found.items():
         for key, seconds in one["time"].items():
@@ -512,7 +512,7 @@ def shares(found):
 
 
 def findings():
-    """Cases of tests/golden/golden.json in which each finding speaks, by its severity; then those that never do."""
+    """Lists the cases of tests/golden/golden.json in which each finding appears, by severity, and then the findings that never appear."""
     golden, spoken, silent = json.loads((ROOT / "tests/golden/golden.json").read_text()), [], []
     for table in sorted(ROOT.glob("*/diagnostics/table.def")):
         for name in re.findall(r'FINDING\(\w+, "([^"]+)"', table.read_text()):

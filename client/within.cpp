@@ -76,7 +76,7 @@ void couplet_write_within(couplet_client* c, const char* datum, double share, co
   // Checks the share as written, because it may be rounded to an end of the step.
   if (const double written = share_in(name); !(written > 0 && written < 1))
     end_the_job(std::string("'") + datum + "' was given at " + std::to_string(share) +
-                " of the step; values within it lie between 0 and 1.");
+                " of the step; times within it are between 0 and 1.");
   take_over(*c, name, values, entries(*c, *d));
 }
 

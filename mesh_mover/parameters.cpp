@@ -45,7 +45,7 @@ void declare_guard(config::Section& s, GuardParameters& g) {
       .doc("longest over shortest edge of a cell");
   s.value("largest-angle", g.largest_angle)
       .range(0, 90)
-      .doc("angle between a face normal and the line of its cell centres [degree]");
+      .doc("angle between a face normal and the line of its cell centers [degree]");
   s.value("largest-area-change", g.largest_area_change)
       .not_negative()
       .doc("f_A = |log2(V/V0)| of Stein, Tezduyar and Benney, V0 of the reference mesh");
@@ -99,8 +99,8 @@ void declare(config::Section& section, Parameters& p) {
   section.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
-          "keys remain in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
+          "keys remain in meters");
   section.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant; the same as the fluid's");
   section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3 dimensions");
@@ -122,7 +122,7 @@ void declare(config::Section& section, Parameters& p) {
                  {{"direct", linalg::LinearMethod::direct_symmetric},
                   {"cg-multigrid", linalg::LinearMethod::cg_multigrid}})
             .doc(
-                "direct: one factorisation for the whole run (best below about 100 000 cells; not available "
+                "direct: one factorization for the whole run (best below about 100 000 cells; not available "
                 "for a pseudo-solid in 3-D or with periodic patches); cg-multigrid: conjugate gradients "
                 "with a reused multigrid preconditioner");
         s.value("relative-tolerance", p.linear.relative_tolerance)

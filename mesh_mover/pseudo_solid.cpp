@@ -107,7 +107,7 @@ class PseudoSolid final : public MotionMethod {
 
  private:
   void make_solver(const linalg::LinearOptions& options) {
-    // Its points have nodes on other ranks.
+    // The points of the operator have nodes on other ranks.
     const bool joined = parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty());
     if (options.method == linalg::LinearMethod::direct_symmetric && dim_ == 2 && !joined) {
       matrix_ = std::make_unique<linalg::SparseMatrix>(elastic::symmetric_matrix(mesh_, *rows_, {}));

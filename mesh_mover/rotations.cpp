@@ -107,7 +107,7 @@ class Rotations final : public MotionMethod {
       body.outer = parallel::min(mesh_.comm, nearest);
       if (!(body.outer > least_room * body.inner))
         throw Error(
-            "method: rotations: patch '{}' extends {:.3g} m from its centre ({:.4g}, {:.4g}, {:.4g}) m, but "
+            "method: rotations: patch '{}' extends {:.3g} m from its center ({:.4g}, {:.4g}, {:.4g}) m, but "
             "another patch is as close as {:.3g} m: there is no space to rotate. Use 'method: pseudo-solid'.",
             body.name, body.inner, body.centre.x(), body.centre.y(), body.centre.z(), body.outer);
       body.outer = std::min(body.outer, 10 * body.inner);

@@ -4,22 +4,30 @@ include(GNUInstallDirs)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON) # what was built is installed, no more
 set(share ${CMAKE_INSTALL_DATADIR}/couplet)
 
-install(PROGRAMS scripts/couplet DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(PROGRAMS scripts/couplet scripts/couplet-exec DESTINATION ${CMAKE_INSTALL_BINDIR})
 file(WRITE ${PROJECT_BINARY_DIR}/VERSION "${PROJECT_VERSION}\n")
 install(FILES ${PROJECT_BINARY_DIR}/VERSION DESTINATION ${share}/python/couplet)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${share}) # pages of the site
 install(DIRECTORY configs docs DESTINATION ${share} PATTERN "out" EXCLUDE PATTERN "out-*" EXCLUDE PATTERN "*.cache.msh" EXCLUDE
         PATTERN "*.log" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# Where Debian's Python looks (below /usr), and where it can be told to look: the same files.
-install(CODE "
-  set(python \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/python3/dist-packages\")
-  file(MAKE_DIRECTORY \"\${python}\")
-  file(CREATE_LINK ../../../share/couplet/python/couplet \"\${python}/couplet\" SYMBOLIC)")
-
 # Man pages and completion come from what the command and the programs declare.
 find_program(COUPLET_PYTHON python3 HINTS /usr/bin NO_DEFAULT_PATH)
 find_program(COUPLET_PYTHON python3 REQUIRED)
+
+# Where Debian's Python looks: below /usr, /usr/local, and ~/.local or the prefix of an environment. The same files each time.
+execute_process(COMMAND ${COUPLET_PYTHON} -c "import sys; print('python%d.%d' % sys.version_info[:2])" OUTPUT_VARIABLE python
+                OUTPUT_STRIP_TRAILING_WHITESPACE)
+install(CODE "
+  set(places python3/dist-packages)
+  if(NOT CMAKE_INSTALL_PREFIX STREQUAL /usr)
+    list(APPEND places ${python}/dist-packages ${python}/site-packages)
+  endif()
+  foreach(place \${places})
+    set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/\${place}\")
+    file(MAKE_DIRECTORY \"\${folder}\")
+    file(CREATE_LINK ../../../share/couplet/python/couplet \"\${folder}/couplet\" SYMBOLIC)
+  endforeach()")
 install(CODE "
   execute_process(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_SOURCE_DIR}/client/python ${COUPLET_PYTHON} -B -m couplet.command.pages
                           \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\" --bin ${PROJECT_BINARY_DIR}/bin --version ${PROJECT_VERSION}

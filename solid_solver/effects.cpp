@@ -55,7 +55,7 @@ const std::array cards{
               [](const P& p) { return when(!p.body_force.empty(), "body-force"); }, "a load per cell"},
     SolidCard{
         "contact with a seat", "`contact`", [](const P& p) { return when(p.contact.has_value(), "contact"); },
-        "gap and stiffness of the faces towards the seat; a look at them in each solve, and while they touch "
+        "gap and stiffness of the faces toward the seat; a look at them in each solve, and while they touch "
         "corrections, each with a linear solve; contact.csv"},
     SolidCard{"structural damping", "`damping`",
               [](const P& p) { return when(p.damping.has_value(), "damping"); }, "",

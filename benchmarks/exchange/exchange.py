@@ -31,7 +31,7 @@ KINDS = {"constant": "{type: constant, initial-relaxation: 0.66}", "aitken": "{t
 
 
 def measure(vertices, programs, end=0.2):
-    """{kind: (passes a step, ms a pass without the dummies' own)} and ms of MPI alone, there and back."""
+    """Returns {kind: (passes a step, ms a pass without the dummies' own)} and ms of MPI alone, there and back."""
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     with tempfile.TemporaryDirectory() as folder:
         dummy = pathlib.Path(folder) / "dummy"

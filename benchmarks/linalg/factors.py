@@ -71,7 +71,7 @@ def seconds(build, case, sets, steps):
 
 
 def measure(build, case, sets, steps):
-    """(seconds of the first step with all set-up, seconds of a later step)"""
+    """Returns (seconds of the first step with all set-up, seconds of a later step)"""
     seconds(build, case, sets, 1)  # meshes
     first = min(seconds(build, case, sets, 1) for _ in range(TURNS))
     return first, (min(seconds(build, case, sets, 1 + steps) for _ in range(TURNS)) - first) / steps

@@ -26,7 +26,7 @@ using namespace linalg;
 using namespace solid;
 namespace {
 
-// As in the mixed form: forces from volume residuals, relative to b.
+// Forces from volume residuals relative to b, as in the mixed form.
 constexpr double forces_left = 1e-6;
 
 struct Files {

@@ -39,7 +39,7 @@ def seconds(row):
 
 
 def gains(rows, name):
-    """[(time over that of PETSc's quickest, memory over that of its leanest, our row)] of a hand-written solver; memory: infinity where there is
+    """Returns [(time over that of PETSc's quickest, memory over that of its leanest, our row)] of a hand-written solver; memory: infinity where there is
     too little to tell."""
     ours, is_rival, systems = HAND_WRITTEN[name]
     found = []
@@ -55,7 +55,7 @@ def gains(rows, name):
 
 
 def best(rows, name):
-    """On one rank: seconds of two hold the waiting of one for the other."""
+    """Returns the best row on one rank. With two ranks the seconds would include one waiting for the other."""
     return min((g for g in gains(rows, name) if g[2]["ranks"] == "1"), key=lambda g: min(g[:2]), default=None)
 
 
@@ -65,7 +65,7 @@ def wins(rows, name):
 
 
 def problems(rows, folder=ROOT / "common/linalg"):
-    """What the comparison lacks; empty: it is whole, and every hand-written solver that is there wins."""
+    """Returns the gaps of the comparison. Empty if it is complete and every hand-written solver that still exists wins."""
     found = []
     for system in SYSTEMS:
         here = [r for r in rows if r["system"] == system]

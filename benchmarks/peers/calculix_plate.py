@@ -60,7 +60,7 @@ def write(file, n, element, solver, le10=False):
 
 
 def stress_at(result, node, component):
-    """Of the .frd file, from the elements around averaged; `component`: 0 xx, 1 yy, 2 zz, ..."""
+    """Returns the stress of the .frd file, averaged over the surrounding elements; `component`: 0 xx, 1 yy, 2 zz, ..."""
     rows = pathlib.Path(result).read_text().split("STRESS", 1)[1].split("\n -3", 1)[0].splitlines()
     return next(float(row[13 + 12 * component : 25 + 12 * component]) for row in rows if row.startswith(" -1") and int(row[3:13]) == node)
 

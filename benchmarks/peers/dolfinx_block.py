@@ -27,7 +27,7 @@ def energy(u, p):
 
 
 def problem(n):
-    """(unknowns, motion of the platen, Newton's method)"""
+    """Returns (unknowns, motion of the platen, Newton's method)"""
     body = mesh.create_rectangle(MPI.COMM_SELF, [[0, 0], [HALF, HALF]], [n, n], mesh.CellType.quadrilateral)
     pair = ufl.MixedElement([ufl.VectorElement("Lagrange", body.ufl_cell(), 2), ufl.FiniteElement("Lagrange", body.ufl_cell(), 1)])
     space = fem.FunctionSpace(body, pair)

@@ -28,7 +28,7 @@ METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; i
 
 
 def cost(command, folder):
-    """What a program takes, with its output."""
+    """Returns the cost of a program and its output."""
     log = pathlib.Path(folder) / "race.log"
     taken = launch(command, log, folder, env=foam_environment())
     taken.output = log.read_text(errors="replace")
@@ -105,7 +105,7 @@ def our_beam(job, across, along, load):
 
 
 def calculix_bent(job, across, along, load, element):
-    """The same by CalculiX: (processor seconds, deflection over the length); None where it is not installed."""
+    """Runs the same case in CalculiX. Returns (processor seconds, deflection over the length), or None if it is not installed."""
     program = shutil.which("ccx")
     if not program:
         return None

@@ -12,7 +12,7 @@ from couplet.runs import environment  # noqa: E402
 
 
 def once(folder, make):
-    """What make(folder) returned (as JSON has it), kept in the folder for the next time."""
+    """Returns the result of make(folder) in its JSON form, which is kept in the folder for later calls."""
     folder = pathlib.Path(str(folder).replace(" ", "-"))
     record = folder / "record.json"
     if not record.exists():
@@ -23,7 +23,7 @@ def once(folder, make):
 
 
 def series(folder, peers):
-    """[(name, [(seconds, error)])] for the picture of scripts/couplet study, of peers (name, its program, run, meshes): each run(folder, mesh) is
+    """Returns [(name, [(seconds, error)])] for the picture of scripts/couplet study, of peers (name, its program, run, meshes): each run(folder, mesh) is
     made once; what is not installed is left out."""
     def one(name, run, mesh):
         label = "x".join(map(str, mesh)) if isinstance(mesh, tuple) else mesh

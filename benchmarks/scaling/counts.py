@@ -58,7 +58,7 @@ def library(folder):
 
 
 def counted(command, folder, counter, timeout=1200):
-    """[tally of each rank of the job] of one run."""
+    """Returns [tally of each rank of the job] of one run."""
     folder.mkdir(parents=True)
     if command[0] != "mpirun":
         command = ["mpirun", "--oversubscribe", "-n", 1, *command]
@@ -79,7 +79,7 @@ def steps_of(folder, fewer):
 
 
 def difference(short, long, extra):
-    """What one rank did per step."""
+    """Returns the work of one rank per step."""
     peers = {p: (n - short["peers"].get(p, 0)) / extra for p, n in long["peers"].items()}
     kinds = {k: (n - short["collectives"].get(k, 0)) / extra for k, n in long["collectives"].items()}
     each = {k: (long[k] - short[k]) / extra for k in ("bytes", "waited", "in_collectives")}

@@ -96,7 +96,7 @@ void check_corners(const Session& s, const char* call, const Mesh& mesh,
     for (std::size_t j = 0; j < i; ++j)
       if (ids[i] == ids[j])
         fail(s, std::string(call) + ": the vertex id " + std::to_string(ids[i]) +
-                    " stands twice in one element of mesh \"" + mesh.name + "\".");
+                    " occurs twice in one element of mesh \"" + mesh.name + "\".");
   }
 }
 

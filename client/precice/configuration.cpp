@@ -200,7 +200,7 @@ class Reader {
                         datum = e->attribute("data");
       const auto starts = ends(participant(giver), datum, e->attribute("mesh"), true);
       const auto stops = ends(participant(taker), datum, e->attribute("mesh"), false);
-      // What its taker does not read is for the measures of convergence alone, which the coupler has.
+      // Data that the receiver does not read serve only the convergence measures, which the coupler computes.
       const auto reads = participant(taker).all("read-data");
       const bool unread = std::none_of(reads.begin(), reads.end(),
                                        [&](const Element* d) { return d->attribute("name") == datum; });

@@ -286,7 +286,7 @@ void Session::take(bool new_window) {
       std::copy_n(values, s.end.size(), s.end.begin());
     else if (ongoing)
       std::fill(s.end.begin(), s.end.end(), 0.);
-    // What is iterated on is guessed, in the first pass, by its value at the start of the window.
+    // The first pass uses the value at the start of the window for data that are iterated on.
     const bool constant = ongoing && (wire.held || (wire.iterated && new_window));
     if (constant) s.start = s.end;
     if (wire.within) take_within(wire, s, constant);

@@ -24,7 +24,7 @@ class Parser {
     skip_to_element();
     Element root = element(0);
     skip_to_element();
-    if (at_ < text_.size()) fail("something stands after the end of <" + root.name + ">");
+    if (at_ < text_.size()) fail("found content after the end of <" + root.name + ">");
     return root;
   }
 

@@ -193,7 +193,7 @@ bool pass_up(MPI_Comm coupler, Stream& stream, std::vector<char>& buffer, int co
   if (head.tag == fail_tag)
     end_the_job("the participant ended: " + std::string(buffer.begin(), buffer.end()));
   if (head.rank < 0 || head.rank >= coupler_ranks || head.tag < join_tag || head.tag > output_tag)
-    end_the_job("the participant sent a message that nobody takes.");
+    end_the_job("the participant sent a message that no program expects.");
   send(coupler, head.rank, head.tag, buffer, MPI_BYTE);
   return true;
 }

@@ -34,7 +34,10 @@ namespace {
 
 constexpr int exit_failed = 1, exit_configuration = 2, exit_stopped = 3, exit_wrong = 4;
 
+/// Index of this program on the launch line: from couplet-exec, whose programs are one application of the
+/// launcher, or from the launcher.
 int application_number() {
+  if (const char* part = std::getenv("COUPLET_PART")) return std::atoi(part);
   int* number = nullptr;
   int found = 0;
   MPI_Comm_get_attr(MPI_COMM_WORLD, MPI_APPNUM, &number, &found);

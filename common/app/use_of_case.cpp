@@ -123,7 +123,7 @@ class UseOfCase final : public diagnostics::Diagnostic {
           find(
               "given-without-effect", 0, 0,
               fmt::format(
-                  "{}: it covers {:g} to {:g}, but was only read from {:g} to {:g}, where its end value holds",
+                  "{}: it covers {:g} to {:g}, but was only read from {:g} to {:g}, where its end value is used",
                   name, use.from, use.to, use.lowest, use.highest));
         else if (is_left)
           report.sentences.push_back(fmt::format(
@@ -135,7 +135,7 @@ class UseOfCase final : public diagnostics::Diagnostic {
           find(
               "table-left", use.highest, use.to,
               fmt::format(
-                  "{}: its table covers {:.6g} to {:.6g} K, but was read from {:.6g} to {:.6g} K; beyond its ends the end values hold: extend it",
+                  "{}: its table covers {:.6g} to {:.6g} K, but was read from {:.6g} to {:.6g} K; beyond its ends the end values are used: extend it",
                   name, use.from, use.to, use.lowest, use.highest));
     }
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace couplet::base {
 
@@ -23,6 +24,8 @@ struct Cloud {
 };
 using Tree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, Index>;
+/// Indices and squared distances. The type of an item depends on nanoflann's version.
+using Found = std::remove_reference_t<decltype(nanoflann::RadiusResultSet<double, Index>::m_indices_dists)>;
 
 }  // namespace
 
@@ -62,7 +65,7 @@ std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
 }
 
 std::vector<Index> PointTree::within(const Vec3& p, double distance) const {
-  std::vector<std::pair<Index, double>> found;
+  Found found;
   // nanoflann excludes points at the limit. A distance of 0 must include the position itself.
   const double square = distance * distance * (1 + 1e-9) + std::numeric_limits<double>::min();
   state_->tree.radiusSearch(p.data(), square, found, {});

@@ -113,7 +113,7 @@ std::string with_absolute_files(const std::string& text, const std::filesystem::
   if (text.find("table") == std::string::npos) return text;
   std::string result;
   std::size_t from = 0;
-  // Of two adjacent quoted words the first is the file, the second its column.
+  // Two adjacent quoted words are a file and its column.
   for (std::size_t open = text.find('"'); open != std::string::npos; open = text.find('"', from)) {
     const std::size_t close = text.find('"', open + 1);
     if (close == std::string::npos) break;
@@ -221,7 +221,7 @@ std::string list_of(const Facts& facts, const std::string& things) {
 
 std::string read_text(const YAML::Node& node) { return scalar(node, "a text"); }
 
-/// Reads a list of names, each of which may stand in it once: a wall listed twice would count twice.
+/// Reads a list of names without repetition, because a wall listed twice would count twice.
 std::vector<std::string> read_texts(const YAML::Node& node, const Facts& facts) {
   std::vector<std::string> texts = read_list(node, facts, list_of(facts, "texts"), read_text);
   for (auto entry = texts.begin(); entry != texts.end(); ++entry)

@@ -83,7 +83,7 @@ struct Surfaces {
   std::vector<int> of_vertex{};  ///< per vertex of this rank; empty if there are none
   /// Surface of a datum at vertices. Data not listed are at all vertices.
   std::map<std::string, int> takes{}, gives{};
-  /// Taken data whose values within the step are wanted, too (see WithinStep).
+  /// Received data that also need values within the step (see WithinStep).
   std::set<std::string> within{};
 };
 

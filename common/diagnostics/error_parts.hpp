@@ -14,8 +14,8 @@ namespace couplet::diagnostics {
 /// a solution of the size `load`, which the loads would give if nothing balanced them.
 constexpr double scale_of(double size, double load) { return size > 1e-8 * load ? size : 1e-8 * load; }
 
-/// What a run's error is made of, as the run itself can know it cheaply, each over the size of the solution [1].
-/// Good to a factor of a few; NaN: not known.
+/// Parts of a run's error as far as the run can estimate them cheaply, relative to the size of the solution
+/// [1]. They are good to a factor of a few. NaN means unknown.
 struct ErrorParts {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double mesh = unknown;      ///< spatial discretization error

@@ -33,7 +33,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   s.value("centre", m.centre)
       .unit("m")
       .plausible(1e-9, 1e4)
-      .doc("centre of the rotation and of the radii, in the reference configuration");
+      .doc("center of the rotation and of the radii, in the reference configuration");
   s.value("axis", m.axis).size(3).doc("axis of the rotation, 3-D; a 2-D scene rotates about z");
   s.value("displacement", m.displacement)
       .unit("m")
@@ -46,7 +46,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
         .unit("m")
         .plausible(1e-9, 1e4)
         .not_negative()
-        .doc("with outer-radius: everything within this distance of the centre moves as a rigid body");
+        .doc("with outer-radius: everything within this distance of the center moves as a rigid body");
     s.value("outer-radius", m.outer_radius)
         .unit("m")
         .plausible(1e-9, 1e4)

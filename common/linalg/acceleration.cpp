@@ -51,6 +51,7 @@ void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
     if (std::ssize(du_) == options_.history) {
       std::rotate(du_.begin(), du_.begin() + 1, du_.end());
       std::rotate(df_.begin(), df_.begin() + 1, df_.end());
+      std::shift_left(products_.begin(), products_.end(), options_.history + 1);
     } else {
       du_.emplace_back(n);
       df_.emplace_back(n);
@@ -63,15 +64,19 @@ void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
   std::copy(u.begin(), u.end(), last_u_.begin());
   std::copy(step.begin(), step.end(), last_step_.begin());
   const auto m = static_cast<int>(df_.size());
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(m, m + 1);  // dF^T dF and dF^T f
-  for (int a = 0; a < m; ++a) {
-    for (int b = 0; b <= a; ++b)
-      for (std::size_t i = 0; i < n; ++i) sums(a, b) += df_[a][i] * df_[b][i];
-    for (std::size_t i = 0; i < n; ++i) sums(a, m) += df_[a][i] * step[i];
-  }
+  // Products of the newest difference with all of them, and of all with the step. Others are known.
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(m, 2);
+  for (int a = 0; a < m; ++a)
+    for (std::size_t i = 0; i < n; ++i) {
+      sums(a, 0) += df_[a][i] * df_.back()[i];
+      sums(a, 1) += df_[a][i] * step[i];
+    }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, comm_);
-  Eigen::MatrixXd gram = sums.leftCols(m);
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  products_.resize(std::size_t(options_.history) * options_.history);
+  Eigen::Map<Eigen::MatrixXd> products(products_.data(), options_.history, options_.history);
+  if (m > 0) products.col(m - 1).head(m) = sums.col(0);
+  if (m > 0) products.row(m - 1).head(m) = sums.col(0).transpose();
+  const Eigen::MatrixXd gram = products.topLeftCorner(m, m);
   // The diagonal is scaled to ones. The rank of the factors excludes linearly dependent directions.
   const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
@@ -80,7 +85,7 @@ void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
   Eigen::VectorXd g = Eigen::VectorXd::Zero(m);
   if (m > 0) {
     solver.compute(scaled);
-    g = scale.asDiagonal() * solver.solve(scale.asDiagonal() * sums.col(m));
+    g = scale.asDiagonal() * solver.solve(scale.asDiagonal() * sums.col(1));
   }
   for (std::size_t i = 0; i < n; ++i) u[i] += step[i];
   for (int a = 0; a < m; ++a)

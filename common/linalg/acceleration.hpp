@@ -38,6 +38,7 @@ class Accelerator {
   int steps_ = 0;
   std::vector<double> last_u_, last_step_;
   std::vector<std::vector<double>> du_, df_;  // differences of the last iterates and steps, newest last
+  std::vector<double> products_;              // of df_ with each other, a matrix of `history` columns
 };
 
 }  // namespace couplet::linalg

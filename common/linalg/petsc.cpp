@@ -3,6 +3,7 @@
 
 #include <petscsys.h>
 
+#include <array>
 #include <cmath>
 #include <exception>
 #include <utility>
@@ -18,11 +19,14 @@ namespace couplet::linalg {
 // elsewhere and start a debugger.
 PetscEnvironment::PetscEnvironment(MPI_Comm program) {
   PETSC_COMM_WORLD = program;
-  PetscErrorCode code = PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
-  if (code == 0) code = PetscOptionsSetValue(nullptr, "-skip_petscrc", "true");
-  if (code == 0) code = PetscInitializeNoArguments();
+  // PETSc keeps the pointers. It obeys -skip_petscrc only as an argument.
+  static char name[] = "couplet", no_file[] = "-skip_petscrc", no_handler[] = "-no_signal_handler";
+  static std::array<char*, 4> words{name, no_file, no_handler, nullptr};
+  int count = 3;
+  char** all = words.data();
+  PetscErrorCode code = PetscInitialize(&count, &all, nullptr, nullptr);
   if (code == 0) code = PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-  if (code != 0) throw Error("PETSc could not be initialised.");
+  if (code != 0) throw Error("PETSc could not be initialized.");
 }
 
 PetscEnvironment::~PetscEnvironment() {

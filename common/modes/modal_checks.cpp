@@ -151,7 +151,7 @@ std::string scale_problem_of(const ModalModel& model) {
     largest = std::max(largest, sums[m].modal_mass);
     if (sums[m].modal_mass > most)
       return fmt::format(
-          "mode {} is not mass-normalised: the surface alone has a modal mass of {:.3g}; that of the structure must be 1 "
+          "mode {} is not mass-normalized: the surface alone has a modal mass of {:.3g}; that of the structure must be 1 "
           "kg",
           m + 1, sums[m].modal_mass);
     if (model.face_density.empty() || sums[m].mass < 0.5 * model.mass) continue;
@@ -173,7 +173,7 @@ std::string scale_problem_of(const ModalModel& model) {
       model.face_density.empty() ? 1e-4 : (sums.front().mass < 0.5 * model.mass ? 1e-4 : 0.1);
   if (largest < least)
     return fmt::format(
-        "no mode is mass-normalised: the surface has modal masses up to {:.2g}; that of the structure must be 1 kg",
+        "no mode is mass-normalized: the surface has modal masses up to {:.2g}; that of the structure must be 1 kg",
         largest);
   return "";
 }
@@ -226,7 +226,7 @@ std::string order_problem_of(const ModalModel& model) {
   if (by_component >= 0.5 * by_vertex) return "";
   return fmt::format(
       "the shape of mode {} seems to list all x components first, then all y, then all z: read that way, "
-      "neighbouring vertices differ {:.2g} times less (mean square). The rows must be per vertex, with "
+      "neighboring vertices differ {:.2g} times less (mean square). The rows must be per vertex, with "
       "three components each",
       lowest + 1, by_vertex / std::max(by_component, 1e-12 * by_vertex));
 }

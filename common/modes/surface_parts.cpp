@@ -252,7 +252,7 @@ class Sides {
     }
     middle /= area;
     return fmt::format(
-        "the faces of part {} of {} ({} faces from face {} on, centred at ({:.4g}, {:.4g}, {:.4g}))",
+        "the faces of part {} of {} ({} faces from face {} on, centered at ({:.4g}, {:.4g}, {:.4g}))",
         part + 1, welded_.part.size(), welded_.part[part].size(), welded_.part[part].front() + 1, middle.x(),
         middle.y(), middle.z());
   }
@@ -321,7 +321,7 @@ std::string part_problem(const Sides& sides, std::size_t part, std::size_t sampl
     if (!(said >= 0.5 * votes.all)) return "";
     return fmt::format(
         "cannot determine on which side of {} the structure lies: {:.0f} % of them face away from other "
-        "faces and {:.0f} % towards them. Give the complete surface of the structure, closed where it is "
+        "faces and {:.0f} % toward them. Give the complete surface of the structure, closed where it is "
         "closed",
         sides.name(part), 100 * votes.outward / said, 100 * votes.inward / said);
   }

@@ -86,8 +86,8 @@ class GlobalOrder {
   MPI_Comm comm_ = MPI_COMM_SELF;
   std::size_t n_local_ = 0, count_ = 0;
   GlobalIndex first_ = 0, n_global_ = 0;
-  // By rank: local entries whose rows are in that rank's block, and which of them are owned; local rows of
-  // that rank's entries, in its order.
+  // Per rank: local entries with rows in its block and whether they are owned, and the local rows of its
+  // entries in its order.
   std::vector<std::vector<Index>> entries_, rows_;
   std::vector<std::vector<char>> owned_, owned_there_;
 };

@@ -56,7 +56,7 @@ class Section:
         along, cross = C[:, 2, 2], np.einsum("i,nij,j->n", s, C, s)
         self.stretch = np.sqrt(along)
         self.angle = np.degrees(math.pi / 2 - np.arccos(np.einsum("i,nij->nj", s, C)[:, 2] / np.sqrt(along * cross)))  # (3.8)
-        # Of the axis: the mean over the cells beside it, by their height.
+        # Value on the axis: mean over the adjacent cells, weighted by height.
         z = np.unique(np.round(self.x[:, 2], 9))
         middle = np.abs(self.x[:, 0]) < 0.75 * SIDE / across
         self.growth = float(np.mean([self.stretch[middle & (np.abs(self.x[:, 2] - h) < 1e-6)].mean() for h in z]) - 1)
@@ -78,7 +78,7 @@ def picture(sections, file):
 
 
 def triangles(section):
-    """Of the grid of cell centres."""
+    """Returns the triangles of the grid of cell centers."""
     s, z = np.round(section.x[:, 0], 9), np.round(section.x[:, 2], 9)
     columns, rows = np.unique(s), np.unique(z)
     at = -np.ones((len(rows), len(columns)), int)

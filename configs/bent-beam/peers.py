@@ -14,7 +14,7 @@ MESHES = {"C3D8": ((2, 20), (4, 40), (8, 80)), "C3D8I": ((2, 20), (4, 40), (8, 8
 
 
 def median_of(run, times=3):
-    """Of short runs; the middle one by its seconds."""
+    """Returns the run with the median time, for short runs."""
     first = run()
     return first if first[0] > 0.6 else sorted([first, *(run() for _ in range(times - 1))])[times // 2]
 

@@ -36,13 +36,13 @@ def peak(t, y):
 
 
 def mean_and_amplitude(t, y):
-    """Of largest and least value: half of their sum and half of their difference."""
+    """Returns half of the sum and half of the difference of the largest and the smallest value."""
     high, low = peak(t, y), -peak(t, -y)
     return (high + low) / 2, (high - low) / 2
 
 
 def frequency(t, y):
-    """Of the rises of y through its mean [1/s]; 0 where there are fewer than two."""
+    """Returns the frequency at which y rises through its mean [1/s]; 0 if it does so less than twice."""
     z = rises(t, y)
     return (len(z) - 1) / (z[-1] - z[0]) if len(z) > 1 else 0.0
 

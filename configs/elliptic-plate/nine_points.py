@@ -20,7 +20,7 @@ STRESS = [f"stress-{c}" for c in ("xx", "yy", "zz", "xy", "yz", "xz")]
 
 
 def map_back(x, y):
-    """(s, phi) with x = (2 + 1.25 s) cos(phi), y = (1 + 1.75 s) sin(phi); the left side falls as s grows."""
+    """Returns (s, phi) with x = (2 + 1.25 s) cos(phi), y = (1 + 1.75 s) sin(phi); the left side falls as s grows."""
     low, high = np.zeros_like(x), np.ones_like(x)
     for _ in range(60):
         s = (low + high) / 2
@@ -30,7 +30,7 @@ def map_back(x, y):
 
 
 def von_mises(s):
-    """Of an array with last axis xx, yy, zz, xy, yz, xz."""
+    """Returns the von Mises stress of an array whose last axis is xx, yy, zz, xy, yz, xz."""
     xx, yy, zz, xy, yz, xz = np.moveaxis(s, -1, 0)
     return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
 
@@ -47,7 +47,7 @@ def grid(centres, shape):
 
 
 def means(values, place, share, shape):
-    """Of the cells at each point of the grid."""
+    """Returns the means of the cells at each point of the grid."""
     columns = values.reshape(len(values), -1).T
     return np.stack([np.bincount(place, column) for column in columns], axis=-1).reshape(*shape, len(columns)) / share
 
@@ -109,7 +109,15 @@ def circle(folder):
     """On r = 2.1 m."""
     angle = np.linspace(0, 90, 200)
     on = 2.1 * np.cos(np.radians(angle)), 2.1 * np.sin(np.radians(angle))
-    return {"angle [deg]": angle, "von Mises [MPa]": von_mises(Plate(folder).stress(*on)) / 1e6}
+    stress = Plate(folder).stress(*on) / 1e6
+    return {"angle [deg]": angle, "von Mises [MPa]": von_mises(stress), "sxx [MPa]": stress[:, 0], "syy [MPa]": stress[:, 1]}
+
+
+def stresses(folder):
+    """Largest errors of the stresses xx and yy on r = 2.1 m against the p-FEM computation, over the largest stress."""
+    angle, _, *wanted = np.loadtxt(HERE / "reference/circle_2.1.csv", delimiter=",").T[:4]
+    found, most = circle(folder), np.abs(wanted).max()
+    return {name: np.abs(np.interp(angle, found["angle [deg]"], found[f"s{name} [MPa]"]) - one).max() / most for name, one in zip(("xx", "yy"), wanted)}
 
 
 def reference():
@@ -117,7 +125,7 @@ def reference():
 
 
 def errors(folder):
-    """(relative L2 error of the displacement, of the von Mises stress, number of cells)"""
+    """Returns (relative L2 error of the displacement, of the von Mises stress, number of cells)"""
     _, x, ux, uy, uz, wanted = reference()
     plate = Plate(folder)
     u = np.stack([ux, uy, uz], axis=-1)

@@ -19,7 +19,7 @@ root = here.parents[1]
 
 
 def measured(build):
-    """{(kappa, dt): (largest and last energy of conserving, of midpoint)}, over that of the start, minus 1."""
+    """Returns {(kappa, dt): (largest and last energy of conserving, of midpoint)}, over that of the start, minus 1."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "map.json"
         subprocess.run([build / "tests/stability/plate/stability_plate_contact", f"--gtest_output=json:{file}"], check=True,

@@ -154,7 +154,7 @@ def faces_of(tets):
 
 
 def largest_piece(tets):
-    """Without what the cube's faces cut off from the body."""
+    """Returns the mesh without the pieces that the faces of the cube cut off from the body."""
     _, number, count = faces_of(tets)
     cell = np.tile(np.arange(len(tets)), 4)
     shared = np.flatnonzero(count[number] == 2)
@@ -180,7 +180,7 @@ def smallest_angles(points, tets):
 
 
 def make(n):
-    """(points, tetrahedra, boundary triangles, patch of each triangle)"""
+    """Returns (points, tetrahedra, boundary triangles, patch of each triangle)"""
     points, tets = lattice(n)
     kind = snap(points, SIDE / n)
     points, tets = cut(points, tets, kind)

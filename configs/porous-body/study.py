@@ -17,7 +17,7 @@ METHODS = {  # keys of solution-method; the thesis's operator and tolerance
 
 
 def mesh_of(job, n):
-    """(file, tetrahedra, boundary faces) of the lattice with n cells along the cube."""
+    """Returns (file, tetrahedra, boundary faces) of the lattice with n cells along the cube."""
     def make():
         file = job.scratch / f"porous-{n}.msh"
         points, tets, triangles, patch = generate.make(n)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Half (y >= 0) of the reed valve of [thesis] 4.5: a feeding tube below (z < 0), the seat (z = 0), the reed at a lift
 // of `lift`, and a chamber between the seat and a parallel plate. Layers of hexahedra (a few prisms) over one plan.
-// The reed's outline is that of configs/plate-reed.
-DefineConstant[ size = 1.6e-3, growth = 1.2, n_gap = 3, lift = 0.3e-3 ]; // m: cells on the reed; of the layers; cells across the gap; gap at rest
+// The reed's outline is that of configs/plate-reed, 0.97 mm shorter: 31.4 Hz, as measured in the rig.
+DefineConstant[ size = 1.6e-3, growth = 1.2, n_gap = 3, lift = 0.1e-3 ]; // m: cells on the reed; of the layers; cells across the gap; gap at rest
 mm = 1e-3;
-D = 45.37 * mm; R = D / 2; w = 7.24 * mm; xc = 54.31 * mm; F = 23.42 * mm; Q = 12.86 * mm; // the outline
+D = 45.37 * mm; R = D / 2; w = 7.24 * mm; xc = 53.34 * mm; F = 23.42 * mm; Q = 12.86 * mm; // the outline
 d = 34.9 * mm; length = 3 * d; thickness = 0.4 * mm; top = 20 * mm; radius = 110 * mm;
 near = size; edge = 0.7 * size; far = 6 * size;
 

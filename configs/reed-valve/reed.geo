@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Half of the reed of configs/plate-reed (y >= 0), its mid-surface at z = 0: same outline as in fluid.geo.
+// Half of the reed (y >= 0), its mid-surface at z = 0: same outline as in fluid.geo.
 DefineConstant[ size = 1.6e-3 ]; // m; of the triangles
 mm = 1e-3;
-D = 45.37 * mm; R = D / 2; w = 7.24 * mm; xc = 54.31 * mm; F = 23.42 * mm; Q = 12.86 * mm;
+D = 45.37 * mm; R = D / 2; w = 7.24 * mm; xc = 53.34 * mm; F = 23.42 * mm; Q = 12.86 * mm;
 fy = w / 2 + F; fx = xc - Sqrt((R + F)^2 - fy^2);
 qy = w / 2 + Q; qx = Q;
 tx = xc - (xc - fx) * R / (R + F); ty = fy * R / (R + F);

@@ -14,7 +14,7 @@ from scipy.special import kv
 
 
 def stokes(mass, stiffness, density, viscosity, radius=0.5):
-    """(circular frequency [rad/s], rate of decay [1/s]) of the free motion."""
+    """Returns (circular frequency [rad/s], rate of decay [1/s]) of the free motion."""
     def residual(x):
         s = complex(-x[1], x[0])
         z = radius * np.sqrt(s * density / viscosity)
@@ -26,7 +26,7 @@ def stokes(mass, stiffness, density, viscosity, radius=0.5):
 
 
 def fitted(time, y, omega, decay):
-    """The same of a record y(t) = exp(-decay t) (A cos omega t + B sin omega t) + C."""
+    """Fits a record y(t) = exp(-decay t) (A cos omega t + B sin omega t) + C."""
     def parts(x):
         e = np.exp(-x[1] * (time - time[0]))
         basis = np.column_stack([e * np.cos(x[0] * time), e * np.sin(x[0] * time), np.ones_like(time)])

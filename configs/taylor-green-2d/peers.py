@@ -27,7 +27,7 @@ def exact(n, t):
 
 
 def files(n):
-    """{path: (class, text)} of the case."""
+    """Returns {path: (class, text)} of the case."""
     dt = 1.6 / n
     pairs = {"left": ("right", "0 4 7 3"), "right": ("left", "2 6 5 1"), "bottom": ("top", "1 5 4 0"), "top": ("bottom", "3 7 6 2")}
     patches = "".join(f"{a}{{type cyclic;neighbourPatch {b};faces (({f}));}}" for a, (b, f) in pairs.items())
@@ -66,7 +66,7 @@ def icofoam(folder, n):
 
 
 def velocity(folder):
-    """[(name, [(seconds, error)])]; each run is made once."""
+    """Returns [(name, [(seconds, error)])]; each run is made once."""
     points = []
     for n in SIZES if shutil.which("icoFoam") and shutil.which("blockMesh") else ():
         points.append(tuple(once(pathlib.Path(folder) / f"icoFoam-{n}", lambda place, n=n: icofoam(place, n))))

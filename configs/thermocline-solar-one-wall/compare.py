@@ -34,7 +34,7 @@ def compare(coupled, alone):
     """Differences relative to the finite volumes: mean over the height of the bed, of the largest stress, at 3.4 m."""
     z, ours = rings(alone)
     heights, stress = finite_volumes(coupled)
-    # Where plates meet the mesh has one cell of changing thickness that the rings do not have.
+    # Where plates meet, the mesh has one cell of changing thickness, which the rings lack.
     wet = (heights < BED) & (np.min(np.abs(heights[:, None] - np.array(JOINTS)), axis=1) > 0.03)
     gap = np.abs(np.interp(heights[wet], z, ours) - stress[wet])
     at = np.interp(3.4, heights, stress)

@@ -53,7 +53,7 @@ class Flow:
         return np.concatenate([mass, momentum])
 
     def solve(self, t, dt, walls=None):
-        """(v, p) at t = t^{n+1} by Newton's method; derivatives by complex steps, five cells apart at once."""
+        """Returns (v, p) at t = t^{n+1} by Newton's method; derivatives by complex steps, five cells apart at once."""
         x = np.concatenate([self.v, self.p])
         for _ in range(30):
             r = self.residual(x, t, dt, walls)

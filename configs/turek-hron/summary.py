@@ -31,7 +31,7 @@ def summary(folder, last=1.2):
 
 
 def reference(case):
-    """Of Turek and Hron, 'FSI1' or 'FSI3'."""
+    """Returns the values of Turek and Hron for 'FSI1' or 'FSI3'."""
     with open(here / "reference" / "turek_hron.csv", newline="") as file:
         rows = csv.DictReader(line for line in file if not line.startswith("#"))
         row = next(r for r in rows if (r["case"], r["source"]) == (case, "FF"))

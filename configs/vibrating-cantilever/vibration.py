@@ -14,7 +14,7 @@ FREE_FROM = 10.0  # s; the force is gone since 7 s
 
 
 def fit(t, y, period=20.0):
-    """(period [s], decay of the amplitude a period, amplitude [m] at t = 0): least squares of
+    """Returns (period [s], decay of the amplitude a period, amplitude [m] at t = 0): least squares of
     exp(-c t) (A cos w t + B sin w t) over the free vibration; the higher modes are ripples that average out."""
     free = t >= FREE_FROM
     t, y = t[free], y[free]

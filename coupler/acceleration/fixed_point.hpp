@@ -14,9 +14,10 @@ namespace couplet::coupler {
 bool converged(const Residual& residual, const ConvergenceParameters& parameters);
 /// Suffix for a sentence with the relative residual; empty if only that one decides.
 std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters);
-/// That of the datum with the largest relative one.
+/// Returns the residual of the datum with the largest relative one.
 Residual worst(const std::vector<Residual>& residuals);
-/// The largest absolute one over the `scale` of its datum; data without a scale yet (0) are left out.
+/// Returns the largest absolute residual over the `scale` of its datum. Data without a scale yet (0) are
+/// omitted.
 double largest(const std::vector<Residual>& residuals, const std::vector<double>& scales);
 
 /// One pass through all participants, from x to H(x). Throws SolveFailure if one of them fails.

@@ -22,14 +22,12 @@ struct Residual {
   double scale() const { return size > 0 ? size : absolute; }
 };
 
-/// What a group iterates on: the data that somebody takes before its giver has given it in the same pass (its own
-/// data always). In
-/// the order of the list (Gauss-Seidel) these are the data given to earlier members, side by side (Jacobi)
-/// all of the group's. A velocity that goes with a displacement of the same giver is no unknown of its own:
-/// it rides on the displacement's combinations. Several data are scaled to like size, each by its first values that are
-/// not zero. Of data whose values
-/// within the step somebody asks for (WithinStep) these are unknowns, too, at the times that the first pass of a step
-/// shows; they stand behind all others.
+/// Unknowns of a group's iteration: data that a participant takes before they are given in the same pass, and
+/// data that a participant gives to itself. In serial order (Gauss-Seidel) these are the data given to
+/// earlier members, in parallel order (Jacobi) all data of the group. A velocity beside a displacement of the
+/// same giver is not an unknown, since it undergoes the same combinations. Several data are scaled to similar
+/// size, each by its first nonzero values. If values within the step are requested (WithinStep), they are
+/// unknowns as well, at the times seen in the first pass of a step, and follow all others.
 class Unknown {
  public:
   struct Part {

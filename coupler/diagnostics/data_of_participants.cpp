@@ -86,9 +86,9 @@ class DataOfParticipants final : public CouplingDiagnostic {
            .number = factor,
            .limit = 1 + doubtful,
            .sentence = fmt::format("velocity of '{}': {:.3g} times the rate of the displacement that it "
-                                   "gives (limit 1 +- {:g}): the fluid meets a wall that moves otherwise",
+                                   "gives (limit 1 +- {:g}): the fluid sees a wall with another motion",
                                    one.name, factor, doubtful),
-           .advice = "correct what that program gives as 'velocity' [m/s]"});
+           .advice = "correct the 'velocity' [m/s] that this program gives"});
     }
   }
 

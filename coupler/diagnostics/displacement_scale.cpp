@@ -40,7 +40,7 @@ class DisplacementScale final : public CouplingDiagnostic {
            .sentence = fmt::format("displacement of '{}': {:.3g} times the extent of its interface, {:.3g} m "
                                    "(limit {:g}): implausible",
                                    name, share, extents_[s], farthest),
-           .advice = "check the unit of what that program gives as 'displacement' [m]",
+           .advice = "check the unit of the 'displacement' [m] that this program gives",
            .subject = name});
     }
   }

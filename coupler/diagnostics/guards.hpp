@@ -46,12 +46,12 @@ class IterationGuard {
 /// Detects the two-step oscillation of loosely coupled schemes in the accepted motion. The velocity jumps d_n
 /// = (x^{n+1} - x^n)/dt_n - (x^n - x^{n-1})/dt_{n-1} then alternate, grow, and are as large as the velocity.
 /// Variable steps do not hide it. Explicit added mass has the factor -r per step (r: added mass over the
-/// structure's) for any step size. The semi-implicit scheme does the same with viscous added mass, because
-/// its wall shear uses the guessed velocity.
+/// structure's) for any step size. Growth is told from two frequencies that beat: it lasts at least three periods, does not slow
+/// down, and exceeds all swings before it.
 class OscillationGuard {
  public:
   /// `comm`: over whose ranks the motion is cut. `tolerance`: of the coupling, over the largest motion of the run; swings below
-  /// it are its noise.
+  /// it or below `floor` are no part of the answer.
   explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF, double tolerance = 0)
       : comm_(comm), tolerance_(tolerance) {}
   /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
@@ -59,7 +59,7 @@ class OscillationGuard {
   std::optional<std::string> accepted(const std::vector<double>& x, double dt, coupling::Scheme scheme);
   /// Call after a failed step. Returns a reason if the accepted steps before it had begun to oscillate.
   std::optional<std::string> suspects(coupling::Scheme scheme) const;
-  /// Number of consecutive steps in which it has reversed.
+  /// Number of consecutive steps in which the motion has reversed.
   int turns() const { return turns_; }
 
   /// Data for checkpoints: values equal on all ranks, and `count` values of the motion from `first` on, in
@@ -68,13 +68,22 @@ class OscillationGuard {
   void visit_fields(io::Archive& archive, const parallel::GlobalOrder& order, const std::string& name,
                     std::size_t first, std::size_t count, std::size_t width);
 
+  static constexpr double floor = 1e-3;
+  static constexpr int periods = 3;
+
  private:
+  std::string told(double growth, coupling::Scheme scheme) const;
+  double pair(std::size_t i) const;
+  double share() const;  // amplitude over the largest motion
+  bool counts() const;   // the swings are part of the answer and larger than all before
+
   MPI_Comm comm_;
   double tolerance_, largest_ = 0;  // largest: norm of x over the run
   std::vector<double> x_, velocity_, jump_;
   int turns_ = 0, levels_ = 0;  // levels: number of known accepted states
   std::vector<double> sizes_;   // of the differences since the oscillation began
   std::deque<double> speed_;    // of the last steps
+  double before_ = 0, dt_ = 0;  // largest pair of sizes in the oscillations before; last step
 };
 
 /// Compares the work on both sides of the interface. It differs only by the coupling error, so a growing

@@ -90,9 +90,9 @@ constexpr double slowest = 0.99;
 // Contraction assumed if one pass was enough.
 constexpr double unseen = 0.5;
 
-/// What the iteration between participants leaves in the unknown below its tolerance: of a step whose residual fell
-/// by the factor c in its last pass, |x - x*| <= c / (1 - c) |H(x) - x|; over all steps see StepErrors. Each datum is
-/// judged by itself, and the largest share counts.
+/// Error of the unknown that the iteration between participants leaves below its tolerance. If the residual
+/// of a step fell by the factor c in its last pass, |x - x*| <= c / (1 - c) |H(x) - x|. StepErrors sums it
+/// over the steps. Each datum is judged separately, and the largest share counts.
 class CouplingError final : public CouplingDiagnostic {
  public:
   explicit CouplingError(const CouplingView& view) : view_(view) {}

@@ -44,7 +44,7 @@ std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& par
 std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
                                                    const std::string& problem,
                                                    std::vector<coupling::Exchange> last);
-/// The smallest step that somebody advises [s].
+/// Smallest step that a participant recommends [s].
 double advised_dt(const std::vector<Partner*>& partners);
 
 }  // namespace couplet::coupler

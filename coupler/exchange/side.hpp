@@ -45,7 +45,7 @@ struct PointSet {
   std::vector<GlobalIndex> ids{};        ///< equal on any number of ranks; break ties
   coupling::Starts starts{};             ///< of the whole list
   coupling::Interface::Place place = coupling::Interface::Place::vertices;
-  /// They form a surface of their own within `surface`, which maps by faces do not see.
+  /// These points form a separate surface within `surface`, which maps by faces ignore.
   bool own_surface = false;
 };
 /// Sets positions, ids and starts of a list that is on one rank.
@@ -59,7 +59,8 @@ struct Neighbour {
   Vec3 point;
 };
 
-/// How many of `found` on all ranks have the same neighbour, at most. `starts`: of the list that was searched. Collective.
+/// Returns the largest number of points in `found`, over all ranks, that have the same neighbor. `starts`
+/// belongs to the searched list. Collective.
 int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const coupling::Starts& starts);
 
 /// Sends each item to the rank owner(item). Items are ordered by source rank and then as they were. Nothing

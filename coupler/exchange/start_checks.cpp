@@ -56,10 +56,9 @@ std::string without_state(double checkpoint_interval, const std::vector<Partner>
   if (found == partners.end()) return "";
   if (checkpoint_interval > 0)
     throw Error(
-        "simulation.checkpoint.interval: {:g} s here, but '{}' is a program on preCICE's interface, which keeps no "
-        "file of its state: such a job cannot continue from a checkpoint. Set it to 0.",
+        "simulation.checkpoint.interval: {:g} s here, but '{}' is a program on preCICE's interface, which writes no checkpoint: such a job cannot continue from a checkpoint. Set it to 0.",
         checkpoint_interval, found->name());
-  return fmt::format("'{}', a program on preCICE's interface, keeps no file of its state", found->name());
+  return fmt::format("'{}', a program on preCICE's interface, writes no checkpoint", found->name());
 }
 
 void check_introductions(const CouplingParameters& parameters, const std::vector<Partner>& partners) {

@@ -43,7 +43,7 @@ class Links {
   };
   std::vector<Amount> amounts(const std::vector<coupling::Exchange>& given) const;
 
-  /// One sentence per link, and data that nobody takes.
+  /// One sentence per link, and one for data without a receiver.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -51,7 +51,7 @@ class Links {
                               const std::vector<double>& values) const;
   MPI_Comm comm_;
   std::vector<std::string> names_;
-  // By participant: numbers of this rank's vertices and faces.
+  // Numbers of this rank's vertices and faces, per participant.
   std::vector<std::vector<std::size_t>> entries_;
   std::vector<Link> links_;
   std::vector<std::string> notes_;

@@ -32,7 +32,7 @@ class Mapping {
   Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
           const MappingParameters& parameters);
 
-  /// By entries made elsewhere, of which those between other places are left out.
+  /// Uses entries made elsewhere, except those between other locations.
   Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to, Kind kind,
           std::vector<Transfer::Entry> entries);
 

@@ -215,7 +215,7 @@ std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const 
     buffers.finish(structure.surface.dim, list[row],
                    targets.points.points[std::size_t(list[row] - targets.first)], entries);
   };
-  // As for adjacent surfaces with faces of the same size.
+  // The value is that of adjacent surfaces with faces of equal size.
   entries.reserve(20 * targets.points.points.size());
   std::vector<FaceIntegrals::Part> parts;
   for (Index f = 0; f < Index(mine.faces.size()); ++f) {

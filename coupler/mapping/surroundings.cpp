@@ -191,7 +191,7 @@ namespace {
 const Neighbour none{std::numeric_limits<double>::infinity(), -1, std::numeric_limits<GlobalIndex>::max(), 0,
                      Vec3::Zero()};
 
-/// Of two the nearer one; of equals (to rounding) the one of the smaller id.
+/// Returns true if `a` is nearer, or equally near (to rounding) with a smaller id.
 bool better(const Neighbour& a, const Neighbour& b) {
   const double equal = 1e-9 * std::max(a.distance, b.distance);
   if (std::isfinite(equal) && std::abs(a.distance - b.distance) <= equal) return a.id < b.id;

@@ -23,11 +23,11 @@ const std::array cards{
     CouplingCard{"exchange among any participants", "`exchange`",
                  [](const P& p) { return when(p.exchange.has_value(), "exchange"); },
                  "sums of the exchanged amounts"},
-    CouplingCard{"iteration of the whole step", "`scheme: implicit`, or `auto` where friction asks for it",
+    CouplingCard{"iteration of the whole step", "`scheme: implicit`, or `auto` where friction requires it",
                  [](const P& p) {
                    return when(
                        p.scheme.adapts || p.scheme == coupling::Scheme::implicit,
-                       p.scheme.adapts ? "scheme: auto, where friction asks for it" : "scheme: implicit");
+                       p.scheme.adapts ? "scheme: auto, where friction requires it" : "scheme: implicit");
                  },
                  "all participants and the mesh motion once per pass"},
     CouplingCard{

@@ -119,10 +119,8 @@ void declare_participants(config::Section& section, CouplingParameters& p) {
       [](config::Section& s, CouplingParameters::Fluid& r) {
         s.value("participant", r.participant).required().doc("its name under `participants`");
         s.value("displacement", r.displacement)
-            .doc(
-                "what another program calls the displacement that it takes (m, or without a unit) at vertices");
-        s.value("load", r.load)
-            .doc("what another program calls the force that it gives (N), with `displacement`");
+            .doc("name of the displacement (m, or without a unit) that another program takes at vertices");
+        s.value("load", r.load).doc("name of the force (N) that another program gives, with `displacement`");
         s.check(
             [&] {
               return r.displacement.empty() == r.load.empty()
@@ -138,11 +136,10 @@ void declare_participants(config::Section& section, CouplingParameters& p) {
         s.value("participant", r.participant).required().doc("its name under `participants`");
         s.value("displacement", r.displacement)
             .doc(
-                "what its program calls its displacement (m, or without a unit) at vertices; a velocity that it does "
-                "not give follows by differences of second order");
+                "name of its displacement (m, or without a unit) at vertices in its program; a missing velocity is computed by second-order differences");
         s.value("load", r.load)
             .doc(
-                "what its program calls its load (N): the sum of all forces; absent: each force by its own name");
+                "name of its load (N) in its program, the sum of all forces; absent: each force by its own name");
       },
       "participant that receives the load and gives the interface motion; absent with `mesh`: bodies move as the "
       "mesh mover's boundaries prescribe (type: moving), nothing is iterated");
@@ -195,8 +192,7 @@ void declare_scheme(config::Section& section, CouplingParameters& p) {
                {"implicit", coupling::Scheme::implicit}})
       .doc(
           "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, pressure and "
-          "structure iterated; implicit: everything iterated; auto: semi-implicit, and implicit from the step on in which "
-          "the fluid's friction drags too much of the moving mass for it");
+          "structure iterated; implicit: everything iterated; auto: starts semi-implicit and switches to implicit when the friction of the fluid drags too much of the moving mass");
 }
 
 }  // namespace
@@ -327,7 +323,7 @@ void declare(config::Section& section, MappingParameters& p) {
           "matched: every vertex and face must match one on the other side; nearest: displacements from the "
           "nearest vertex, forces to the nearest face with their sum conserved, for faces that match or "
           "nest; projection, rbf: for any faces: loads use the transpose of the motion's map, so work, "
-          "force and moment are conserved; surface slopes from neighbouring faces (projection) or from a "
+          "force and moment are conserved; surface slopes from neighboring faces (projection) or from a "
           "local interpolant by compact radial functions through more faces (rbf)");
   section.value("tolerance", p.tolerance)
       .unit("m")

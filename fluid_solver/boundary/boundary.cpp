@@ -242,8 +242,7 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& pa
             patch.name);
       if (inlet && has_volume)
         throw Error(
-            "boundaries.{}.absorbing: behind this inlet lies the 'upstream-volume', which answers to the waves; remove one "
-            "of the two.",
+            "boundaries.{}.absorbing: the 'upstream-volume' behind this inlet already responds to the waves; remove one of the two.",
             patch.name);
       absorbing_patches_.push_back({faces, inlet});
     }
@@ -258,8 +257,7 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& pa
     closed_ = false;
   }
   if (has_volume && upstream_patches_.empty())
-    throw Error(
-        "compressibility.upstream-volume: this fluid has no inlet that it could lie behind; remove the key.");
+    throw Error("compressibility.upstream-volume: this fluid has no inlet; remove the key.");
 }
 
 template <int D>

@@ -155,12 +155,17 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
 
  private:
   double density() const { return view_.parameters().density; }
-  /// Centers of the first, a middle and the last face of a patch on this rank. What the motion moves is observed.
-  std::vector<Vec3> some_places(const std::string& name) const {
+  /// The first, a middle and the last face of a patch on this rank. What the motion moves is observed.
+  std::vector<PlaceOfPatch> some_places(const std::string& name) const {
     const mesh::Patch* patch = name.empty() ? nullptr : view_.mesh.find_patch(name);
     if (!patch || patch->count == 0) return {};
-    return {centre(patch->first), centre(patch->first + patch->count / 2),
-            centre(patch->first + patch->count - 1)};
+    const auto place = [&](Index face) {
+      PlaceOfPatch found{centre(face), Vec3::Zero()};
+      found.normal.template head<D>() = view_.fluid.state().placement->area[face].normalized();
+      return found;
+    };
+    return {place(patch->first), place(patch->first + patch->count / 2),
+            place(patch->first + patch->count - 1)};
   }
   static bool has_bodies(const FluidView<D>& view) { return !view.fluid.boundary().body_patches().empty(); }
   const Vec3& centre(Index face) const {

@@ -19,8 +19,8 @@ constexpr double always = 0.9, much = 0.1;
 // Head of inflow at a total pressure over the range of the pressure in the run, from which it is told.
 constexpr double told_head = 1e-3;
 
-/// Which way the fluid went through inlets and outlets over the run. Inlets through which fluid left, and outlets through
-/// which it entered, all the time: a sign or a name is wrong. Outlets that take the total pressure where fluid enters say so.
+/// Direction of the flow through inlets and outlets. If fluid always left through an inlet or entered through
+/// an outlet, a sign or name is wrong. Outlets report fluid that enters at total pressure.
 template <int D>
 class FlowThroughOpenings final : public diagnostics::Diagnostic {
  public:
@@ -118,8 +118,8 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
     const mesh::Patch* patch;
     bool inlet, has_direction, total;  // total: takes the total pressure of inflow
   };
-  // Of each opening, of this rank: volume outward and in either direction, volume that entered through the moving opening [m^3],
-  // its kinetic energy [J].
+  // Per opening on this rank: volume outward and in either direction, volume that entered through the moving
+  // opening [m^3], its kinetic energy [J].
   enum { net, gross, inflow, energy, n_sums };
   FluidView<D> view_;
   std::vector<Opening> openings_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -110,9 +111,10 @@ struct Scene {
   bool oblique = false;                      ///< the non-orthogonal parts are needed
   std::optional<RotatingFrame<D>> frame{};   ///< empty if there is none
   std::vector<fv::Expression> body_force{};  ///< by direction [m/s^2]; empty if there is none
-  /// Directions of which the body force is uniform. There it is a gradient, which the pressure balances like the centrifugal
-  /// force of a frame (see RotatingFrame): no mesh makes a flow of a fluid at rest.
+  /// Directions in which the body force is a gradient, which the pressure balances like the centrifugal force of a frame (see
+  /// RotatingFrame): no mesh makes a flow of a fluid at rest. Uniform directions are, and all of them if `varies`.
   std::array<bool, D> balanced{};
+  bool varies = false;                       ///< the balanced force depends on the place, not on time
   Vec3 origin = Vec3::Zero();                ///< where the potential of the body force is 0
   std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr: second order everywhere
   /// Each step marks their cells.
@@ -139,9 +141,25 @@ struct Scene {
       if (balanced[c]) force[c] = body_force[c](Vec3::Zero(), t);
     const Vec3 omega = frame ? frame->omega(t) : Vec3(Vec3::Zero()),
                centre = frame ? frame->centre() : origin;
-    return [force, omega, centre, from = origin](const Vec3& x) {
-      return 0.5 * omega.cross(x - centre).squaredNorm() + force.dot(x - from);
+    return [this, force, omega, centre](const Vec3& x) {
+      return 0.5 * omega.cross(x - centre).squaredNorm() +
+             (varies ? work(origin, x, 8) : force.dot(x - origin));
     };
+  }
+  /// Integral of a balanced force that varies along a line [m^2/s^2], by Lobatto's rule of order 8 on each of its parts.
+  double work(const Vec3& from, const Vec3& to, int parts) const {
+    const Vec3 part = (to - from) / parts;
+    const double off = 0.5 * std::sqrt(3. / 7);
+    double sum = 0;
+    for (int k = 0; k < parts; ++k)
+      for (const auto& [at, weight] : {std::pair{0., 1. / 20},
+                                       {0.5 - off, 49. / 180},
+                                       {0.5, 16. / 45},
+                                       {0.5 + off, 49. / 180},
+                                       {1., 1. / 20}})
+        for (int c = 0; c < D; ++c)
+          if (part[c] != 0) sum += weight * part[c] * body_force[c](from + (k + at) * part, 0);
+    return sum;
   }
   /// Adds `factor` times the potential at the level's time, in the cells and at the boundary.
   void add_potential(const Placement<D>& at, double factor, PressureLevel<D>& level) const {

@@ -166,8 +166,10 @@ double rate_of(const config::ExpressionText& text, const Vec3& at, double end, d
 double prescribed_rate(const FluidParameters& p, const PlacesOfPatch& places_of, double end, double step) {
   double rate = 0;
   const auto add = [&](const std::string& patch, const std::vector<config::ExpressionText>& texts) {
-    for (const Vec3& place : places_of(patch))
-      for (const config::ExpressionText& text : texts) rate = std::max(rate, rate_of(text, place, end, step));
+    for (const PlaceOfPatch& place : places_of(patch))
+      for (std::size_t k = 0; k < texts.size(); ++k)
+        if (texts.size() == 1 || std::abs(place.normal[Index(k)]) > 1e-6)
+          rate = std::max(rate, rate_of(texts[k], place.at, end, step));
   };
   for (const auto& [name, b] : p.boundaries) {
     const bool inlet = condition_of(b).passage == Passage::in;
@@ -208,13 +210,13 @@ diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::Mes
       velocity_by(GivenBy::flow))
     return without("not available with another of the case's keys");
   if (!p.gaps.empty() && has([](const auto& b) { return condition_of(b).passage == Passage::in; }))
-    return with("what flows into a part that 'gaps' shut off compresses it");
+    return with("inflow compresses a part that 'gaps' shut off");
   if (scene.coupled && p.volume_level == VolumeLevelBy::nobody && velocity_by(GivenBy::structure) &&
       !has(gives_pressure))
     return with("no outlet: an interface that moves compresses the fluid");
   const auto along_the_box = [&mesh](const std::string&) {
-    std::vector<Vec3> all;
-    for (int i = 0; i <= places; ++i) all.push_back(double(i) / places * mesh.size);
+    std::vector<PlaceOfPatch> all;
+    for (int i = 0; i <= places; ++i) all.push_back({double(i) / places * mesh.size});
     return all;
   };
   const double rate = prescribed_rate(p, along_the_box, scene.end_time, scene.time_step),

@@ -22,8 +22,12 @@ struct FluidScene {
 using FluidCard = diagnostics::EffectCard<FluidScene>;
 std::span<const FluidCard> fluid_effect_cards();
 
-/// Places of a patch at which its expressions are looked at, or of the mesh for an empty name.
-using PlacesOfPatch = std::function<std::vector<Vec3>(const std::string&)>;
+/// A place of a patch at which its expressions are looked at. Velocities along the face carry no volume through it.
+struct PlaceOfPatch {
+  Vec3 at, normal = Vec3::Ones();
+};
+/// Places of a patch, or of the mesh for an empty name.
+using PlacesOfPatch = std::function<std::vector<PlaceOfPatch>(const std::string&)>;
 /// Largest rate of what boundaries and motions prescribe until the time `end` [1/s].
 double prescribed_rate(const FluidParameters& parameters, const PlacesOfPatch& places_of, double end,
                        double step);

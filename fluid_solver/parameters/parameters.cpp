@@ -88,8 +88,8 @@ void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
-          "keys remain in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
+          "keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene has a depth of 1 m");
@@ -172,15 +172,12 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "time scheme of the explicit terms; runge-kutta: three stages with a projection each, 2.5 times "
           "longer steps at three times the work, explicit viscous term, mesh at rest");
   s.choice("projection", p.projection,
-           {{"flux-memory", Projection::flux_memory},
-            {"incremental", Projection::incremental},
-            {"non-incremental", Projection::non_incremental}})
+           {{"flux-memory", Projection::flux_memory}, {"incremental", Projection::incremental}})
       .doc(
           "treatment of the difference between face fluxes and averaged cell velocities; flux-memory: "
           "carried over from step to step and smoothed by friction and convection, robust, steady loads "
           "independent of the step; incremental: driven by pressure changes only, second order in time with "
-          "the lowest loss of kinetic energy, but pressure noise is not damped; non-incremental: computed "
-          "anew in each step, first order in time");
+          "the lowest loss of kinetic energy, but pressure noise is not damped");
   s.choice("face-values", p.face_values,
            {{"second-order", FaceValues::second_order},
             {"fourth-order", FaceValues::fourth_order},
@@ -219,8 +216,8 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
         b.choice("surface", body.surface,
                  {{"auto", BodySurface::automatic}, {"steps", BodySurface::steps}, {"cut", BodySurface::cut}})
             .doc(
-                "what of a cell the body closes; steps: all or nothing, by the cell's centre, so that each cell "
-                "it gains or loses is a shock to the pressure; cut: what lies inside of it, so that cells "
+                "part of a cell that the body closes; steps: all or nothing, by the cell's center, so that each cell "
+                "it gains or loses is a shock to the pressure; cut: the part inside it, so that cells "
                 "close and open gradually; auto: cut on a moving mesh, steps on one at rest");
       },
       "body",

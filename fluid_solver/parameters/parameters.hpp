@@ -162,7 +162,7 @@ enum class ViscousTreatment { automatic, explicit_, implicit };
 /// Scheme of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
 enum class ExplicitScheme { adams_bashforth, runge_kutta };
 /// Update of the face fluxes from the cell velocities between steps.
-enum class Projection { flux_memory, incremental, non_incremental };
+enum class Projection { flux_memory, incremental };
 
 /// Order of the operators along lines of hexahedra and quadrilaterals.
 enum class FaceValues { second_order, fourth_order, automatic };

@@ -153,7 +153,8 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .not_negative()
       .doc(
           "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder), into which flows what the "
-          "inlets prescribe; the pressure at the inlets compresses it. In 2-D per metre of depth");
+          "inlets prescribe; the pressure at the inlets compresses it. In 2-D per meter of depth; for a symmetric half "
+          "the volume behind that half");
   check_source_of_sound(s, p);
 }
 

@@ -178,7 +178,7 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, c
       throw SolveFailure(
           "The non-orthogonal correction of the pressure equation did not converge in {} passes at t = "
           "{:.6g} s: the mesh is too skewed, {:.0f} degrees between a face normal and the line of its cell "
-          "centres.",
+          "centers.",
           passes, step_.end(), degrees_);
     if (pass == passes) break;
     if (to_the_end) gradient_before_ = out_.gradient;

@@ -31,7 +31,7 @@ struct Lines {
   std::shared_ptr<const Placement<D>> seen(const mesh::Mesh& mesh, const Placement<D>& at) const;
 };
 
-/// Corrections by links to the second-order operators (docs/theory.md, 2 "Fourth order"). D is the second
+/// Corrections by links to the second-order operators (docs/theory/fluid-models.md). D is the second
 /// difference of a link, U its flux velocity times S.
 template <int D>
 class FourthOrder {

@@ -20,7 +20,7 @@ constexpr double boundary_share = 0.25;
 constexpr double level_share = 1e-4;
 // Excess over the kinetic energy that counts as divergence.
 constexpr double largest_excess = 0.5;
-// omega h^2/nu above which friction no longer stabilizes a rotating frame (docs/theory.md).
+// omega h^2/nu above which friction no longer stabilizes a rotating frame (docs/theory/fluid-models.md).
 constexpr double fast_frame = 4;
 // Decay of the reference energy per sub-step. A reversing flow is at rest briefly, so its current energy is
 // no measure.
@@ -197,7 +197,7 @@ std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, co
         convection, s.dt);
   if (degrees > 40)
     return fmt::format(
-        "A face of that cell is {:.0f} degrees off the line between the cell centres: a smaller step does "
+        "A face of that cell is {:.0f} degrees off the line between the cell centers: a smaller step does "
         "not help; use a mesh without such cells.",
         degrees);
   const double beside_friction = 0.5 * frame_rate * std::pow(s.to.volume[cell], 2. / D) / nu;

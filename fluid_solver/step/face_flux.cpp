@@ -173,7 +173,6 @@ double FaceFlux<D>::pressure_excess(const State<D>& from, const Vectors<D>& grad
 
 template <int D>
 void FaceFlux<D>::remember(State<D>& s) {
-  if (scene_.parameters.projection == Projection::non_incremental) return;
   s.memory_old.swap(s.memory);
   if (scene_.parameters.projection == Projection::incremental && !fading_.empty()) {
     s.memory.swap(fading_);

@@ -305,7 +305,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
 }
 
 /// The layer dragged by a wall within a step is rho sqrt(nu dt) thick, a mass that acts on w* in the loop,
-/// see docs/theory.md.
+/// see docs/theory/coupling.md.
 template <int D>
 double Fluid<D>::unseen_share(const Vectors<D>& w) const {
   const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt

@@ -103,6 +103,9 @@ void FractionalStep<D>::set_body_force() {
   scene_.body_force = fv::make_expressions(p.body_force, D, "body-force");
   const bool balances = p.bodies.empty() && p.gaps.empty() && !scene_.is_compressible() &&
                         !scene_.boundary.has_convective_outlet();
+  scene_.varies = balances && !parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty()) &&
+                  std::ranges::any_of(scene_.body_force, &fv::Expression::uses_space) &&
+                  std::ranges::none_of(scene_.body_force, &fv::Expression::uses_time);
   for (int c = 0; c < D; ++c) {
     bool periodic = false;
     for (const Vec3& shift : mesh_.neighbour_shift) periodic |= std::abs(shift[c]) > 1e-12 * shift.norm();
@@ -114,6 +117,35 @@ void FractionalStep<D>::set_body_force() {
     use.given = "the constant force";
     use.note(force(Vec3::Zero(), 0));
   }
+}
+
+/// Balances a body force that varies if its integral from the origin to each cell agrees with that from cell to cell. A force that
+/// is not finite somewhere between has no such potential.
+template <int D>
+void FractionalStep<D>::find_potential(const Placement<D>& at) {
+  if (!scene_.varies) return;
+  const auto place = [&](Index c) {
+    Vec3 x = Vec3::Zero();
+    x.template head<D>() = at.centre[c];
+    return x;
+  };
+  double most[2] = {0, 0};  // of the difference, of the potential
+  try {
+    std::vector<double> potential(mesh_.cells.n_local());
+    for (Index c = 0; c < mesh_.cells.n_local(); ++c) {
+      potential[c] = scene_.work(scene_.origin, place(c), 8);
+      most[1] = std::max(most[1], std::abs(potential[c]));
+    }
+    for (Index f = 0; f < mesh_.n_interior; ++f) {
+      const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+      most[0] = std::max(most[0], std::abs(potential[n] - potential[p] - scene_.work(place(p), place(n), 1)));
+    }
+  } catch (const Error&) {
+    most[0] = std::numeric_limits<double>::infinity();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, mesh_.comm);
+  scene_.varies = most[0] <= 1e-9 * most[1];
+  if (scene_.varies) scene_.balanced.fill(true);
 }
 
 template <int D>
@@ -201,6 +233,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
     moment += at.volume[c] * at.centre[c], volume += at.volume[c];
   for (double& sum : moment) sum = parallel::sum(mesh_.comm, sum);
   scene_.origin.template head<D>() = moment / parallel::sum(mesh_.comm, volume);
+  find_potential(at);
   projected_.phi.assign(mesh_.n_flux_faces(), 0.0);
   step_ = {SubStep<D>{scene_.fluid.rho, s.placement, {}, s.points}, s};  // dt/rho = 1
   mark_level(s);

@@ -29,7 +29,7 @@ struct Loads {
 };
 
 // clang-format off
-/// One step of the non-incremental projection method on a moving mesh. It has three stages, so that a
+/// One step of the projection method on a moving mesh. It has three stages, so that a
 /// semi-implicit coupling can repeat the second one. Each stage computes a result for the next one.
 ///   predict   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~
 ///                      - (dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1})                   Prediction, FaceFlux
@@ -124,6 +124,7 @@ class FractionalStep {
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
   void set_body_force();
+  void find_potential(const Placement<D>& at);
   bool too_fast() const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);

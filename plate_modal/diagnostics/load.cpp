@@ -73,7 +73,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     if (!has_acted_ && (view_.pressure->changes_in_time() || !view_.pressure->is_uniform()))
       report_neglected(
           report, "load between the faces or steps", 1, 0.5,
-          "the prescribed pressures were 0 at every face centre in every step",
+          "the prescribed pressures were 0 at every face center in every step",
           "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face "
           "or a step with the same resultant");
     // Only round-off remains if modes do not move along the forces, or forces cancel.
@@ -83,7 +83,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
           report, "load that moves no mode", 1, 0.5,
           fmt::format("modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
                       part),
-          "nothing moves by them: with 'modes.file' the upper side is where the surface faces +z, whatever "
+          "they move nothing: with 'modes.file' the upper side is where the surface faces +z, whatever "
           "the structure's own normal; equal pressures on both sides cancel; a mode of another symmetry "
           "needs 'modes.number'");
   }

@@ -52,7 +52,7 @@ class MeshOfModes final : public diagnostics::Diagnostic {
     // 0.1 corresponds to four cells per half wave in both directions.
     report_neglected(
         report, "mesh that resolves the modes", mesh_gap(), 0.1,
-        fmt::format("deflection of cell centres against their corners = {:.2g} (rms over the motion)",
+        fmt::format("deflection of cell centers against their corners = {:.2g} (rms over the motion)",
                     mesh_gap()),
         "the mesh does not resolve the moving modes: use at least four cells per half wave in each "
         "direction");

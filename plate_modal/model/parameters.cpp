@@ -47,8 +47,8 @@ void declare_body(config::Section& s, Parameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
-          "keys remain in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
+          "keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant");
   declare_layers(s, p);
@@ -183,7 +183,7 @@ void check_file_alone(config::Section& s, const Parameters& p) {
   };
   const char* inside = "the modes include it already";
   of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
-  of_no_use("mesh-scale", "the file is in metres", [&p] { return p.mesh_scale != 1; });
+  of_no_use("mesh-scale", "the file is in meters", [&p] { return p.mesh_scale != 1; });
   of_no_use("material", inside, [&p] {
     const Material m;
     return p.material.density != m.density || p.material.youngs_modulus != m.youngs_modulus ||

@@ -208,7 +208,7 @@ modes::EigenModes PlateModel::modes(int n) const {
   if (n >= free)
     throw Error(
         "{} modes are requested, but the plate has {} free unknowns, and one mode must be left over. "
-        "Request fewer, or use a finer mesh: modes beyond a tenth of the unknowns are mesh artefacts.",
+        "Request fewer, or use a finer mesh: modes beyond a tenth of the unknowns are mesh artifacts.",
         n, free);
   modes::EigenModes modes = modes::lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
   for (std::vector<double>& shape : modes.shape) {

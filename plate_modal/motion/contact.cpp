@@ -38,7 +38,7 @@ Contact::Contact(const Surface& surface, const ContactParameters& p, const Vec3&
     }
   }
   if (gap_.empty())
-    throw Error("contact: no face of the structure points towards the seat. Check 'direction' and 'where'.");
+    throw Error("contact: no face of the structure points toward the seat. Check 'direction' and 'where'.");
   refuse_sliding(surface, direction, faces);
 }
 
@@ -61,7 +61,7 @@ void Contact::refuse_sliding(const Surface& surface, const Vec3& direction,
   const double cosine = std::sqrt(moves[0] / moves[1]);
   if (cosine >= least_cosine_to_seat) return;
   throw Error(
-      "contact.direction: the modes move the faces towards the seat along ({:g}, {:g}, {:g}) by only {:.0f} "
+      "contact.direction: the modes move the faces toward the seat along ({:g}, {:g}, {:g}) by only {:.0f} "
       "% of their motion; at least {:.0f} % is needed for contact. The seat must lie across the motion.",
       direction.x(), direction.y(), direction.z(), moves[1] > 0 ? 100 * cosine : 0,
       100 * least_cosine_to_seat);

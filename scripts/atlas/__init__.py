@@ -33,7 +33,7 @@ from couplet.runs import environment, read_csv
 from couplet.runs.case import load, with_changes
 
 HERE = pathlib.Path(__file__).resolve().parent
-# How a square came out. RED is what must not be: more than 20 % off with exit code 0 and no warning.
+# Result of a square. RED must not occur: more than 20 % off with exit code 0 and no warning.
 HOLDS, POOR, WARNED, REFUSED, RED = "within 5 %", "within 20 %", "warned", "stopped", "silent"
 GOOD, BOUND = 0.05, 0.2
 FUNCTIONS = {**{n: getattr(np, n) for n in ("pi", "inf", "sqrt", "sin", "cos", "tan", "tanh", "radians", "mean", "diff", "hypot", "linspace", "geomspace", "argmax")},
@@ -57,7 +57,7 @@ class Runner:
         self.lock, self.kept, self.numbers = threading.RLock(), {}, itertools.count()
 
     def once(self, key, make):
-        """What several squares share is made by the first that needs it; the others wait."""
+        """The first square that needs a shared result makes it; the others wait."""
         with self.lock:
             if key not in self.kept:
                 self.kept[key] = make()
@@ -86,13 +86,13 @@ class Runner:
         told = ("--strict: the result is questionable", "The result is useless (")
         failed = any(re.search(r"(^|\] )error:", line) and not any(t in line for t in told) for line in text.splitlines())
         strict = result.returncode in (1, 4) and any(t in text for t in told) and not failed
-        # That a mesh does not resolve turbulence says nothing about the scheme.
+        # An unresolved turbulent flow says nothing about the stability of the scheme.
         words = [line for line in text.splitlines() if "warning:" in line and "turbulence model neglected" not in line]
         return (0 if strict else result.returncode), strict and bool(words)
 
 
 def filled(thing, names):
-    """With {name} in its texts replaced; a text that is one name alone becomes the value, another one what it means in YAML."""
+    """Replaces {name} in the texts of a value. A text that is only a name becomes its value; any other text is read as YAML."""
     if isinstance(thing, dict):
         return {k: filled(v, names) for k, v in thing.items()}
     if isinstance(thing, list):
@@ -135,7 +135,7 @@ class Map:
         return {k: v for k, v in case.items() if k not in ("study", "plot")}, files
 
     def read(self, panel, names, runner):
-        """(what was read or None, exit code, whether it was doubted) of a run."""
+        """Returns (what was read or None, exit code, whether it was doubted) of a run."""
         case, files = self.case(panel, names)
         text = yaml.safe_dump(plain(case), sort_keys=False)
 
@@ -153,7 +153,7 @@ class Map:
         return runner.once((self.name, text), make)
 
     def run(self, panel, x, y, runner, **given):
-        """(number, exit code, doubted, error); `given`: names that are not those of `with`."""
+        """Returns (number, exit code, doubted, error); `given`: names that are not those of `with`."""
         names = self.names(panel, x, y, given)
         found, code, doubted = self.read(panel, names, runner)
         if found is None:
@@ -168,14 +168,14 @@ class Map:
         return number, code, doubted, float(eval(str(self.given["error"]), {**names, "number": number})) if math.isfinite(number) else number
 
     def theory(self):
-        """[(panels or None, label, xs, ys)]"""
+        """Returns [(panels or None, label, xs, ys)]"""
         for curve in self.given.get("theory", ()):
             names = {**FUNCTIONS, "s": eval(curve["over"], FUNCTIONS)}
             yield curve.get("panels"), curve["label"], *(eval(str(curve[axis]), names) + 0 * names["s"] for axis in "xy")
 
 
 def maps():
-    """{name: Map}"""
+    """Returns {name: Map}"""
     given = load((HERE / "maps.yaml").read_text(), HERE / "maps.yaml")
     return {name: Map(name, one) for name, one in given.items() if not name.startswith("_")}
 
@@ -193,7 +193,7 @@ def judged(number, code, doubted, error):
 
 
 def read(file):
-    """{(panel, x, y): Square} of a table that is there."""
+    """Returns {(panel, x, y): Square} of a table that is there."""
     if not file.exists():
         return {}
     with open(file, newline="") as rows:
@@ -215,7 +215,7 @@ def write(file, map_, squares):
 
 
 def make(map_, file, runner, fresh=False, workers=1):
-    """Runs the squares that the table does not have and those that are red; it is written after each eight of them. Gives all squares."""
+    """Runs the squares that are missing in the table and those that are red. Writes the table after every eight of them. Returns all squares."""
     squares = {} if fresh else {k: s for k, s in read(file).items() if s.outcome != RED}
     missing = [k for k in keys(map_) if k not in squares]
     with ThreadPoolExecutor(workers) as pool:
@@ -229,7 +229,7 @@ def make(map_, file, runner, fresh=False, workers=1):
 
 
 def hard_cases():
-    """[{part, case, mechanism, criterion, holds, fails}] of tests in tests/stability: "executable: Suite.test", or a script's name in ctest."""
+    """Returns [{part, case, mechanism, criterion, holds, fails}] of tests in tests/stability: "executable: Suite.test", or a script's name in ctest."""
     return load((HERE / "hard-cases.yaml").read_text())
 
 

@@ -15,19 +15,19 @@ import atlas  # noqa: E402
 
 HEAD = """# Where each scheme is stable
 
-Written by `python3 scripts/atlas` from runs of the programs; do not edit. Each square shows the number of the map's criterion; each picture has
-its table.
+This page shows for which parameters each scheme is stable, so that you can see how far your case is from a limit. `python3 scripts/atlas` writes it
+from runs of the programs; do not edit. Each square shows the number of the map's criterion, and each picture has a table.
 
 | color | meaning |
 |---|---|
 | green | within 5 % |
 | pale | within 20 % |
-| yellow | further off, and the run warned (`--strict` makes it a failed run) |
+| yellow | larger error, and the run warned (`--strict` makes it a failed run) |
 | blue | a guard ended the run: exit code 1 |
-| red | silent: more than 20 % off with exit code 0 and no warning: there must be none |
+| red | an error above 20 % with exit code 0 and no warning; there must be none |
 
-All runs have default settings but for what the map varies; a failed step is halved up to ten times, as in any run. `error` in a table is what the color shows.
-A run whose estimated error is above 0.15 warns ([findings](findings.md)).
+All runs have default settings except for the parameters of the map. A failed step is halved up to ten times, as in any run. The color shows `error` in
+the table. A run whose estimated error is above 0.15 warns ([findings](findings.md)).
 """
 
 
@@ -40,10 +40,10 @@ def page(maps, folder):
             text += f"\n## {m.title}\n\n{m.about}\n\n![{m.title}](stability/{m.name}.png)\n\n"
             text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv).*\n"
         if squares and m.given.get("without-halving"):
-            text += "\n*Drawn without halving of steps, which the default settings have: squares that stopped may hold now.*\n"
+            text += "\n*These runs did not halve failed steps, as the default settings do. Squares that stopped may be stable now.*\n"
     if lost := atlas.missing_tests():
         raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")
-    text += "\n## Hard cases\n\nAs tests in `tests/stability` (label `stability`), each with its failure mechanism, its criterion, and a neighboring case that fails.\n\n"
+    text += "\n## Hard cases\n\nThese cases are tests in `tests/stability` (label `stability`). Each has a failure mechanism, a criterion, and a neighboring case that fails.\n\n"
     text += "| part | case | mechanism | criterion | tested by | failing neighbor |\n|---|---|---|---|---|---|\n"
     tests = lambda names: "<br>".join(f"`{n.split(': ')[-1]}`" for n in names)
     for c in atlas.hard_cases():

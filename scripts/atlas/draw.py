@@ -17,7 +17,7 @@ WIDEST_X, WIDEST_Y = 34, 26  # characters of a label's line beside a panel
 
 
 def place(values, at, log):
-    """Where a value lies among the squares' indices."""
+    """Returns the position of a value on the scale of the squares' indices."""
     f = np.log(values) if log else np.asarray(values, float)
     v = np.log(at) if log else np.asarray(at, float)
     order = np.argsort(f)

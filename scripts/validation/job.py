@@ -29,7 +29,7 @@ class Bar:
 
     @property
     def text(self):
-        """What the table shows as wanted."""
+        """Text of the wanted value in the table."""
         return f"{self.wanted} (not as first asked: {self.but})" if self.but else self.wanted
 
 
@@ -67,7 +67,7 @@ class Job:
             shutil.rmtree(self.scratch, ignore_errors=True)
 
     def once(self, key, make):
-        """What make() gave, or the exception it ended in: a run of hours is not repeated for every row that reads it."""
+        """Returns the result of make() or raises its exception again, so that a run of hours is not repeated for every row that reads it."""
         if key not in self._kept:
             try:
                 self._kept[key] = make()
@@ -82,7 +82,7 @@ class Job:
                               env=self.environment, **options)
 
     def done(self, command, timeout=1800, **options):
-        """The same; one that fails is named with its last words."""
+        """Runs a command in the same way. Raises an error with the end of its output if it fails."""
         result = self.run(command, timeout, **options)
         if result.returncode != 0:
             last = (result.stderr.strip() or result.stdout.strip())[-300:]
@@ -92,7 +92,7 @@ class Job:
     # -- test executables ---------------------------------------------------------------------------------------------
     @functools.cached_property
     def registered(self):
-        """{test of ctest: the words of its command}."""
+        """Returns {test of ctest: the words of its command}."""
         return {t["name"]: t.get("command", []) for t in json.loads(self.done(["ctest", "--test-dir", self.build, "--show-only=json-v1"], 120).stdout)["tests"]}
 
     def test(self, name):

@@ -107,7 +107,7 @@ def words(text, scene):
 
 
 def watched(job, program, keys, scene, steps):
-    """[(instructions, bytes on the heap)] of a run of a scene under massif."""
+    """Returns [(instructions, bytes on the heap)] of a run of a scene under massif."""
     folder = job.scratch / f"effects-{program}-{next(NUMBERS)}"
     folder.mkdir()
     base = BASES[program]
@@ -129,7 +129,7 @@ def watched(job, program, keys, scene, steps):
 
 
 def weigh(job, program, keys, steps, scene):
-    """(bytes on the heap while it steps, instructions of a step). What is between the ends of the short and the long run are steps, and at its end what ends a run:
+    """Returns (bytes on the heap while it steps, instructions of a step). What is between the ends of the short and the long run are steps, and at its end what ends a run:
     its first half is looked at."""
     def make():
         short, long = (watched(job, program, keys, scene, n) for n in steps)
@@ -146,7 +146,7 @@ def weigh(job, program, keys, steps, scene):
 
 @dataclasses.dataclass(frozen=True)
 class Price:
-    """From the least to the most over the scenes of a dimension."""
+    """Range of prices over the scenes of a dimension."""
     program: str
     effect: str
     dimension: int
@@ -155,7 +155,7 @@ class Price:
 
 
 def measured(job, own, scene):
-    """(bytes per cell, share of a step) by which the effect makes the scene costlier."""
+    """Returns (bytes per cell, share of a step) by which the effect makes the scene costlier."""
     steps = FEW.get(own.effect) or STEPS[own.program]
     off, on = weigh(job, own.program, own.needs, steps, scene), weigh(job, own.program, own.keys, steps, scene)
     found = (on[0] - off[0]) / scene.cells, on[1] / off[1] - 1
@@ -169,7 +169,7 @@ def rounded(value):
 
 
 def price(own, dimension, found):
-    """Of [(bytes, share)]. What is next to nothing is 0, and so is what costs less than what it takes the place of."""
+    """Returns the price from [(bytes, share)]. Negligible prices are 0, and so are effects that cost less than what they replace."""
     clear = lambda value, least: rounded(value) if value >= least else 0.0
     bytes_ = [0.0 if own.effect in NOT_BY_CELLS else clear(b, LEAST_BYTES) for b, _ in found]
     step = [clear(s, LEAST_SHARE) for _, s in found]

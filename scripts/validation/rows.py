@@ -63,7 +63,7 @@ def named(text):
 
 
 def arguments(name, measure):
-    """{quantity: arguments} of the rows of a table by this measure."""
+    """Returns {quantity: arguments} of the rows of a table by this measure."""
     data = yaml.load((FOLDER / f"{name}.yaml").read_text(), Loader)
     return {quantity: frozen(row[measure]) for quantity, row in written_out(data["rows"]) if measure in row}
 
@@ -85,7 +85,7 @@ def load(name, file=None):
 
 
 def written_out(rows, shared=None):
-    """(quantity, row) of all rows, groups resolved."""
+    """Returns (quantity, row) of all rows, groups resolved."""
     for quantity, row in rows.items():
         if "rows" not in row:
             yield quantity, {**(shared or {}), **row}
@@ -96,7 +96,7 @@ def written_out(rows, shared=None):
 
 
 def combinations(each):
-    """[{name: value}] of every combination of the lists."""
+    """Returns [{name: value}] of every combination of the lists."""
     lists = []
     for names, values in each.items():
         names = [n.strip() for n in names.split(",")]
@@ -105,7 +105,7 @@ def combinations(each):
 
 
 def filled(thing, values):
-    """With '{name}' replaced by the values of these names."""
+    """Replaces '{name}' by the values of these names."""
     if not values:
         return thing
     if isinstance(thing, str):

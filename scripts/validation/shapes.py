@@ -36,7 +36,7 @@ def claims(job, program, names, least=0):
 
 
 def filtered(job, program, filter_):
-    """Only these tests of a long executable."""
+    """Runs only these tests of a long executable."""
     found, _ = job.gtest(program, filter_)
     return held([v["passed"] for v in found.values()])
 
@@ -64,7 +64,7 @@ def fuzz(job, programs, count, filter_="*", least=None):
 
 
 def wrong(job, names, least):
-    """Those cases of tests/cli/wrong whose names begin so."""
+    """Runs the cases of tests/cli/wrong whose names begin with one of `names`."""
     sys.path.insert(0, str(job.root / "tests/cli/wrong"))
     import table
     chosen = [case.name for case in table.CASES if case.name.startswith(names)]
@@ -84,7 +84,7 @@ def listed(values, text):
 
 
 def at_most(job, program, pattern, keys, limit, text="{:.1e}"):
-    """Of their sizes: an error may have either sign."""
+    """Compares absolute values, because an error may have either sign."""
     values, passed = recorded(job, program, pattern, keys)
     shown = listed(values, text) if len(values) < 8 else f"{listed([max(values, key=abs)], text)} at most of {len(values)}"
     return shown, passed and max(map(abs, values)) <= limit
@@ -114,14 +114,14 @@ def numbers(job, program, pattern, keys, text="{:.3g}"):
 
 
 def near(job, program, pattern, keys, wanted, share, text="{:.4g}"):
-    """Within this share of what is wanted."""
+    """Checks that values are within this share of the wanted one."""
     values, passed = recorded(job, program, pattern, keys)
     said = ", ".join(f"{text.format(v)} ({100 * (v / wanted - 1):+.2f} %)" for v in values)
     return said, passed and all(abs(v / wanted - 1) <= share for v in values)
 
 
 def told(job, program, filter_, keys):
-    """What tests recorded as text, the keys separated by spaces, with * for many."""
+    """Returns texts that tests recorded. Keys are separated by spaces, and * matches many."""
     tests, _ = job.gtest(program, filter_)
     found = [(key, value) for test in tests.values() for wanted in keys.split() for key, value in test.items() if fnmatch.fnmatch(key, wanted)]
     return "; ".join(f"{key.replace('_', ' ')}: {value.strip()}" for key, value in found), bool(found) and all(test["passed"] for test in tests.values())
@@ -232,7 +232,7 @@ def started(job, case, keys, timeout):
 
 
 def readings(job, case, results, read):
-    """{name: value} of one or several."""
+    """Reads one or several results of a run. Returns {name: value}."""
     found = {}
     for text in (read,) if isinstance(read, str) else read:
         found |= {(text.split(": ", 1)[1] if k in found else k): v for k, v in reading(job, case, results, text).items()}

@@ -29,7 +29,7 @@ class Row:
 
 
 class History:
-    """The commits of a checkout, each asked for once."""
+    """Commits of a checkout. Git is asked once for each."""
 
     def __init__(self, root):
         self.root, self._kept = root, {}
@@ -54,7 +54,7 @@ class History:
         return same[0] if len(same) == 1 else None
 
     def changed(self, commit, folders):
-        """Those of the folders with a change since the commit."""
+        """Returns the folders with a change since the commit."""
         return [f for f in folders if self.git("diff", "--name-only", commit, "HEAD", "--", f)]
 
 
@@ -64,7 +64,7 @@ def commit_of(cell):
 
 
 def read(file):
-    """{quantity: Row} of the table that is there."""
+    """Returns {quantity: Row} of the table that is there."""
     rows = {}
     for line in file.read_text().splitlines() if file.exists() else []:
         cells = [c.strip().replace("\\|", "|") for c in re.split(r"(?<!\\)\|", line)[1:-1]]

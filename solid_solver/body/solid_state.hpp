@@ -37,9 +37,9 @@ struct SolidState {
   double time = 0, dt = 0;  ///< dt: size of the step that ended here
   int steps = 0;            ///< accepted so far
   std::vector<double> cell_u, cell_v, face_u, face_v;
-  std::vector<double> known, known_rate;       ///< prescribed values, one per known column
-  std::vector<double> cell_a;                  ///< generalized-alpha only
-  std::vector<double> cell_u_old, cell_v_old;  ///< one step earlier; three-point rule, Adams predictor
+  std::vector<double> known, known_rate;               ///< prescribed values, one per known column
+  std::vector<double> cell_a;                          ///< generalized-alpha only
+  std::vector<double> cell_u_old, cell_v_old;          ///< one step earlier; three-point rule
   std::vector<double> face_a, face_u_old, face_v_old;  ///< likewise at faces that have inertia
   std::vector<double> interface;    ///< partner's forces of the last step; generalized-alpha, three-point
   double stage_dt = 0;              ///< size of the last stage

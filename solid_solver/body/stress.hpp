@@ -41,7 +41,7 @@ class PointTensors {
                const fv::VertexInterpolation& inside);
   /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Collective.
   SidedTensors interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
-  /// The same for tensors that are not symmetric, the mean of the materials.
+  /// Does the same for tensors that are not symmetric. Materials are averaged.
   std::vector<Tensor3> interpolate_full(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
 
  private:

@@ -132,7 +132,7 @@ void SolidBoundaries::choose_faces(const mesh::Patch& patch, const SolidBoundary
         "{}.parts[{}].where: '{}' selects no face of patch '{}'. {}", where, i, tests[i].text(), patch.name,
         parallel::any(mesh_->comm, is_taken)
             ? "Parts before it select all of its faces, and the first one that selects a face applies; put it before them."
-            : "It is evaluated at the face centres; widen it, for example to abs(z - 0.5) < half the height of a face.");
+            : "It is evaluated at the face centers; widen it, for example to abs(z - 0.5) < half the height of a face.");
   }
   if (!tests.empty() && boundary.type != Type::free &&
       !parallel::any(mesh_->comm, !conditions_[own].faces.empty()))

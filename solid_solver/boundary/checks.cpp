@@ -70,7 +70,7 @@ void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
       inexact && parallel::comm_rank(mesh.comm) == 0)
     log::warn(
         "at {} vertices, the first at {}, the adjacent cells and faces do not span all directions: values "
-        "there are plain means of the neighbours, exact for constant fields only",
+        "there are plain means of the neighbors, exact for constant fields only",
         inexact->count, text_of(inexact->first, mesh.dim));
 }
 

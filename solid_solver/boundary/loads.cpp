@@ -109,7 +109,7 @@ void DistributedForce::check_taken(const Vec3& moment, const Vec3& force) const 
   if ((lost_ * moment).norm() <= rounding * scale) return;
   const Vec3 axis = (lost_ * moment).normalized();
   throw Error(
-      "{}: the face centres lie on one line through ({:g}, {:g}, {:g}), so they cannot transmit a moment "
+      "{}: the face centers lie on one line through ({:g}, {:g}, {:g}), so they cannot transmit a moment "
       "about ({:.3g}, {:.3g}, {:.3g}), but the load has {:g} N m. Refine the patch, select more faces or "
       "use 'type: force'.",
       where_, centre_[0], centre_[1], centre_[2], axis[0], axis[1], axis[2], (lost_ * moment).norm());
@@ -361,7 +361,7 @@ std::vector<Index> faces_of_point_load(const mesh::Mesh& mesh, const mesh::Geome
       faces.push_back(f);
   if (!parallel::any(mesh.comm, !faces.empty()))
     throw Error(
-        "{}.radius: no unsupported face has its centre within {:g} m of {} m; the nearest face is {:g} m "
+        "{}.radius: no unsupported face has its center within {:g} m of {} m; the nearest face is {:g} m "
         "away{}.",
         where, load.radius, place_of(load.point, mesh.dim), nearest.distance,
         nearest.is_open ? "" : " and is held");

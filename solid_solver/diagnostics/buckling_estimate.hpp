@@ -24,7 +24,7 @@ struct BucklingEstimate {
   bool matters() const { return factor > 0 && (factor < imperfect || growth > most_growth); }
 };
 
-/// Finding about it, if it matters; `how` precedes its factor.
+/// Finding about the buckling load if it matters; `how` is the text before the load factor.
 std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& found, const char* how);
 /// Finding for a body in motion, never `wrong`, because inertia may outlast a short load.
 std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstimate& found);

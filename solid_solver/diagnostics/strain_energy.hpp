@@ -34,7 +34,7 @@ struct StrainAudit {
   double missed_by_mesh(int dim) const;
   /// Relative difference of strain energy and work; zero for a symmetric operator.
   double mismatch() const;
-  /// Limits above which the result is doubtful (docs/theory.md, "Does the answer fit itself?").
+  /// Limits above which the result is doubtful (docs/theory/solid-solution.md, "Checks of the answer").
   static constexpr double most_mismatch = 0.35, most_difference = 1.0, most_variation = 0.2;
   /// Limit above which work and strain energy are unrelated.
   static constexpr double useless_mismatch = 1.0;

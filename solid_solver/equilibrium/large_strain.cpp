@@ -171,8 +171,8 @@ std::string folded_support(const mesh::Mesh& mesh, const elastic::ElasticOperato
   if (!(most.height > 0) || most.patch < 0) return "";
   return fmt::format(
       "Beside '{}' the free surface has folded beyond the plane of the support, by {:.2g} m: a wider support "
-      "would touch it there, which is not modelled, and beyond this load equilibrium is lost cell by cell, on "
-      "finer meshes earlier. End the load here, or let the sides widen towards the support.",
+      "would touch it there, which is not modeled, and beyond this load equilibrium is lost cell by cell, on "
+      "finer meshes earlier. End the load here, or let the sides widen toward the support.",
       mesh.patches[std::size_t(most.patch)].name, most.height);
 }
 

@@ -32,7 +32,7 @@ struct ContactProblem {
 linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::span<const double> b,
                                            std::span<double> u);
 
-/// Clears the component out of the plane in plane stress; in plane strain lambda tr(epsilon) stands there.
+/// Clears the component out of the plane in plane stress; in plane strain it is lambda tr(epsilon).
 void clear_stress_across(const SolidParameters& parameters, std::span<Tensor3> stress);
 
 /// A(u) = K u in the reference configuration, with the face gradient that was chosen.

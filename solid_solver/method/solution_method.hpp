@@ -48,7 +48,7 @@ class SolutionMethod {
   bool approximate_inverse(std::span<const double> r, std::span<double> z) {
     return instead_ ? instead_->invert(r, z) : invert(r, z);
   }
-  /// What the next first guess learns from accepted steps; none: nothing.
+  /// Projection that improves first guesses from accepted steps; nullptr if there is none.
   linalg::ResidualProjection* projection() const { return projection_.get(); }
   /// True once factors have taken the place of the iteration.
   bool is_cured() const { return bool(instead_); }

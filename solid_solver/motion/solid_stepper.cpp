@@ -61,8 +61,7 @@ void SolidStepper::start_from_rest() {
       scheme == time::TimeScheme::generalised_alpha || scheme == time::TimeScheme::three_point;
   if (body_.is_dynamic() && is_after_the_middle && !body_.boundaries().interface_patches().empty())
     state_.interface.assign(std::size_t(mesh_.boundary.n_owned()) * dim, 0);
-  if (body_.is_dynamic() && (time::uses_old_level(scheme_of(parameters_).type) ||
-                             parameters_.method.predictor == MethodParameters::Predictor::adams))
+  if (body_.is_dynamic() && time::uses_old_level(scheme_of(parameters_).type))
     state_.cell_u_old = state_.cell_v_old = state_.cell_u;
   if (body_.has_mass() && !state_.cell_a.empty()) state_.face_a = state_.face_u;
   if (body_.has_mass() && !state_.cell_u_old.empty()) state_.face_u_old = state_.face_v_old = state_.face_u;

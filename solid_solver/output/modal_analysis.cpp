@@ -170,7 +170,7 @@ double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.add(f, gap.strain[std::size_t(f)]);
     recovered.recover();
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.compare(f, gap.strain[std::size_t(f)]);
-    // Of a body under load the stress stiffness has a part of the eigenvalue.
+    // In a loaded body the stress stiffness contributes to the eigenvalue.
     const elastic::ElasticField u{shape, {}};
     const double share =
         parallel::sum(mesh.comm, body.kernel().product(elastic::ElasticPart::stiffness, u, u)) /

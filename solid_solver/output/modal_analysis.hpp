@@ -28,8 +28,8 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
 /// g counts. Collective.
 double mode_error(const SolidBody& body, const modes::EigenModes& modes);
 
-/// What the surface shows of these modes, on rank 0 (empty elsewhere): vertices by ascending point_id, faces by
-/// ascending boundary_id; of a plane body the depth is 1 m and the third component 0. Collective.
+/// Surface values of these modes on rank 0 (empty elsewhere), vertices by ascending point_id and faces by
+/// ascending boundary_id. A plane body has a depth of 1 m and a third component of 0. Collective.
 modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenModes& modes);
 
 }  // namespace couplet::solid

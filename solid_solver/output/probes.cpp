@@ -193,49 +193,40 @@ namespace {
 
 double larger_of(double left, double mesh) { return std::isnan(left) ? left : std::fmax(left, mesh); }
 
-/// The cell with the largest equivalent stress, its own or that of a boundary face; -1 on all ranks but one. Collective.
-Index cell_of_largest(const SolidBody& body, const SolidFields& fields, std::span<const double> points) {
-  const mesh::Mesh& mesh = body.mesh();
-  double most = -1;
-  Index at = -1;
-  const auto see = [&](Index cell, const Tensor3& stress) {
-    if (const double value = equivalent_stress(stress); value > most) most = value, at = cell;
-  };
-  const std::vector<Tensor3> cells = fields.cell_stress(points);
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) see(c, cells[std::size_t(c)]);
-  const std::vector<Tensor3> faces = fields.face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
-  for (Index b = 0; b < mesh.boundary.n_owned(); ++b)
-    see(mesh.owner[mesh.n_interior + b], faces[std::size_t(b)]);
-  // Selects the same cell on any number of ranks.
-  const double largest = parallel::max(mesh.comm, most);
-  const double id = most == largest && at >= 0 ? double(mesh.cell_id[at]) : 1e300;
-  return parallel::min(mesh.comm, id) == id && id < 1e300 ? at : -1;
-}
-
+/// Largest equivalent stress of the recovered field. Probes interpolate between points and the equivalent stress is convex, so
+/// none sees more than the points.
 ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::span<const double> points,
                        double mesh_part) {
   const mesh::Mesh& mesh = body.mesh();
-  const Index cell = cell_of_largest(body, fields, points);
-  const auto material = std::size_t(parallel::max(mesh.comm, cell < 0 ? 0 : mesh.material_of(cell)));
-  const std::vector<std::uint8_t> wanted =
-      flags_of(mesh, cell < 0 ? std::span<const Index>() : std::span<const Index>(mesh.cell_points[cell]));
-  std::vector<std::vector<double>> all_left;
-  const SidedTensors sides = fields.stress_sides(points, wanted, &all_left);
-  const std::vector<double>&stress = sides[material], &left = all_left[material];
+  const SidedTensors sides = fields.stress_sides(points);
   struct Seen {
-    double value, left;
-    Vec3 place;
+    double value = -1;
+    GlobalIndex point = -1;  // the same one on any number of ranks
+    int material = 0;
+    Vec3 place = Vec3::Zero();
+    bool is_below(const Seen& other) const {
+      constexpr double more = 1 + 1e-9;  // of values that round-off alone tells apart
+      return other.value > more * value || (other.value * more >= value && other.point < point);
+    }
   };
-  std::vector<Seen> mine;
-  for (Index v = 0; v < mesh.points.n_owned(); ++v)
-    if (wanted[std::size_t(v)])
-      mine.push_back(
-          {equivalent_stress(unpack(std::span(stress).subspan(std::size_t(v) * tensor_size, tensor_size))),
-           left[std::size_t(v)], body.geometry().points[v]});
-  Seen most{-1, std::numeric_limits<double>::quiet_NaN(), Vec3::Zero()};
-  for (const Seen& one : parallel::all_gather(mesh.comm, mine))
-    if (one.value > most.value) most = one;
-  return {"largest", most.place, most.value, larger_of(most.left, mesh_part)};
+  Seen most;
+  for (std::size_t m = 0; m < sides.size(); ++m)
+    for (Index v = 0; v < mesh.points.n_owned(); ++v) {
+      const double value =
+          equivalent_stress(unpack(std::span(sides[m]).subspan(std::size_t(v) * tensor_size, tensor_size)));
+      const Seen here{value, mesh.point_id[v], int(m), body.geometry().points[v]};
+      if (most.is_below(here)) most = here;
+    }
+  for (const Seen& one : parallel::all_gather(mesh.comm, std::vector<Seen>{most}))
+    if (most.is_below(one)) most = one;
+  std::vector<std::uint8_t> wanted(std::size_t(mesh.points.n_local()), 0);
+  const auto at = std::ranges::find(mesh.point_id, most.point) - mesh.point_id.begin();
+  if (at < mesh.points.n_local()) wanted[std::size_t(at)] = 1;
+  std::vector<std::vector<double>> all_left;
+  fields.stress_sides(points, wanted, &all_left);
+  const double left = parallel::sum(
+      mesh.comm, at < mesh.points.n_owned() ? all_left[std::size_t(most.material)][std::size_t(at)] : 0);
+  return {"largest", most.place, most.value, larger_of(left, mesh_part)};
 }
 
 }  // namespace

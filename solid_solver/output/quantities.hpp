@@ -44,7 +44,7 @@ struct QuantityEstimate {
   double error() const;
 };
 
-/// Where the case puts it [m]; 0 without a point.
+/// Position of a quantity in the case [m]; 0 without a point.
 Vec3 place_of(const SolidQuantity& quantity);
 
 /// Estimates `quantities`, one solve with `method` each. `unknowns` and `state`: accepted. Equal on all

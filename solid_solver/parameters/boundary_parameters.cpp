@@ -62,7 +62,7 @@ std::string problem_of_nothing(const TotalLoad& load) {
 void declare_total_force(config::Section& s, TotalLoad& load) {
   declare_force(s, "value", load.force, true,
                 "total force on these faces, one expression of t per component; uniform force per area, in "
-                "2-D per metre of depth");
+                "2-D per meter of depth");
 }
 
 void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimension) {
@@ -72,11 +72,11 @@ void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimensi
       .required()
       .doc("point of application of the force, on the patch or away from it");
   declare_force(s, "force", load.force, false,
-                "force at 'point', one expression of t per component; in 2-D per metre of depth");
+                "force at 'point', one expression of t per component; in 2-D per meter of depth");
   declare_moment(s, load.moment, dimension);
   s.choice("coupling", load.is_rigid, {{"distributing", false}, {"rigid", true}})
       .doc(
-          "distributing: the faces share the load by area and remain free to deform; rigid: their centres "
+          "distributing: the faces share the load by area and remain free to deform; rigid: their centers "
           "move as one rigid body (small strain, symmetric face gradient)");
   s.check([&] { return load.is_rigid ? std::string() : problem_of_nothing(load); }, "point");
 }
@@ -84,7 +84,7 @@ void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimensi
 void declare_bearing_load(config::Section& s, TotalLoad& load) {
   declare_force(s, "force", load.force, true,
                 "total force of a pin or shaft on the cylinder, one expression of t per component, normal "
-                "to its axis; in 2-D per metre of depth");
+                "to its axis; in 2-D per meter of depth");
 }
 
 void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int& dimension) {
@@ -122,14 +122,14 @@ void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int
 void declare(config::Section& s, PointLoad& load, const int& dimension) {
   s.value("point", load.point).unit("m").plausible(1e-9, 1e4).required().doc("point on the surface");
   declare_force(s, "force", load.force, false,
-                "force at 'point', one expression of t per component; in 2-D per metre of depth");
+                "force at 'point', one expression of t per component; in 2-D per meter of depth");
   declare_moment(s, load.moment, dimension);
   s.value("radius", load.radius)
       .unit("m")
       .plausible(1e-9, 1e4)
       .not_negative()
       .doc(
-          "faces with their centre within this distance of 'point' share the load, as for a remote-load; 0: "
+          "faces with their center within this distance of 'point' share the load, as for a remote-load; 0: "
           "the nearest face alone takes the force");
   s.check([&] { return problem_of_nothing(load); }, "point");
   s.check(
@@ -298,7 +298,7 @@ void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
       [&dimension](config::Section& p, SolidPart& part) {
         p.value("where", part.where)
             .required()
-            .doc("expression of x, y, z at the face centres, nonzero on the faces of this part");
+            .doc("expression of x, y, z at the face centers, nonzero on the faces of this part");
         p.check(
             [&part] {
               return fv::Expression(part.where).uses_time()

@@ -108,16 +108,13 @@ void declare_iteration(config::Section& s, MethodParameters& m) {
   s.value("anderson-history", m.anderson_history)
       .range(1, 30)
       .doc("number of iterations combined by Anderson's method");
-  s.choice("predictor", m.predictor,
-           {{"none", Predictor::none}, {"euler", Predictor::euler}, {"adams", Predictor::adams}})
-      .doc(
-          "initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73); "
-          "with two velocities (2.74)");
+  s.choice("predictor", m.predictor, {{"none", Predictor::none}, {"euler", Predictor::euler}})
+      .doc("initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73)");
   s.value("corrections-kept", m.corrections_kept)
       .range(0, linalg::ResidualProjection::most)
       .doc(
           "for newton-krylov in dynamic analyses: number of latest predictor corrections that are combined "
-          "to minimise the initial residual; 0: off");
+          "to minimize the initial residual; 0: off");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(
@@ -246,7 +243,7 @@ void declare(config::Section& s, LoadStepping& l) {
       .doc("for arc-length: load factor of the first step; sets the length of the later ones");
   s.value("iterations", l.iterations)
       .range(2, 15)
-      .doc("for arc-length: iterations of Newton's method per step towards which the length is adapted");
+      .doc("for arc-length: iterations of Newton's method per step toward which the length is adapted");
   s.value("longest", l.longest)
       .range(1, 1e4)
       .doc("for arc-length: largest length of a step over that of the first one");

@@ -13,7 +13,7 @@ struct MethodParameters {
   enum class LinearSolver { automatic, direct, bicgstab_ilu, gmres_multigrid };
   enum class Preconditioner { automatic, multigrid, factors, mixed };
   enum class Acceleration { none, aitken, anderson };
-  enum class Predictor { none, euler, adams };
+  enum class Predictor { none, euler };
   enum class VolumeStrain { automatic, faces, cells, shared };
   Type type = Type::automatic;
   FaceGradient face_gradient = FaceGradient::automatic;
@@ -22,7 +22,7 @@ struct MethodParameters {
   Preconditioner preconditioner = Preconditioner::automatic;  // of newton-krylov
   Acceleration acceleration = Acceleration::anderson;         // of the segregated method
   int aitken_interval = 5;
-  int anderson_history = 10;
+  int anderson_history = 30;
   Predictor predictor = Predictor::euler;
   int corrections_kept = 12;
   double solves = 1;  // not a key: number of solves of the run with one matrix

@@ -198,7 +198,7 @@ void check_contact(config::Section& s, SolidParameters& p) {
              !symmetric_suits(p),
          "'contact' requires 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
          "'preconditioner: mixed' and 'zero-normal-gradient'");
-  refuse("output", p.output.buckling > 0, "'buckling' knows nothing of a seat; remove it, or 'contact'");
+  refuse("output", p.output.buckling > 0, "'buckling' does not include a seat; remove it, or 'contact'");
 }
 
 /// Settings incompatible with an elastic matrix, reported at the key to change.

@@ -130,8 +130,8 @@ void declare_scene(config::Section& s, SolidParameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
-          "keys remain in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
+          "keys remain in meters");
   using TouchingFaces = SolidParameters::TouchingFaces;
   s.choice(
        "touching-faces", p.touching_faces,

@@ -13,9 +13,10 @@ using Contents = std::map<std::string, std::vector<double>>;
 inline Contents contents(const std::filesystem::path& file) {
   Contents all;
   const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  const auto visit = [](hid_t place, const char* name, const H5O_info_t* info, void* data) -> herr_t {
-    if (info->type != H5O_TYPE_DATASET) return 0;
-    const hid_t table = H5Dopen2(place, name, H5P_DEFAULT), space = H5Dget_space(table);
+  const auto visit = [](hid_t place, const char* name, const H5L_info_t*, void* data) -> herr_t {
+    const hid_t table = H5Oopen(place, name, H5P_DEFAULT);
+    if (H5Iget_type(table) != H5I_DATASET) return H5Oclose(table);
+    const hid_t space = H5Dget_space(table);
     std::vector<double>& values = (*static_cast<Contents*>(data))[name];
     values.resize(std::size_t(H5Sget_simple_extent_npoints(space)));
     H5Dread(table, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
@@ -23,7 +24,7 @@ inline Contents contents(const std::filesystem::path& file) {
     H5Dclose(table);
     return 0;
   };
-  H5Ovisit(id, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &all);
+  H5Lvisit(id, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &all);
   H5Fclose(id);
   return all;
 }

@@ -66,7 +66,7 @@ void scatter_grains(const GrainElimination& e, const GrainCells& c, const double
 // Matrix rows of the bed, branch-free loops over the cells of a layer.
 
 struct ExchangeRows {
-  /// As in PackedBed::Operator; initial diagonal.
+  /// Initial diagonal, as in PackedBed::Operator.
   double *rate, *share, *beta, *heat, *diagonal;
 };
 /// Rows of the fluid after eliminating a layer's grains over the step `tau` [s], in n cells. `capacity`: eps

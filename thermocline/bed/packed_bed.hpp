@@ -46,7 +46,7 @@ class PackedBed {
     Advection advection;
     double courant;
     bool conducting_inlet;
-    // One per run of cells.
+    // One entry per run, the adjacent cells of one layer.
     std::vector<LayerClosure> closures;
     std::vector<Grains> grains;
     std::vector<std::optional<PhaseChange>> melting;  // empty if no layer melts

@@ -13,7 +13,7 @@ namespace {
 std::string slip(const std::string& what, double value, const std::string& unit, const std::string& why,
                  const char* other) {
   return fmt::format("{} is {:g} {}{}. A number without a unit is in {}; write '{:g} {}' if that is intended",
-                     what, value, unit, why, unit == "m" ? "metres" : unit, value, other);
+                     what, value, unit, why, unit == "m" ? "meters" : unit, value, other);
 }
 
 /// `whose`: for example "any solid's".
@@ -93,7 +93,7 @@ std::string slip_in_tank(const BedParameters& bed, double diameter) {
   for (const BedLayer& layer : bed.layers) height += layer.height;
   if (diameter <= largest && height <= largest) return "";
   return fmt::format(
-      "a bed {:g} m high in a tank of {:g} m: expected {:g} m at most. A number without a unit is in metres",
+      "a bed {:g} m high in a tank of {:g} m: expected {:g} m at most. A number without a unit is in meters",
       height, diameter, largest);
 }
 

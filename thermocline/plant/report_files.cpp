@@ -96,7 +96,7 @@ void DayReport::finish() {
 }
 
 void declare(config::Section& s, EconomicsParameters& p) {
-  s.value("field", p.field).not_negative().doc("price per square metre of solar field");
+  s.value("field", p.field).not_negative().doc("price per square meter of solar field");
   s.value("block", p.block).not_negative().doc("price per kilowatt (electric) of the power block");
   s.value("fixed", p.fixed).not_negative().doc("fixed cost, independent of the plant's size");
   s.value("steel", p.steel).not_negative().doc("price per kilogram of the tank's wall");
@@ -108,8 +108,8 @@ void declare(config::Section& s, EconomicsParameters& p) {
       .not_negative()
       .doc("price per kilowatt of pump or fan, by the largest power in the run");
   s.value("fluid", p.fluid).not_negative().doc("price per kilogram of the fluid in the bed");
-  s.value("insulation", p.insulation).not_negative().doc("price per square metre of insulated wall and roof");
-  s.value("foundation", p.foundation).not_negative().doc("price per square metre of the tank's ground");
+  s.value("insulation", p.insulation).not_negative().doc("price per square meter of insulated wall and roof");
+  s.value("foundation", p.foundation).not_negative().doc("price per square meter of the tank's ground");
   s.value("operation", p.operation).range(0, 1).doc("annual cost, as a share of the capital");
   s.value("interest", p.interest).range(0, 1).doc("annual interest rate");
   s.value("lifetime", p.lifetime).range(1, 200).doc("lifetime in years");

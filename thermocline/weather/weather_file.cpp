@@ -106,8 +106,9 @@ void HourCollector::close_gaps(std::size_t quantity, std::vector<std::string>& w
   const std::size_t n = v.size();
   for (std::size_t begin = 0; begin < n; ++begin) {
     if (!std::isnan(v[begin])) continue;
-    std::size_t end = begin;
-    while (end < n && std::isnan(v[end])) ++end;
+    const auto is_missing = [](double value) { return std::isnan(value); };
+    const auto end =
+        std::size_t(std::find_if_not(v.begin() + std::ptrdiff_t(begin), v.end(), is_missing) - v.begin());
     const std::string& what = quantities[quantity].name;
     if (end - begin > longest_gap)
       throw Error("{}: the {} is missing for {} hours from here. Gaps of more than {} hours are not filled.",

@@ -67,7 +67,7 @@ def places_of(series, i, warp, name):
 
 
 def outer_faces(series):
-    """[(points, cell)] of the faces that belong to only one cell."""
+    """Returns [(points, cell)] of the faces that belong to only one cell."""
     seen = {}
     for number, cell in enumerate(series.cells):
         for face in FACES[len(cell)]:

@@ -90,7 +90,7 @@ class Client:
             self._end("a process of the job speaks another protocol" +
                       (f": version {others[0]}, this client version {VERSION}" if others else ""))
         world.Split(MPI.UNDEFINED, world.rank)
-        number = world.Get_attr(MPI.APPNUM) or 0
+        number = os.environ.get("COUPLET_PART") or world.Get_attr(MPI.APPNUM) or 0
         fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank), f"{os.getpid()}@{socket.gethostname()}"]
         strings = self._all_strings(world, ("".join(f + "\x1f" for f in fields) + "\x1e").encode())
         participants = [s.split("\x1f")[1] for s in strings]
@@ -155,7 +155,7 @@ class Client:
                 return EVENTS[self.operation]
 
     def read(self, datum):
-        """(places, components) of this process; zeros if nobody has given it yet. After the last event: as the others gave it last."""
+        """Returns the data of this process, (places, components): zeros before they are first given, and the last values after the last event."""
         entry = next(d for d in self._takes if d[0] == datum)
         return self._input.get(datum, numpy.zeros(self._shape(entry)))
 
@@ -224,7 +224,7 @@ class Client:
         return [0, *(int(c) for c in counts.cumsum())]
 
     def _peers(self):
-        """(rank of the coupler, slice of own vertices, slice of own faces) for all ranks with common entries."""
+        """Returns (rank of the coupler, slice of own vertices, slice of own faces) for all ranks with common entries."""
         ranks, mine = self._link.ranks, self.comm.rank
         list_ = []
         for c in range(ranks):

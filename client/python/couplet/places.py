@@ -30,6 +30,6 @@ def root():
 ROOT = root()
 
 
-def command():
-    """Path of the command `couplet`."""
-    return ROOT / "scripts/couplet" if IN_CHECKOUT else PACKAGE.parents[3] / "bin/couplet"
+def command(name="couplet"):
+    """Path of the command `couplet`, or of `couplet-exec`."""
+    return (ROOT / "scripts" if IN_CHECKOUT else PACKAGE.parents[3] / "bin") / name

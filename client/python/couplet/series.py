@@ -145,7 +145,7 @@ class Surface(FieldSeries):
         return np.tensordot(self.areas(i), field, axes=1)
 
     def chains(self, i=-1):
-        """[(ordered edge numbers, ordered points)] in 2-D. An open part starts at its end with the lowest number, a closed one at its point with the
+        """Returns [(ordered edge numbers, ordered points)] in 2-D. An open part starts at its end with the lowest number, a closed one at its point with the
         largest x. Both have the body on the same side as the edges."""
         points, after = self.coordinates(i), {}
         for number, (a, b) in enumerate(self.cells):

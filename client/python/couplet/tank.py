@@ -15,7 +15,7 @@ DAY, HOUR = 86400.0, 3600.0
 
 
 def summary(folder):
-    """{quantity: value} of a variant."""
+    """Returns {quantity: value} of a variant."""
     lines = (folder / "tank" / "summary.csv").read_text().splitlines()[1:]
     return {q: float(v) for q, _, v in (line.split(",") for line in lines)}
 

@@ -268,8 +268,7 @@ class Seat {
     if (std::ranges::find(names, name) == names.end())
       return say("gap", "the fluid has no gap '" + name + "'. " + base::did_you_mean(name, names, "gaps"));
     for (const char* key : {"height", "opening", "direction"})
-      if (has(key))
-        say(key, fmt::format("it is that of the gap '{}', where it stands already; remove it here", name));
+      if (has(key)) say(key, fmt::format("the gap '{}' already defines it; remove it here", name));
     if (!problems_.empty()) return;
     const std::string gap = gaps + "." + name;
     const auto height = config::text_of(document_, gap + ".height"),

@@ -42,9 +42,7 @@ std::string footer(const ProgramText& program) {
   return fmt::format(
       "Keys of {} in the YAML file ({} --docs prints the full reference):\n"
       "{}\n"
-      "{}Coupled:    mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver "
-      "case.yaml : -n 1 mesh_mover case.yaml\n"
-      "            Every program gets the same YAML file and the same --set options.\n"
+      "{}Coupled:    couplet run case.yaml -n fluid=2, or mpirun -n 5 couplet-exec case.yaml -n fluid=2\n"
       "Exit codes: 0 done, 1 the run failed, 2 invalid configuration or command line, 3 stopped by SIGTERM "
       "with a checkpoint to continue from, 4 done, but the result is provably useless (--accept ID accepts "
       "it).",

@@ -232,14 +232,8 @@ int explain(const CommandLine& command_line, const Program& program) {
     fmt::print("  {}\n", diagnostics::text(choice));
   if (program.effects) fmt::print("{}", diagnostics::explanation(program.effects(scene)));
   if (program.expected) print_expected(scene, program);
-  std::string job;
-  for (const Expected& e : file.expected)
-    job += fmt::format("{} -n 1 {} {}", job.empty() ? "mpirun" : " :", e.program,
-                       command_line.case_file.string());
-  if (file.coupled)
-    fmt::print("whole case:       {}\n", job);
-  else
-    fmt::print("launch:           {} {}\n", program.name, command_line.case_file.string());
+  fmt::print("{} {}\n", file.coupled ? "whole case:       couplet run" : "launch:           " + program.name,
+             command_line.case_file.string());
   return 0;
 }
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/case/roll_call.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <cstdlib>
 #include <map>
 #include <set>
 #include <sstream>
@@ -56,32 +53,20 @@ const Attendant& reader_of(const std::vector<Attendant>& attendants) {
   return reader == attendants.end() ? attendants.front() : *reader;
 }
 
-/// Tells whether a program can be started by its name: one of the project's, or one on the PATH.
-bool is_known(const std::string& program) {
-  if (program == coupler_name || coupling::player_of(program) != nullptr) return true;
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (::access((folder + "/" + program).c_str(), X_OK) == 0) return true;
-  return false;
-}
-
-/// "mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 <command of 'guest'> ..."
+/// "couplet run case.yaml -n fluid=2 --with body='COMMAND ...'"
 std::string launch_line(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected) {
-  std::map<std::string, int> ranks, users, application;
+  std::map<std::string, int> ranks, application;
   for (const Attendant& a : attendants)
     if (application.try_emplace(a.participant, a.application).first->second == a.application)
       ++ranks[a.participant];
-  for (const Expected& e : expected) ++users[e.program];
-  std::string line = "mpirun";
+  std::string sizes, commands;
   for (const Expected& e : expected) {
-    const int n = std::max(1, ranks[e.participant]);
-    line += fmt::format("{} -n {} ", &e == &expected.front() ? "" : " :", n);
-    line += is_known(e.program) ? e.program + " " + reader_of(attendants).case_file
-                                : fmt::format("<command of '{}'>", e.participant);
-    if (is_known(e.program) && users[e.program] > 1) line += " --participant " + e.participant;
+    if (ranks[e.participant] > 1)
+      sizes += fmt::format("{}{}={}", sizes.empty() ? " -n " : ",", e.participant, ranks[e.participant]);
+    if (e.program != coupler_name && coupling::player_of(e.program) == nullptr)
+      commands += fmt::format(" --with {}='COMMAND ...'", e.participant);
   }
-  return line;
+  return "couplet run " + reader_of(attendants).case_file + sizes + commands;
 }
 
 /// Lists each message once, with the names of its senders unless all processes sent it.

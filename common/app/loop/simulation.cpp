@@ -27,14 +27,14 @@ void declare_fields(config::Section& s, io::FieldChoice& f) {
             .unit("m")
             .plausible(1e-9, 1e4)
             .required()
-            .doc("highest corner; in two dimensions the third number counts for nothing");
+            .doc("highest corner; in two dimensions the third number is ignored");
         b.check(
             [&box] {
               return (box.to - box.from).minCoeff() < 0 ? "it must not be below 'from' in any direction" : "";
             },
             "to");
       },
-      "fields in the volume of the cells in this box only, as they lie at the start; absent: all");
+      "volume fields only of cells that start in this box; absent: all cells");
 }
 
 void declare_files(config::Section& section, SimulationParameters& p) {
@@ -115,7 +115,7 @@ void declare(config::Section& section, SimulationParameters& p) {
       .not_negative()
       .doc(
           "the job ends and names the culprit when one of its processes shows no sign of life for this long "
-          "(an iteration of a solver, a phase of a step, or processor time during meshing, factorisation "
+          "(an iteration of a solver, a phase of a step, or processor time during meshing, factorization "
           "and file output); 0: never");
   declare_files(section, p);
   section.check(

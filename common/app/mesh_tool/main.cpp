@@ -89,7 +89,7 @@ mesh::MeshParameters parameters_of(const std::vector<std::string>& assignments) 
 int run(int argc, char** argv) {
   Words words;
   std::vector<std::string> assignments;
-  CLI::App app("makes meshes that any number of ranks opens at once, and opens them");
+  CLI::App app("writes and checks meshes that any number of ranks can open together");
   app.require_subcommand(1);
   CLI::App* of_file = app.add_subcommand("cut", "writes a mesh (.msh, .geo, .inp, ...) as a cut mesh");
   of_file->add_option("file", words.file)->required();

@@ -254,7 +254,7 @@ FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, s
     part_ = make_part(mesh, places, cells_within(mesh, places, *choice.box));
     if (parallel::sum(mesh.comm, GlobalIndex(part_->entries.size())) == 0) {
       if (parallel::comm_rank(mesh.comm) == 0)
-        log::warn("simulation.output.box: no cell of '{}' lies in it; none of its fields are written.", name);
+        log::warn("simulation.output.box contains no cell of '{}': none of its fields are written.", name);
       return;
     }
   }

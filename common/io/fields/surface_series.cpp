@@ -36,7 +36,7 @@ std::string wrong_surfaces(const std::vector<std::string>& names, const std::vec
   if (is_all(names)) return "";
   for (const std::string& name : names)
     if (std::ranges::find(patches, name) == patches.end())
-      return fmt::format("'{}' is not a patch of the boundary. {} The one word 'all' stands for all of them",
+      return fmt::format("'{}' is not a patch of the boundary. {} The single word 'all' selects all of them",
                          name, base::did_you_mean(name, patches, "patches"));
   return "";
 }

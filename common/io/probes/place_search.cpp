@@ -246,7 +246,7 @@ void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std:
                           .limit = size < smallest ? smallest : largest,
                           .sentence = fmt::format("mesh size: {:.3g} m (usual: {:g} to {:g} m): implausible",
                                                   size, smallest, largest),
-                          .advice = "check 'mesh-scale' (0.001 for a mesh in millimetres)"});
+                          .advice = "check 'mesh-scale' (0.001 for a mesh in millimeters)"});
   double farthest = 0;
   for (const Vec3& place : places) farthest = std::max(farthest, place.norm());
   if (farthest > 0 && farthest < corner * size)
@@ -259,7 +259,7 @@ void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std:
              fmt::format("probe positions: all within {:.3g} m of the origin in a mesh of {:.3g} m (usual: "
                          "over {:.3g} m): implausible",
                          farthest, size, corner * size),
-         .advice = "is the mesh in millimetres? Then set 'mesh-scale: 0.001'"});
+         .advice = "is the mesh in millimeters? Then set 'mesh-scale: 0.001'"});
 }
 
 }  // namespace couplet::io

@@ -144,7 +144,7 @@ struct InpDeck {
   InpElements elements;
   InpSets node_sets, element_sets;
   std::vector<InpSurface> surfaces;
-  /// *SOLID SECTION, by the names of their sets.
+  /// Sections from *SOLID SECTION, named by their sets.
   std::vector<InpSet> sections;
   std::set<std::string> passed_over;  ///< keywords and types that are irrelevant for the mesh
   std::set<std::string> connections;  ///< keywords that connect nodes of the mesh, which are not read

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The coupler: added mass, schemes, programs of others."""
 import json
-import os
 import re
 import sys
 
@@ -94,12 +93,8 @@ def fenicsx(job):
     folder, end = job.scratch / "fenicsx", 0.2 if job.quick else 0.8
     folder.mkdir()
     options = [f"--set=simulation.end-time={end}", f"--set=simulation.output.folder={folder / 'out'}", "--set=participants.solid={program: flap_fenicsx}"]
-    command = ["mpirun", "--oversubscribe"]
-    for program in ("coupler", "fluid_solver", "mesh_mover"):
-        command += ["-n", "1", job.build / "bin" / program, job.root / "configs" / FLAP / "case.yaml", *options, ":"]
-    command += ["-n", "1", "/usr/bin/python3", job.root / "client/examples/flap_fenicsx.py", "solid"]
-    job.environment["PYTHONPATH"] = os.pathsep.join([str(job.root / "client/python"), os.environ.get("PYTHONPATH", "")])
-    job.done(command, 3600, cwd=folder)
+    job.done([job.root / "scripts/couplet", "run", job.root / "configs" / FLAP, "--bin", job.build / "bin", *options,
+              f"--with=solid=/usr/bin/python3 {job.root / 'client/examples/flap_fenicsx.py'} solid"], 3600, cwd=folder)
     theirs = np.loadtxt(folder / "solid.csv", delimiter=",")[:, 1]
     ours = job.case(FLAP, (f"simulation.end-time={end}",)).probes("solid")["tip x [m]"]
     n = min(len(theirs), len(ours))

@@ -18,7 +18,7 @@ def fsi3(job, keys):
 
 
 def work(job, *keys):
-    """Of fluid and structure over the run [J]."""
+    """Returns the work of fluid and structure over the run [J]."""
     run, text = fsi3(job, keys)
     given, taken, *_ = (float(np.sum(v)) for name, v in run.table("coupler", "balance.csv").items() if name.endswith("work of the step [J]"))
     apart = abs(given + taken if given * taken < 0 else given - taken) / max(abs(given), abs(taken))
@@ -26,7 +26,7 @@ def work(job, *keys):
 
 
 def ledger(job, *keys):
-    """What the plate's own time scheme loses or makes, of what it holds at most and of what went in."""
+    """Returns the energy that the plate's time scheme loses or creates, relative to its largest energy and to the input."""
     energies = fsi3(job, keys)[0].table("solid", "energies.csv")
     worst = np.abs(energies["lost by the scheme [J]"]).max() / (energies["strain [J]"] + energies["kinetic [J]"]).max()
     return f"{worst:.1e} of the most energy that it holds", worst <= 1e-3
@@ -44,7 +44,7 @@ def swung(job, step, cells, end, *keys):
 
 
 def force(job, step, cells):
-    """At 1.25 s [N]; forces are given at the middle of the steps."""
+    """Returns the force at 1.25 s [N]. Forces are given at the middle of the steps."""
     _, forces = swung(job, step, cells, AT + 2 * step)
     return float(forces[-3:-1].mean())
 
@@ -61,7 +61,7 @@ def beside_finer(job):
 
 
 def power(job):
-    """Of the last step to 1.25 s: what the wall gives beside what the fluid gains and its viscosity takes, by forces.csv and energy.csv."""
+    """Compares, in the last step to 1.25 s, the power of the wall with the gain of the fluid and its dissipation (forces.csv, energy.csv)."""
     step = 0.01
     run, forces = swung(job, step, 48, AT, ".output.energy-budget=true")
     energy = run.table("fluid", "energy.csv")
@@ -78,7 +78,7 @@ COARSE = ("participants.solid.mesh-parameters={n_side: 40, n_tip: 4}", *(
 
 
 def tip(job, rho, mu, step):
-    """At 0.2 s [m], and the run's own estimate of the step's error (a share); None where the run ended before."""
+    """Returns the tip's displacement at 0.2 s [m] and the run's own relative estimate of the step's error, or None if the run ended earlier."""
     try:
         run = job.case("perpendicular-flap", (
             "simulation.end-time=0.2", f"simulation.time-step={step}", "simulation.output.interval=0", "simulation.checkpoint.interval=0",
@@ -90,7 +90,7 @@ def tip(job, rho, mu, step):
 
 
 def estimates(job):
-    """Of steps of 10, 5 and 2.5 ms in the rungs that end: beside the limit of the two finest, of the order that they show, 1 to 2."""
+    """Compares the estimates for steps of 10, 5 and 2.5 ms, in the cases that finish, with the limit of the two finest for the order that they show (1 to 2)."""
     ratios = []
     for rho, mu in ((rho, mu) for rho in (1000, 100, 10, 1) for mu in (10, 1, 0.1, 0.01)):
         found = [tip(job, rho, mu, step) for step in STEPS]
@@ -121,7 +121,7 @@ BY_HAND = {10: 34, 91: 37, 1000: 44}  # passes of ten steps with a pressure tole
 
 
 def passes(job, density):
-    """Of ten steps; None if one of them failed."""
+    """Returns the passes of ten steps, or None if one of them failed."""
     try:
         log = job.case("tests/coupling/piston/case.yaml", ("participants.fluid.pressure-tolerance=1e-6", "coupling.convergence.relative=1e-5",
                                                            f"participants.fluid.density={density}"), timeout=120).log

@@ -11,7 +11,7 @@ import tempfile
 import atlas
 
 FOAM = "solidDisplacementFoam"
-# What of a study is run (--only: the sizes that a busy machine allows), its quantity, and the error that each program's best run has at most.
+# Part of a study that is run (--only: the sizes that a busy machine allows), its quantity, and the largest error of each program's best run.
 PEERS = {
     "plate B": ("elliptic-plate/case.yaml", "4-corrected-1e-8,8-corrected-1e-8,12-corrected-1e-8,16-corrected-1e-8", "displacement",
                 {"CalculiX C3D8I": 0.02, "CalculiX C3D20R": 0.01, FOAM: 0.1}),
@@ -185,7 +185,7 @@ def placed(folder):
 
 
 def halved(folder):
-    """Whether a failed step made the run continue with shorter ones."""
+    """Returns true if a failed step made the run continue with shorter ones."""
     for file in pathlib.Path(folder).glob("out/*/steps.csv"):
         with open(file, newline="") as rows:
             steps = [float(r["dt [s]"]) for r in csv.DictReader(rows)]

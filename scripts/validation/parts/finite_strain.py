@@ -8,6 +8,7 @@ import numpy as np
 # u1 / L of converged three-dimensional finite elements (L = 10 sides).
 SVK = {0.2: 0.06639, 0.4: 0.13108, 0.8: 0.24992, 1.6: 0.43134}
 NEO = 0.720308  # K = 5
+CURVE = {"saint-venant-kirchhoff": {1: 0.302484, 2: 0.496223, 5: 0.721578, 10: 0.824823}, "neo-hookean": {1: 0.302244, 2: 0.495443, 5: NEO, 10: 0.823304}}
 EDGE = {"quarter": (0.1, 0.1, 0.5), "middle": (0.1, 0.1, 1.0)}  # places on an edge of the section
 
 
@@ -33,8 +34,30 @@ def hook(job, across, sides, wanted):
     return f"{u:.5f}, {error:+.3f} %, {steps} load steps that were accepted", abs(error) <= 0.3
 
 
+def curve(job, across):
+    """Figure 3.11, left: ten load steps to K 10 with each law."""
+    words, worst = [], 0
+    for law, wanted in CURVE.items():
+        probes = beam(job, across, 10 * across, law, 10, steps=10)[0].probes("solid")
+        u = np.hypot(probes["tip x [m]"], probes["tip y [m]"]) / 2
+        errors = {K: 100 * (float(np.interp(K / 10, probes["time [s]"], u)) / one - 1) for K, one in wanted.items()}
+        worst = max(worst, *map(abs, errors.values()))
+        words.append(f"{law} " + ", ".join(f"K {K}: {wanted[K] * (1 + e / 100):.4f} ({e:+.3f} %)" for K, e in errors.items()))
+    return "; ".join(words), worst <= 0.3
+
+
+def slender(job, across):
+    """Table 3.7, and of figures 3.12 and 3.13 the growth of the axis and the largest shear."""
+    words, close, maps = [], True, job.beside("configs/bent-beam/maps.py")
+    for sides, wanted in {10: 0.82253, 20: 0.81280, 40: 0.81050}.items():
+        run, u = beam(job, across, sides * across, "neo-hookean", 10, 0.2 * sides, more=(".output={strain: true}",))
+        words.append(f"L {sides}: {u:.5f} ({100 * (u / wanted - 1):+.2f} %, elastica {100 * (u / 0.81061 - 1):+.2f} %), {maps.text(maps.Section(run.folder, across))}")
+        close = close and abs(u / wanted - 1) <= 0.002
+    return "; ".join(words), close
+
+
 def slopes(job):
-    """Of three meshes halved twice, by what they differ from each other."""
+    """Returns the orders of convergence from the differences between three meshes, each halved."""
     runs = [beam(job, n, 10 * n, "neo-hookean", 5) for n in (2, 4, 8)]
     u = [value for _, value in runs]
     of_u = math.log2((u[1] - u[0]) / (u[2] - u[1])) if (u[1] - u[0]) * (u[2] - u[1]) > 0 else 0

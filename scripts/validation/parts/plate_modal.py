@@ -18,7 +18,7 @@ def reed(job):
 
 # -- the plate in the flow --------------------------------------------------------------------------------------------
 def thin_plate(job, structure):
-    """{what: number} of configs/thin-plate with 'plate' or 'solid': first maximum of the tip [m], frequency [Hz], seconds in the structure's solve."""
+    """Returns {what: number} of configs/thin-plate with 'plate' or 'solid': first maximum of the tip [m], frequency [Hz], seconds in the structure's solve."""
     def make():
         out = job.scratch / f"thin-plate-{structure}"
         job.environment["COUPLET_BIN"] = str(job.build / "bin")
@@ -31,14 +31,14 @@ def thin_plate(job, structure):
 
 
 def beside_solid(job, what, share=None, times=None):
-    """Within this share of solid_solver's, or so many times less."""
+    """Compares a result with that of solid_solver: within this share, or smaller by this factor."""
     a, b = (thin_plate(job, structure)[what] for structure in ("plate", "solid"))
     text = f"plate_modal {a:.5g}, solid_solver {b:.5g}: "
     return (f"{text}{b / a:.0f} times", b / a >= times) if times else (f"{text}{100 * (a / b - 1):+.2f} %", abs(a / b - 1) <= share)
 
 
 def restarted(job, what):
-    """What tests/coupling/plate/restart.py says of a coupled restart in the middle of a contact."""
+    """Returns the output of tests/coupling/plate/restart.py for a coupled restart in the middle of a contact."""
     def make():
         result = job.run(["/usr/bin/python3", job.root / "tests/coupling/plate/restart.py", "coupled", job.root / "configs", job.build / "bin"])
         if result.returncode != 0 and "apart by" not in result.stdout:

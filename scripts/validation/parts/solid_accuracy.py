@@ -16,7 +16,7 @@ from couplet.runs.results import Results
 
 
 def quiet(text, right, run):
-    """What a row shows of a run that must not warn, and whether it is right."""
+    """Returns the text of a row whose run must not warn, and whether it is right."""
     said = WARNING.findall(run.log)
     return f"{text}, {said[0] if said else 'no warning'}", right and not said
 
@@ -90,7 +90,7 @@ def ours(job, case, h):
 
 
 def theirs(job, case, h):
-    """Folder with the input of the case for CalculiX and what it gave, and the input; motion is no obstacle to modes."""
+    """Returns the folder with CalculiX's input and output for the case, and the input. Cases in motion are allowed for modes."""
     def make():
         data = Case(job.root / "configs" / case / "case.yaml").data
         section = {**data["participants"]["solid"], "analysis": "static", "mesh-parameters": {"h": h}}
@@ -114,7 +114,7 @@ def median_of(run):
 
 
 def our_seconds(job, case, h):
-    """(whole process, of it before the first step and after the last: start-up, reading, writing)"""
+    """Returns (whole process, of it before the first step and after the last: start-up, reading, writing)"""
     def once():
         run = ours(job, case, h)
         steps = sum(float(x) for x in re.findall(r"^(?:begin_step|solve|accept_step)\s+([\d.]+)", run.log, re.M))
@@ -123,7 +123,7 @@ def our_seconds(job, case, h):
 
 
 def cheapest(meshes, error, limit):
-    """(h, error) of the coarsest mesh that is within the limit as the next finer one is, if one is left."""
+    """Returns (h, error) of the coarsest mesh that is within the limit as the next finer one is, if one is left."""
     found = None
     for h in meshes:
         e = error(h)
@@ -199,14 +199,14 @@ BODIES = (
 
 
 def moved(job, case, column, mesh, keys):
-    """(displacement at the probe, estimate of its error: what mesh, steps and solvers leave, without what neglected effects change)"""
+    """Returns (displacement at the probe, estimate of its error: what mesh, steps and solvers leave, without what neglected effects change)"""
     run = job.case(case, (f".mesh-parameters={{{mesh}}}", *keys))
     parts = run.report("solid")["errors"]
     return next(v for name, v in run.last("solid", "probes.csv").items() if name.startswith(column)), sum(parts[k] or 0 for k in ("mesh", "step", "linear"))
 
 
 def stress(job, case, mesh, keys, place):
-    """(xx, yy, zz and sqrt 2 times xy, yz, xz [Pa]; estimated error over their norm)"""
+    """Returns (xx, yy, zz and sqrt 2 times xy, yz, xz [Pa]; estimated error over their norm)"""
     run = job.case(case, (f".mesh-parameters={{{mesh}}}", f".probes.surface={{point: {list(place)}, fields: [stress]}}", *keys))
     parts = {name[len("surface stress-"):]: value for name, value in run.last("solid", "probes.csv").items() if name.startswith("surface stress-")}
     told = next(f["number"] for f in run.findings() if f["id"] == "stress-error" and "'surface'" in f["sentence"])
@@ -214,7 +214,7 @@ def stress(job, case, mesh, keys, place):
 
 
 def ratios(job, what):
-    """[(estimated over true error, case and mesh)] of the displacements or the stresses."""
+    """Returns [(estimated over true error, case and mesh)] of the displacements or the stresses."""
     def make():
         found = []
         for case, column, meshes, fine, places, keys in BODIES:

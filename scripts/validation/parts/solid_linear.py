@@ -9,7 +9,7 @@ from couplet.study.quantities import top
 
 def thick_peak(job, damping, gradient, mesh, step, wanted, limit):
     """First maxima of the deflection and of the stress at the bottom. `wanted`: deflection [mm], its time [s] (none: not compared), stress [MPa]."""
-    keys = (".damping={%s}" % damping, ".mesh-parameters={n: %d, nz: %d}" % tuple(mesh), "simulation.end-time=0.0116", f"simulation.time-step={step}",
+    keys = (".damping=" + ("{%s}" % damping if damping else "~"), ".mesh-parameters={n: %d, nz: %d}" % tuple(mesh), "simulation.end-time=0.0116", f"simulation.time-step={step}",
             ".solution-method={type: newton-krylov, face-gradient: %s, relative-tolerance: 1e-8}" % gradient)
     probes = job.case("thick-plate", keys, timeout=6 * 3600).probes("solid")
     (t, w), (_, s) = (top(probes["time [s]"], values) for values in (-1e3 * probes["centre z [m]"], probes["bottom stress-xx [Pa]"] / 1e6))
@@ -19,7 +19,7 @@ def thick_peak(job, damping, gradient, mesh, step, wanted, limit):
 
 # -- dynamics ---------------------------------------------------------------------------------------------------------
 def vibration(job, scheme, dt):
-    """(period, decay of the amplitude a period) of the free vibration of case C."""
+    """Returns (period, decay of the amplitude a period) of the free vibration of case C."""
     run = job.case("vibrating-cantilever", (f"simulation.time-step={dt}", "simulation.output.interval=100", ".solution-method={face-gradient: thesis}",
                                             f".time-scheme.type={scheme}"))
     module = job.beside("configs/vibrating-cantilever/vibration.py")
@@ -27,7 +27,7 @@ def vibration(job, scheme, dt):
 
 
 def elongation(job, dt):
-    """Beside the period of the same mesh without error in time: the trapezoidal one at 0.1 s less its elongation, which goes with the square of the step, from 0.2 s."""
+    """Returns the elongation relative to the period of the same mesh without error in time. That period is the trapezoidal one at 0.1 s minus its elongation, which grows with the square of the step and follows from 0.2 s."""
     fine, coarse = (vibration(job, "trapezoidal", step)[0] for step in (0.1, 0.2))
     period = fine - (coarse - fine) / 3
     found = {scheme: vibration(job, scheme, dt) for scheme in ("euler", "three-point", "trapezoidal", "bathe")}
@@ -94,10 +94,23 @@ def memory(job, method):
 
 
 def reproduced(found):
-    """Of {what: {name: (ratio, the published one or None)}}: each within a factor of 1.5 of what the thesis has."""
+    """Checks {what: {name: (ratio, the published one or None)}}: each within a factor of 1.5 of the thesis."""
     text = "; ".join(f"{what}: " + ", ".join(f"{name} {ratio:.2f}" + (f" ({wanted})" if wanted else "") for name, (ratio, wanted) in ratios.items())
                      for what, ratios in found.items())
     return text, all(wanted is None or 1 / 1.5 <= ratio / wanted <= 1.5 for ratios in found.values() for ratio, wanted in ratios.values())
+
+
+def table_3_1_a(job):
+    """Case A, meshes 2 to 4: processor seconds of the whole program, and iterations."""
+    found, words = {}, []
+    for refine, (s, sa) in {2: (1.9, 2.0), 4: (1.9, 2.4), 8: (1.5, 2.4)}.items():
+        runs = {m: race(job).ours(job, "le11", ["participants.solid.mesh-parameters={refine: %d}" % refine, "participants.solid.solution-method="
+                                                "{%s, relative-tolerance: 1e-7, max-iterations: 20000}" % race(job).METHODS[m]]) for m in ("S", "SA", "C", "newton-krylov")}
+        t = {m: run.cpu for m, (run, _, _) in runs.items()}
+        found[f"refine {refine}"] = {"S/SA": (t["S"] / t["SA"], s), "SA/C": (t["SA"] / t["C"], sa), "C/newton-krylov": (t["C"] / t["newton-krylov"], None)}
+        words.append(", ".join(f"{m} {int(n[-1])}" for m, (_, _, n) in runs.items()))
+    text, met = reproduced(found)
+    return f"{text}; iterations {'; '.join(words)}", met
 
 
 def table_3_1(job):
@@ -109,13 +122,18 @@ def table_3_1(job):
     return reproduced(found)
 
 
-def table_3_4(job):
-    """Case C, steps of 0.01 and 0.1 s: seconds per step over C's."""
-    found = {}
-    for step, wanted in ((0.01, {"S": 10, "SA": 7.9, "newton-krylov": None}), (0.1, {"S": 12, "SA": 5.9, "newton-krylov": None})):
-        c, _ = race(job).beam(job, race(job).METHODS["C"], step=step)
-        found[f"{step} s"] = {m: (race(job).beam(job, race(job).METHODS[m], step=step)[0] / c, wanted[m]) for m in wanted}
-    return reproduced(found)
+# Thesis's table 3.4: S, SA and SA with the predictor of Euler over C, by the step.
+TABLE_3_4 = {0.01: (10, 7.9, 2.7), 0.1: (12, 5.9, 3.7), 1: (20, 5.9, 4.9), 2: (32, 7.5, 6.8)}
+
+
+def table_3_4(job, step, steps):
+    """Case C: processor seconds per step over C's, and iterations per step."""
+    methods = {"C": ("C", "none"), "S": ("S", "none"), "SA": ("SA", "none"), "SA-E": ("SA", "euler"), "newton-krylov": ("newton-krylov", "euler")}
+    beams = {name: race(job).beam(job, f"{race(job).METHODS[method]}, predictor: {predictor}", step=step, steps=steps, times=1)
+             for name, (method, predictor) in methods.items()}
+    text, met = reproduced({f"{step} s": {name: (beams[name][0] / beams["C"][0], wanted)
+                                          for name, wanted in zip(("S", "SA", "SA-E", "newton-krylov"), (*TABLE_3_4[step], None))}})
+    return f"{text}; iterations per step {', '.join(f'{name} {n:.0f}' for name, (_, n) in beams.items())}", met
 
 
 # Seconds of the thesis's table 3.3: whole runs of case C by the block-coupled method.

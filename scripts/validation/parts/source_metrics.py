@@ -29,7 +29,7 @@ def tracked(job, *folders):
 
 
 def texts(job):
-    """{path: text} of the C++ of programs and common."""
+    """Returns {path: text} of the C++ of programs and common."""
     def make():
         return {f: (job.root / f).read_text() for f in tracked(job, *HOUSE) if f.endswith((".cpp", ".hpp")) and (job.root / f).is_file()}
     return job.once("texts of the sources", make)
@@ -84,7 +84,7 @@ def judging(job, most):
 
 
 def judging_words(job):
-    """In names of files and classes."""
+    """Words in names of files and classes."""
     text = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items()).lower()
     found = [word for word in JUDGING_WORDS if word in text]
     return f"{len(found)} beside diagnostic and finding: {', '.join(found) or 'none'}", not found
@@ -98,7 +98,7 @@ TEN = (("cook", (".mesh-parameters={n: 64, shape: 0}",), True), ("elliptic-plate
 
 
 def share_of_diagnostics(job, most, most_of_static):
-    """By the timer that every run has, over the processor time of its process; of a coupled job the participant with the largest share. The timer also
+    """Returns the time of the timer that every run has, over the processor time of its process. In a coupled job the participant with the largest share counts. The timer also
     counts while other processes run, hence the least of three runs, and over the time on the clock if that is longer."""
     found = {}
     for case, keys, is_static in TEN:

@@ -52,8 +52,8 @@ TEST(CommandLine, help_tells_options_keys_and_how_to_launch) {
   for (const char* text :
        {"Elastic solids.", "--participant NAME", "--set a.b=v", "--restart FOLDER", "--check",
         "  density  mass per volume [kg/m^3] (required)", "mpirun -n 4 solid_solver case.yaml",
-        "mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver case.yaml",
-        "Exit codes: 0", "Keys of this program's section under 'participants'"})
+        "mpirun -n 5 couplet-exec case.yaml -n fluid=2", "Exit codes: 0",
+        "Keys of this program's section under 'participants'"})
     EXPECT_THAT(parsed.output, HasSubstr(text));
 }
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A minimal Debian of its own (debootstrap, as root, from the mirror of this machine's apt; COUPLET_CHROOT names one that is there), and in it the
-statements of packaging/Containerfile, one by one. Usage: chroot.py BUILD [package [DEB] | container]. package: the second image with cpack's .deb of BUILD:
-installed by apt, used by a new user, removed. container: the first image's statements, too, which compile everything; its .deb is the one used."""
+statements of packaging/Containerfile, one by one. Usage: chroot.py BUILD [package [DEB] | container] [bookworm | trixie]. package: the second image with
+cpack's .deb of BUILD: installed by apt, used by a new user, removed. container: the first image's statements, too, which compile everything, and the
+commands of the quick start there; its .deb is the one used."""
 import os
 import pathlib
 import re
@@ -13,8 +14,9 @@ import tempfile
 from scene import ROOT
 from checks import check, end  # noqa: E402
 
+SUITE = sys.argv.pop() if sys.argv[-1] in ("bookworm", "trixie") else "bookworm"
 build, what = pathlib.Path(sys.argv[1]), (sys.argv[2:] or ["package"])[0]
-SUITE, MIRROR = "bookworm", "http://deb.debian.org/debian"
+MIRROR = "http://deb.debian.org/debian"
 IGNORED = shutil.ignore_patterns(*(line.removeprefix("**/") for line in (ROOT / ".dockerignore").read_text().split()))
 if os.geteuid() != 0 or not shutil.which("debootstrap", path=os.environ["PATH"] + ":/usr/sbin"):
     print("skipped: no debootstrap here, or not root")
@@ -76,7 +78,7 @@ def make(system, statements, package):
         elif word == "ENTRYPOINT":
             entry = " ".join(eval(rest))
         else:
-            check(f"{word} {rest}: a statement that this test knows", word == "CMD" or word == "FROM" and SUITE in rest)
+            check(f"{word} {rest}: a statement that this test knows", word == "CMD" or word == "FROM" and "debian:" in rest)
     return user, entry
 
 
@@ -100,6 +102,15 @@ def used(system, user, entry):
         check(f"man {page}", page in system.must(f"man {page}", user=user).lower())
 
 
+def follow(maker):
+    """The demo, and all commands of the quick start in one shell, in a checkout with its build."""
+    maker.must("apt-get install -q -y --no-install-recommends sudo && echo 'APT::Get::Assume-Yes \"true\";' > /etc/apt/apt.conf.d/yes")
+    text = (ROOT / "docs/quickstart.md").read_text()
+    (maker.folder / "tmp/quickstart").write_text("\n".join(re.findall(r"^```sh\n(.*?)^```", text, flags=re.M | re.S)))
+    maker.must("bash -ex /tmp/quickstart", folder="/couplet")
+    check("the picture of the demo", (maker.folder / "couplet/configs/perpendicular-flap/out/perpendicular-flap.png").stat().st_size > 3000)
+
+
 def removed(system):
     system.must("couplet --version && couplet gallery && python3 -c 'import couplet'")  # as root: Python compiles into the package's folders
     check("installed files bear its name", len(system.named()) > 100)
@@ -118,6 +129,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-chroot-") as scratch:
     if what == "container":
         maker = System(folder / "maker", base)
         make(maker, first, None)
+        follow(maker)
         package = next((maker.folder / "couplet/build").glob("*.deb"))
     elif sys.argv[3:]:
         package = pathlib.Path(sys.argv[3])

@@ -85,7 +85,7 @@ def deb(folder, home):
     subprocess.run(["dpkg", "-x", package, folder / "root"], check=True)
     root = folder / "root/usr"
     for program in sorted((root / "bin").iterdir()):
-        if program.name != "couplet":
+        if program.name not in ("couplet", "couplet-exec"):
             libraries = subprocess.run(["ldd", program], capture_output=True, text=True).stdout
             check(f"libraries of {program.name}", "not found" not in libraries and str(build) not in libraries and "libmpi" in libraries, libraries[:200])
     petsc = {p for p in ("coupler", "thermocline", "mesh_tool", "fluid_solver", "solid_solver") if "libpetsc" in subprocess.run(["ldd", root / "bin" / p], capture_output=True, text=True).stdout}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, side_by_side, stop, wrong, kill, tell, gallery, python"""
+"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, any_launcher, side_by_side, stop, wrong, kill, tell, gallery, python"""
 import json
 import os
 import pathlib
@@ -14,7 +14,8 @@ import time
 import h5py
 
 from scene import ROOT, call, call_here, case_in, environment, start
-from checks import check, end  # noqa: E402  (scene knows where it is)
+from checks import COUPLED, check, end, mpmd  # noqa: E402  (scene knows where it is)
+from couplet.runs import Case, Job  # noqa: E402
 
 bin_, what = pathlib.Path(sys.argv[1]), sys.argv[2]
 
@@ -27,7 +28,7 @@ def left_behind(folder):
             words = file.read_bytes().decode(errors="replace")
         except OSError:
             continue
-        if str(folder) in words and (words.startswith("mpirun") or words.startswith(str(bin_))):
+        if str(folder) in words and words.startswith(("mpirun", "prterun", str(bin_))):
             found.append(words.replace("\0", " ")[:80])
     return found
 
@@ -42,6 +43,29 @@ def until(condition, seconds=60):
     while not condition() and time.monotonic() < limit:
         time.sleep(0.02)
     return condition()
+
+
+def any_launcher(folder):
+    """couplet-exec becomes the program of its rank, as each launcher tells it, and says how many processes a case needs."""
+    case, programs = case_in(folder / "a", bin_), folder / "said/bin"
+    programs.mkdir(parents=True)
+    for name in COUPLED:
+        (programs / name).write_text('#!/bin/sh\necho "$(basename $0) $COUPLET_PART $*"\n')
+        (programs / name).chmod(0o755)
+    run = [ROOT / "scripts/couplet-exec", case, "-n", "fluid=2", "--set", "a.b=1", "--bin", programs]
+    wanted = [f"coupler 0 {case} --set a.b=1", *2 * [f"fluid_solver 1 {case} --participant fluid --set a.b=1"],
+              f"solid_solver 2 {case} --participant solid --set a.b=1", f"mesh_mover 3 {case} --participant mover --set a.b=1"]
+    for launcher in (("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), ("PMI_RANK", "PMI_SIZE"), ("SLURM_PROCID", "SLURM_NTASKS"), ("PMIX_RANK",)):
+        told = [subprocess.run(run, capture_output=True, text=True, env={**environment(bin_), **dict(zip(launcher, (str(rank), "5")))}).stdout.strip() for rank in range(5)]
+        check(f"the programs by {launcher[0]}", told == wanted, told)
+    few = subprocess.run(["mpirun", "--oversubscribe", "-n", "3", *map(str, run)], capture_output=True, text=True, env=environment(bin_))
+    check("too few processes: one message with the right number", few.returncode == 2 and few.stderr.count("needs 5 processes (coupler 1, fluid 2, solid 1, mover 1), but 3 were started") == 1 and "mpirun -n 5 couplet-exec" in few.stderr, few.stderr)
+    none = subprocess.run(run, capture_output=True, text=True, env=environment(bin_))
+    check("no launcher", none.returncode == 2 and "needs 5 processes" in none.stderr and "but 1 was started" in none.stderr, none.stderr)
+    missing = subprocess.run(["mpirun", "--oversubscribe", "-n", "5", *map(str, run), "--with", "solid=./no-such-program body"], capture_output=True, text=True, env=environment(bin_))
+    check("a command that is not there is named once", missing.returncode == 2 and missing.stderr.count("couplet-exec: ./no-such-program: No such file or directory") == 1, missing.stderr)
+    alone = subprocess.run(["mpirun", "--oversubscribe", "-n", "2", ROOT / "scripts/couplet-exec", case, "--participant", "solid", "--bin", programs], capture_output=True, text=True, env=environment(bin_))
+    check("one participant takes all processes", alone.stdout.splitlines() == 2 * [f"solid_solver 0 {case} --participant solid"], alone.stdout + alone.stderr)
 
 
 def by_hand(folder):
@@ -61,6 +85,10 @@ def by_hand(folder):
     same = call(bin_, "compare", folder / "by-couplet", folder / "a/out")
     count = re.match(r"(\d+) columns and fields: equal bit for bit", same.stdout)
     check("both leave the same, bit for bit", same.returncode == 0 and count and int(count[1]) > 50, same.stdout)
+    shutil.rmtree(folder / "a/out")
+    short = subprocess.run(mpmd([[bin_ / program, case] for program in COUPLED]), capture_output=True, text=True, env=environment(bin_))
+    same = call(bin_, "compare", folder / "by-couplet", folder / "a/out")
+    check("and so does a line that names the programs", short.returncode == 0 and same.returncode == 0, short.stderr + same.stdout)
     for run, rounded in (("by-couplet", "1e-12"), ("a/out", "-2e-12")):
         (folder / run / "solid/round-off.csv").write_text(f"time [s],x [N],y [N]\n1,1000,{rounded}\n")
     same = call(bin_, "compare", folder / "by-couplet", folder / "a/out", "--tolerance", "1e-9")
@@ -78,19 +106,19 @@ def by_hand(folder):
     other = call(bin_, "compare", folder / "a/out", folder / "other")
     check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "solid/probes.csv: tip" in other.stdout, other.stdout[-300:])
     two = call(bin_, "run", case, "-n", "fluid=2", "--print").stdout
-    check("-n gives ranks", "-n 2 " + str(bin_ / "fluid_solver") in two and two.count("-n 1 ") == 3, two)
+    check("-n gives ranks", two.startswith("mpirun --oversubscribe -n 5 ") and two.endswith(" -n fluid=2\n"), two)
     for name, seconds in (("fluid", 3), ("solid", 1), ("mover", 0.5)):
         report = folder / f"a/out/{name}/run.json"
         report.write_text(re.sub(r'"processor-working": [\d.e-]+', f'"processor-working": {seconds}', report.read_text()))
     shared = call(bin_, "run", case, "-n", "6", "--print")
-    check("-n 6 is divided by the work measured", re.search(r"-n 3 \S*fluid_solver", shared.stdout) and shared.stdout.count("-n 1 ") == 3, shared.stdout + shared.stderr)
+    check("-n 6 is divided by the work measured", " -n 6 " in shared.stdout and shared.stdout.endswith(" -n fluid=3,solid=1,mover=1\n"), shared.stdout + shared.stderr)
     for text in ("{", "[]"):
         report.write_text(text)
         told = call(bin_, "report", folder / "a/out")
         check("a damaged run.json is named", told.returncode == 2 and f"{report}: this is not the report of a run" in told.stderr and "Traceback" not in told.stderr, told.stderr)
     shutil.rmtree(folder / "a/out")
     foreseen = call(bin_, "run", case, "-n", "5", "--print")
-    check("or by the work expected", re.search(r"-n 2 \S*fluid_solver", foreseen.stdout) and foreseen.stdout.count("-n 1 ") == 3, foreseen.stdout + foreseen.stderr)
+    check("or by the work expected", " -n 5 " in foreseen.stdout and foreseen.stdout.endswith(" -n fluid=2,solid=1,mover=1\n"), foreseen.stdout + foreseen.stderr)
     batch = call(bin_, "run", case, "-n", "fluid=2", "--slurm=--time=5", "--print").stdout
     check("--slurm makes a script", batch.startswith("#!/bin/bash\n#SBATCH") and "--ntasks=5" in batch and "#SBATCH --time=5" in batch, batch)
 
@@ -209,8 +237,8 @@ def wrong(folder):
     """A bad case ends with exit code 2 and what to do, and leaves nothing."""
     case = case_in(folder / "a", bin_)
     for change in ("participants.solid.program=plate_modal", "participants.solid={program: plate_modal}"):
-        line = ask(bin_, "run", case, "--print", "--set", change)
-        check(f"{change}: this program is started", "bin/plate_modal " in line.stdout and "solid_solver" not in line.stdout, line.stdout + line.stderr)
+        parts = Job(Case(case, bin_.parent), sets=[change]).parts
+        check(f"{change}: this program is started", [words[0] for _, words in parts] == [str(bin_ / name) for name in ("coupler", "fluid_solver", "plate_modal", "mesh_mover")], parts)
     for change, said in (("participants.solid.material.density=heavy", "'heavy' is not a number"), ("participants.fluid.densty=1", "densty")):
         for command in ("run", "check"):
             result = ask(bin_, command, case, "--set", change)
@@ -348,5 +376,5 @@ def python(folder):
 
 
 with tempfile.TemporaryDirectory(prefix="couplet-command-") as scratch:
-    {"by_hand": by_hand, "side_by_side": side_by_side, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "python": python}[what](pathlib.Path(scratch))
+    {"by_hand": by_hand, "any_launcher": any_launcher, "side_by_side": side_by_side, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "python": python}[what](pathlib.Path(scratch))
 end()

@@ -86,6 +86,14 @@ with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
                 for page in ("", "gallery.html", "docs/config.html", "configs/cavity/index.html"):
                     driver.get(address + page)
                     check(f"no error on the console: {page or 'index.html'}", not errors(driver) and driver.title.endswith("Couplet"), driver.title)
+                for page in (p for p in sorted(site.rglob("*.html")) if 'class="arithmatex"' in p.read_text()):
+                    driver.get(f"{address}{page.relative_to(site)}")
+                    count = "const all = [...document.querySelectorAll('.arithmatex')]; return [all.length, all.filter(e => e.querySelector('.mjx-chtml')).length]"
+                    limit = time.monotonic() + 30
+                    while len(set(driver.execute_script(count))) > 1 and time.monotonic() < limit:
+                        time.sleep(0.2)
+                    there, set_ = driver.execute_script(count)
+                    check(f"all {there} formulas of {page.name} are set", there > 1 and there == set_ and not errors(driver) and not driver.find_elements(By.CSS_SELECTOR, ".merror"), set_)
                 driver.get(address)
                 field = driver.find_element(By.CSS_SELECTOR, "input[data-md-component=search-query]")
                 driver.execute_script("arguments[0].focus(); arguments[0].value = 'hang-timeout'; arguments[0].dispatchEvent(new Event('keyup', {bubbles: true}));", field)

@@ -118,18 +118,15 @@ def a_job(slurm, folder, case):
 
 def by_hand(slurm, folder, case):
     """Runs the lines of docs/how-to/cluster.md."""
-    programs = ["coupler", "fluid_solver", "solid_solver", "mesh_mover"]
     shutil.rmtree(folder / "a/out")
-    script = "#!/bin/bash\n#SBATCH --job-name=flap --ntasks=4 --time=00:05:00\nexport OMP_NUM_THREADS=1\ncase=$SLURM_SUBMIT_DIR/case.yaml\n"
-    script += "mpirun --oversubscribe " + " : ".join(f"-n 1 {p} $case" for p in programs) + "\n"
+    script = "#!/bin/bash\n#SBATCH --job-name=flap --ntasks=4 --time=00:05:00\ncase=$SLURM_SUBMIT_DIR/case.yaml\nmpirun --oversubscribe -n 4 couplet-exec $case\n"
     said = slurm.run("sbatch", f"--output={folder}/hand", input=script, cwd=case.parent)
     state = slurm.ended(slurm.number(said))
     check("the batch script of the page", state and state[1] == "COMPLETED", ((folder / "hand").read_text() if (folder / "hand").exists() else said.stderr)[-400:])
     same(folder, "mpirun in a batch job")
     shutil.rmtree(folder / "a/out")
-    (case.parent / "programs.conf").write_text("".join(f"{i} {bin_ / p} case.yaml\n" for i, p in enumerate(programs)))
-    said = slurm.run("srun", "--mpi=pmix", "--ntasks=4", "--multi-prog", "programs.conf", cwd=case.parent, timeout=120)
-    check("the srun --multi-prog of the page", said.returncode == 0, said.stdout[-300:] + said.stderr[-500:])
+    said = slurm.run("srun", "--mpi=pmix", "--ntasks=4", "couplet-exec", "case.yaml", cwd=case.parent, timeout=120)
+    check("the srun line of the page", said.returncode == 0, said.stdout[-300:] + said.stderr[-500:])
     if said.returncode == 0:
         same(folder, "srun")
 

@@ -5,7 +5,7 @@ from jobs import Suite, case_text, mpmd
 suite = Suite(at_once=2)
 text = case_text()
 case = {"case.yaml": text}
-right = "Start it with: mpirun -n 1 coupler case.yaml : -n 1 toy_piston case.yaml : -n 1 toy_spring case.yaml"
+right = "Start it with: couplet run case.yaml --with fluid='COMMAND ...' --with solid='COMMAND ...'"
 coupler, piston, spring = "1 coupler case.yaml", "1 toy_piston case.yaml", "1 toy_spring case.yaml"
 
 suite.scenario("all there", mpmd(coupler, "3 toy_piston case.yaml", "2 toy_spring case.yaml"), case, 0,

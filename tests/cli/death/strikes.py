@@ -122,7 +122,7 @@ def is_named(text, victim, pid):
     """By the job, or, before its programs know each other, by the launcher or by the guard of the start."""
     first = sum(list(RANKS.values())[:list(RANKS).index(victim)])
     ranks = "|".join(str(first + r) for r in range(RANKS[victim]))
-    return bool(re.search(rf"participant '{victim}' \([^)]*pid {pid}\)|process rank (?:{ranks}) with PID \d+ on node \S+ exited on signal|"
+    return bool(re.search(rf"participant '{victim}' \([^)]*pid {pid}\)|process rank (?:{ranks}) with PID \d+ on node \S+ exited on\s+signal|"
                           rf"{PROGRAMS[victim]} \(pid {pid}\)", text))
 
 

@@ -40,9 +40,9 @@ with tempfile.TemporaryDirectory() as folder:
     top = pathlib.Path(folder)
     for file in ("case.yaml", "fluid.geo", "plate.geo"):
         shutil.copy(project / "configs/reed-slice" / file, top)
-    refused(top, "a contact's own height beside that of its gap is refused", "contact.height: it is that of the gap 'overlap'",
+    refused(top, "a contact's own height beside that of its gap is refused", "contact.height: the gap 'overlap' already defines it",
             "participants.reed.contact.height=0.03 mm")
-    refused(top, "a contact's own opening beside that of its gap is refused", "contact.opening: it is that of the gap 'overlap'",
+    refused(top, "a contact's own opening beside that of its gap is refused", "contact.opening: the gap 'overlap' already defines it",
             "participants.reed.contact.opening=0.05 mm")
     refused(top, "an unknown gap is refused", "the fluid has no gap 'overlop'. Did you mean 'overlap'?", "participants.reed.contact.gap=overlop")
     refused(top, "a contact beside a gap that states another seat is refused", "the gap 'overlap' of the fluid states a seat as well",

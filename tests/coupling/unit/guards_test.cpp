@@ -73,16 +73,17 @@ TEST(OscillationGuard, added_mass_growth_is_named_with_a_scheme_that_holds) {
   EXPECT_THAT(text, HasSubstr("scheme: semi-implicit"));
   const int slow = spoken_at([](double n) { return std::pow(-1.02, n); });
   EXPECT_GT(slow, 0);
-  EXPECT_LT(slow, 60);
+  EXPECT_LT(slow, 70);
 }
 
-// The flap at rho_s = 1, mu = 1, whose every step converges.
-TEST(OscillationGuard, the_viscous_swing_of_the_semi_implicit_scheme_is_named) {
+// A cure that no test shows is not named.
+TEST(OscillationGuard, an_uneven_growth_is_named_with_its_period_and_its_part_of_the_motion) {
   std::string text;
   const auto swing = [](double n) { return 1e-4 * n + 2e-4 * std::pow(-1.6, n) * (1 + 0.3 * std::cos(n)); };
   EXPECT_GT(spoken_at(swing, Scheme::semi_implicit, &text), 0);
-  EXPECT_THAT(text, HasSubstr("wall shear at the predicted velocity"));
-  EXPECT_THAT(text, HasSubstr("scheme: implicit"));
+  EXPECT_THAT(text, HasSubstr("a period of two steps (0.02 s)"));
+  EXPECT_THAT(text, HasSubstr("of the largest motion"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("scheme:")));
 }
 
 TEST(OscillationGuard, smooth_motion_decaying_swings_rounding_and_steady_swings_pass) {
@@ -94,24 +95,28 @@ TEST(OscillationGuard, smooth_motion_decaying_swings_rounding_and_steady_swings_
   EXPECT_EQ(spoken_at([&](double n) { return 0.02 * n + 1e-6 * std::pow(-1.02, n / 4) * std::cos(pi * n); }),
             0)
       << "small beside the motion";
+  for (const double detuned : {0.02, 0.05, 0.1, 0.2, 0.39})  // promises/stiff-flap beats by the last one
+    for (const double phase : {0., 0.4, 0.8, 1.2})
+      EXPECT_EQ(spoken_at([&](double n) { return std::cos((pi - detuned) * n + phase); }), 0) << detuned;
+  for (const double power : {1, 2})
+    EXPECT_EQ(spoken_at([&](double n) { return std::pow(-1., n) * std::pow(std::min(n / 50, 1.), power); }),
+              0)
+        << "a rising load";
   EXPECT_EQ(spoken_at([](double) { return 0.; }), 0);
   EXPECT_EQ(spoken_at([](double n) { return n < 3 ? 0. : 1.; }), 0) << "a kick";
 }
 
-/// A body at rest half a millimeter off, whose residual swings grow to a hundredth of the coupling's tolerance.
-TEST(OscillationGuard, swings_below_the_tolerance_of_the_coupling_are_its_noise) {
-  for (const double tolerance : {0., 1e-5}) {
+/// A body at rest half a millimeter off, whose swings grow by 1.2 per step from 1e-10 of that: told at a thousandth, or at the
+/// coupling's tolerance.
+TEST(OscillationGuard, swings_below_a_thousandth_or_the_tolerance_of_the_coupling_are_no_part_of_the_answer) {
+  for (const double tolerance : {0., 1e-5, 1e-2}) {
     OscillationGuard guard(MPI_COMM_SELF, tolerance);
-    bool told = false;
-    for (int n = 0; n < 40; ++n)
-      told = told || guard.accepted({5e-4 * (1 + 1e-10 * std::pow(-1.2, n))}, 0.02, Scheme::semi_implicit);
-    EXPECT_EQ(told, tolerance == 0);
+    int told = 0;
+    for (int n = 0; n < 120 && told == 0; ++n)
+      if (guard.accepted({5e-4 * (1 + 1e-10 * std::pow(-1.2, n))}, 0.02, Scheme::semi_implicit)) told = n;
+    const double least = std::max(tolerance, OscillationGuard::floor);
+    EXPECT_NEAR(told, std::log(least / 1e-10) / std::log(1.2), 2) << tolerance;
   }
-  OscillationGuard guard(MPI_COMM_SELF, 1e-5);
-  bool told = false;
-  for (int n = 0; n < 120; ++n)
-    told = told || guard.accepted({5e-4 * (1 + 1e-10 * std::pow(-1.2, n))}, 0.02, Scheme::semi_implicit);
-  EXPECT_TRUE(told) << "beyond the tolerance";
 }
 
 TEST(OscillationGuard, steps_of_another_length_do_not_hide_it) {

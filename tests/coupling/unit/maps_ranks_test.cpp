@@ -128,13 +128,28 @@ TEST(MapsOverRanks, of_second_order_are_built_in_parts_as_on_one_rank) {
   }
 }
 
-/// n vertices on a line of 1 m, joined by edges.
-Interface line(int n) {
+/// Vertices on a line, joined by edges.
+Interface line_through(const std::vector<double>& x, double side = 1) {
   Interface s;
   s.dim = 2;
-  for (int i = 0; i < n; ++i) s.vertices.emplace_back(i / (n - 1.), 0, 0);
-  for (Index i = 0; i + 1 < n; ++i) tests::add_face(s, {i, i + 1}, {0, 1 / (n - 1.), 0});
+  for (const double at : x) s.vertices.emplace_back(at, 0, 0);
+  for (Index i = 0; i + 1 < Index(x.size()); ++i)
+    tests::add_face(s, {i, i + 1}, {0, side * (x[std::size_t(i) + 1] - x[std::size_t(i)]), 0});
   return s;
+}
+
+/// n vertices on a line of 1 m.
+Interface line(int n, double side = 1) {
+  std::vector<double> x;
+  for (int i = 0; i < n; ++i) x.push_back(i / (n - 1.));
+  return line_through(x, side);
+}
+
+TEST(MapsOverRanks, a_face_that_is_much_larger_than_others_finds_all_that_it_covers) {
+  std::vector<double> x{0};
+  for (int i = 0; i <= 20; ++i) x.push_back(0.9 + 0.005 * i);
+  for (const auto type : {MappingParameters::Type::projection, MappingParameters::Type::rbf})
+    expect_as_on_one_rank(line_through(x), line(41, -1), type);
 }
 
 TEST(MapsOverRanks, an_amount_at_a_vertex_goes_to_where_it_projects) {

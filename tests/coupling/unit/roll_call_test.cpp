@@ -32,12 +32,10 @@ TEST(RollCall, passes_when_all_are_there_in_any_order) {
 }
 
 TEST(RollCall, names_who_is_missing_and_how_to_start) {
-  EXPECT_EQ(
-      judge(come({"coupler", "fluid"}), expected, true).problem,
-      "The job cannot start:\n"
-      "  participant 'solid' (solid_solver) is missing: it was not started.\n"
-      "  Start it with: mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 solid_solver "
-      "case.yaml");
+  EXPECT_EQ(judge(come({"coupler", "fluid"}), expected, true).problem,
+            "The job cannot start:\n"
+            "  participant 'solid' (solid_solver) is missing: it was not started.\n"
+            "  Start it with: couplet run case.yaml");
 }
 
 TEST(RollCall, launch_line_has_a_placeholder_for_a_program_that_is_not_there) {
@@ -45,24 +43,14 @@ TEST(RollCall, launch_line_has_a_placeholder_for_a_program_that_is_not_there) {
   foreign[1].program = "no-such-program";
   std::vector<Attendant> list = come({"fluid", "coupler"});
   list.front().case_file = "(guest)", list.front().case_hash = 0;
-  EXPECT_THAT(
-      judge(list, foreign, true).problem,
-      HasSubstr("mpirun -n 1 coupler case.yaml : -n 1 <command of 'fluid'> : -n 1 solid_solver case.yaml"));
+  EXPECT_THAT(judge(list, foreign, true).problem,
+              HasSubstr("couplet run case.yaml --with fluid='COMMAND ...'"));
 }
 
 TEST(RollCall, launch_line_keeps_the_ranks_that_have_come) {
   std::vector<Attendant> list = come({"coupler", "fluid"});
   list.push_back(list.back());
-  EXPECT_THAT(judge(list, expected, true).problem, HasSubstr(": -n 2 fluid_solver case.yaml :"));
-}
-
-TEST(RollCall, launch_line_tells_participants_of_one_program_apart) {
-  std::vector<Expected> two = expected;
-  two[1].program = "solid_solver";
-  EXPECT_THAT(
-      judge(come({"coupler", "solid"}), two, true).problem,
-      HasSubstr("-n 1 solid_solver case.yaml --participant fluid : -n 1 solid_solver case.yaml --participant "
-                "solid"));
+  EXPECT_THAT(judge(list, expected, true).problem, HasSubstr("couplet run case.yaml -n fluid=2"));
 }
 
 TEST(RollCall, ranks_of_one_part_are_one_participant_and_two_parts_are_two) {

@@ -372,16 +372,19 @@ TEST(Acceleration, aitken_lands_on_the_fixed_point_of_a_contraction) {
   for (const double x : u) EXPECT_NEAR(x, 1, 1e-12);
 }
 
-TEST(Acceleration, anderson_solves_as_many_unknowns_as_it_remembers) {
-  // Four different rates: plain iteration would need hundreds of steps.
+TEST(Acceleration, anderson_solves_as_many_unknowns_as_it_remembers_and_forgets_the_oldest) {
+  // Four different rates: plain iteration would need hundreds of steps. With a history of three, Anderson's
+  // combination drops its oldest difference from the fifth step on and needs twelve.
   const std::array<double, 4> rate{0.99, 0.9, -0.5, 0.3};
-  Accelerator accelerator(MPI_COMM_SELF, 4, {Acceleration::Type::anderson, 0, 4});
-  std::vector<double> u(4, 0.0), step(4);
-  for (int k = 0; k < 6; ++k) {
-    for (std::size_t i = 0; i < 4; ++i) step[i] = (1 - rate[i]) * (double(i) + 1 - u[i]);
-    accelerator.advance(u, step);
+  for (const auto& [history, steps] : {std::pair(4, 6), std::pair(3, 13)}) {
+    Accelerator accelerator(MPI_COMM_SELF, 4, {Acceleration::Type::anderson, 0, history});
+    std::vector<double> u(4, 0.0), step(4);
+    for (int k = 0; k < steps; ++k) {
+      for (std::size_t i = 0; i < 4; ++i) step[i] = (1 - rate[i]) * (double(i) + 1 - u[i]);
+      accelerator.advance(u, step);
+    }
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(u[i], double(i) + 1, 1e-8) << "history " << history;
   }
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(u[i], double(i) + 1, 1e-8);
 }
 
 }  // namespace couplet::krylov_test

@@ -63,13 +63,14 @@ TEST_F(WeatherFile, columns_may_come_in_any_order) {
 TEST_F(WeatherFile, short_gaps_are_closed_by_straight_lines_with_a_warning) {
   const std::string file = write("gap.csv", csv([](int h, std::string line) {
                                    if (h == 3 || h == 4) return std::string();
-                                   return h == 10 ? fmt::format("{},500,,3,40,99000\n", h) : line;
+                                   return h == 10 || h == 23 ? fmt::format("{},500,,3,40,99000\n", h) : line;
                                  }));
   const WeatherHours record = read_weather(file);
   EXPECT_DOUBLE_EQ(record.temperature[3], 13);
   EXPECT_DOUBLE_EQ(record.temperature[4], 14);
   EXPECT_DOUBLE_EQ(record.temperature[10], 20);
-  ASSERT_EQ(record.warnings.size(), 6u);
+  EXPECT_DOUBLE_EQ(record.temperature[23], 32);  // the last one that is known
+  ASSERT_EQ(record.warnings.size(), 7u);
   EXPECT_THAT(record.warnings,
               testing::Contains(testing::HasSubstr(
                   "gap.csv:6: the air temperature [degC] is missing for 2 hours from here; the gap is filled "

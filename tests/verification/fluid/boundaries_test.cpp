@@ -231,6 +231,39 @@ TEST(BodyForce, leaves_still_water_at_rest_on_triangles) {
   }
 }
 
+/// A body force that varies and has a potential makes no flow either, on any cells, at rest or sheared to and fro; one
+/// without a potential still drives.
+template <int D>
+double speed_of_still_fluid(BoxCells cells, const std::vector<config::ExpressionText>& force, bool moves) {
+  FluidParameters p = fluid_of(1000, 0.1, 1e-4, "box");
+  all_sides(p, D, boundary(BoundaryType::no_slip));
+  p.body_force = force;
+  const int n = D == 2 ? 8 : 4;
+  RawMesh raw = make_box(cells, {n, n, D == 2 ? 1 : n}, Vec3::Zero(), Vec3(1, 1, D == 2 ? 0 : 1));
+  perturb_interior(raw, 0.2, 7);
+  const auto shears = [](const Vec3& x, GlobalIndex, double t) -> Vec3 {
+    return x + 0.1 * std::sin(3 * t) * std::sin(pi * x.x()) * std::sin(pi * x.y()) * Vec3::UnitX();
+  };
+  FluidCase<D> c(MPI_COMM_WORLD, raw, p, moves ? PointMotion(shears) : PointMotion());
+  c.run(0.5, 25);
+  return c.largest_velocity_error([](const Vec3&) { return Vec3(0, 0, 0); });
+}
+
+TEST(BodyForce, that_varies_and_has_a_potential_leaves_fluid_at_rest) {
+  const std::vector<config::ExpressionText> pull{{"4*cos(2*x)*exp(y)"}, {"2*sin(2*x)*exp(y)-9.81"}};
+  const double fall = 9.81 * 0.5;
+  for (const bool moves : {false, true}) {
+    for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles})
+      EXPECT_LT(speed_of_still_fluid<2>(cells, pull, moves), 1e-10 * fall) << int(cells) << moves;
+    for (const BoxCells cells :
+         {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed})
+      EXPECT_LT(speed_of_still_fluid<3>(cells, {pull[0], pull[1], {"0"}}, moves), 1e-10 * fall)
+          << int(cells) << moves;
+  }
+  EXPECT_GT(speed_of_still_fluid<2>(BoxCells::quadrilaterals, {{"y"}, {"-9.81-x"}}, false), 1e-3)
+      << "it turns";
+}
+
 /// What enters through an outlet pays rho U^2/2 unless told otherwise; the run says so.
 TEST(Outlet, that_takes_the_total_pressure_of_inflow_says_so) {
   for (const bool stabilised : {true, false}) {

@@ -166,12 +166,12 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
   says("along z add up to", [&](ModalModel& m) { scaled(m.participation, 10); });
   says("shapes and participation are from different modes",
        [&](ModalModel& m) { scaled(m.participation, 0.1); });
-  says("mode 1 is not mass-normalised",
+  says("mode 1 is not mass-normalized",
        [&](ModalModel& m) { scaled(m.vertex_shape, 1e3), scaled(m.face_shape, 1e3); });
-  says("mode 1 is not mass-normalised", [&](ModalModel& m) {
+  says("mode 1 is not mass-normalized", [&](ModalModel& m) {
     m.face_density.clear(), scaled(m.vertex_shape, 1e3), scaled(m.face_shape, 1e3);
   });
-  says("no mode is mass-normalised", [&](ModalModel& m) {
+  says("no mode is mass-normalized", [&](ModalModel& m) {
     for (auto* part : {&m.vertex_shape, &m.face_shape, &m.participation}) scaled(*part, 1e-3);
   });
   // Rows component by component, and no shapes at the faces or densities that would tell.
@@ -385,7 +385,7 @@ TEST_F(PlateModesFile, a_sheet_whose_neighbours_contradict_each_other_is_named) 
   };
   EXPECT_NE(between(8).find("cannot determine on which side of the faces of part 1 of 3"), std::string::npos)
       << between(8);
-  EXPECT_NE(between(8).find("50 % of them face away from other faces and 50 % towards them"),
+  EXPECT_NE(between(8).find("50 % of them face away from other faces and 50 % toward them"),
             std::string::npos)
       << between(8);
   EXPECT_EQ(between(3), "");  // most of it sees nothing: it may look anywhere

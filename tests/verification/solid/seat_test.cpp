@@ -202,7 +202,7 @@ std::string refusal(const SolidParameters& p) {
 TEST(Seat, without_faces_or_around_the_body_is_refused) {
   SolidParameters p = pressed_block(2, "0");
   p.contact->direction = {0, -1, 0};  // the top, which is held
-  EXPECT_NE(refusal(p).find("no face of the solid points towards the seat"), std::string::npos) << refusal(p);
+  EXPECT_NE(refusal(p).find("no face of the solid points toward the seat"), std::string::npos) << refusal(p);
   p = pressed_block(2, "0");
   p.contact->height.text = "0.01";
   EXPECT_NE(refusal(p).find("starts 0.01 m inside the seat"), std::string::npos) << refusal(p);

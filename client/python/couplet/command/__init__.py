@@ -10,6 +10,7 @@ import sys
 # name: (module, one line)
 SUBCOMMANDS = {
     "run": ("command.run", "runs all programs of a case"),
+    "exec": ("command.exec", "turns each process of a launcher of your own into a program of a case"),
     "resume": ("command.resume", "continues a stopped run"),
     "stop": ("command.stop", "stops a run after the current step and writes a checkpoint"),
     "watch": ("command.watch", "shows the progress of a run"),

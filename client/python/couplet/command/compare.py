@@ -35,7 +35,7 @@ def flat(node, name=""):
 
 
 def apart(a, b, largest=0.0):
-    """(largest difference, relative to `largest` or the largest value here), or None if the shapes differ."""
+    """Returns (largest difference, relative to `largest` or the largest value here), or None if the shapes differ."""
     import numpy as np
     if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
         return None
@@ -52,7 +52,7 @@ def apart(a, b, largest=0.0):
 
 
 def arrays(folder):
-    """{name: array} of all tables and field series of a run, without times."""
+    """Returns {name: array} of all tables and field series of a run, without times."""
     import h5py
     import numpy as np
     found = {}
@@ -100,7 +100,7 @@ def of_mappings(first, second):
 
 
 def scales(*runs):
-    """{(table, unit): largest value}: a column that is zero up to round-off is compared with the others of its table and unit."""
+    """Returns {(table, unit): largest value}: a column that is zero up to round-off is compared with the others of its table and unit."""
     import numpy as np
     found = {}
     for name, values in (item for run in runs for item in run.items()):
@@ -117,7 +117,7 @@ def group_of(name):
 
 
 def differences(first, second, tolerance):
-    """[(name, text, True if beyond the tolerance)] of all arrays."""
+    """Returns [(name, text, True if beyond the tolerance)] of all arrays."""
     a, b = arrays(first), arrays(second)
     largest = scales(a, b)
     for name in [*a, *(n for n in b if n not in a)]:

@@ -23,7 +23,7 @@ def text_of(found, file, output):
             "participants": found.case["participants"], "coupling": found.case["coupling"]}
     source = os.path.relpath(file, output.parent)
     lines = [f"# precice-config: {source}", "# A job of programs on preCICE's interface, made by couplet import. Each program is given that file, or this one:",
-             f"#   mpirun -n 1 coupler {output.name} : -n 1 ./program {source} : ...", *(f"# Line {line}: {note}." for line, note in sorted(found.notes))]
+             f"#   couplet run {output.name} --with NAME='./program {source}' ...", *(f"# Line {line}: {note}." for line, note in sorted(found.notes))]
     return "\n".join([*lines, ""]) + yaml.dump(case, sort_keys=False, default_flow_style=None, width=160, allow_unicode=True)
 
 

@@ -39,7 +39,7 @@ def tool(arguments, words, ranks=1):
 
 
 def meshes_of(case, arguments):
-    """{(mesh file, dimension, parameters): participants} of the meshes in the case."""
+    """Returns {(mesh file, dimension, parameters): participants} of the meshes in the case."""
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
     data = with_changes(case.data, dict(s.split("=", 1) for s in arguments.set))
     entries, found = data["participants"], {}

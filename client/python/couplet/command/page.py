@@ -88,7 +88,7 @@ def handler_of(progress, token):
 
 
 def server(progress, port=0):
-    """(server, address with its token), only on the loopback address."""
+    """Returns (server, address with its token), only on the loopback address."""
     token = secrets.token_urlsafe(18)
     made = http.server.ThreadingHTTPServer(("127.0.0.1", port), handler_of(progress, token))
     return made, f"http://127.0.0.1:{made.server_port}/?token={token}"

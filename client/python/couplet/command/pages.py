@@ -23,7 +23,7 @@ def page(name, summary, sections, version):
 
 
 def options_of(parser):
-    """[(names, value, help)] of a parser's options, then of its positional arguments."""
+    """Returns [(names, value, help)] of a parser's options, then of its positional arguments."""
     for action in parser._actions:
         value = action.metavar or (action.dest.upper() if action.nargs != 0 else "")
         yield action.option_strings, "" if action.nargs == 0 else str(value), (action.help or "").replace("%%", "%")

@@ -37,7 +37,7 @@ def rows(results, names, most=10**9):
 
 
 def verdict(results, names):
-    """At most three lines: the error, the warnings that were not accepted, the best next change."""
+    """Returns at most three lines: the error, the warnings that were not accepted, and the best next change."""
     judge = results.report("coupler" if "coupler" in names else names[0]) if names else {}
     found = [f for f in results.findings() if f["participant"] in names and f["severity"] != "note" and not f.get("accepted")]
     ids = list(dict.fromkeys(f["id"] for f in found))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a case: composes the launch line of all its programs from the YAML, starts it, shows their output, and reports at the end
-where the results are. The results equal those of the same line typed by hand (--print shows it), bit for bit. Ctrl-C stops the run
-after the current step, with a checkpoint; press it again to stop immediately."""
+"""Runs a case: starts all its programs, as the YAML names them, in one job, shows their output, and reports at the end where the
+results are. The results equal those of the same line typed by hand (--print shows it), bit for bit. Ctrl-C stops the run after the
+current step, with a checkpoint; press it again to stop immediately."""
 import os
 import pathlib
 import shlex
@@ -18,17 +18,21 @@ RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divide
 FLAGS = {"strict": "fails if the run warns about its own result; --strict=effects: also about neglected effects"}
 
 
-def declare(parser):
+def declare_job(parser, ranks_help):
     parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
-    parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=RANKS_HELP)
+    parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=ranks_help)
     parser.add_argument("--participant", metavar="NAME", help="runs only this participant")
     parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="command that starts an external participant")
-    parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="you start this external participant yourself, with COUPLET_JOIN in its environment, on this machine or over a network interface (tcp6: IPv6)")
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
+    options_of_programs(parser)
+
+
+def declare(parser):
+    declare_job(parser, RANKS_HELP)
+    parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="you start this external participant yourself, with COUPLET_JOIN in its environment, on this machine or over a network interface (tcp6: IPv6)")
     parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
     parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="submits the run to Slurm with these options of sbatch; with --print, prints the batch script")
     parser.add_argument("--picture", action="store_true", help="draws the picture of the case afterwards (its section plot, or its plot.py)")
-    options_of_programs(parser)
 
 
 def options_of_programs(parser):
@@ -71,7 +75,7 @@ def ranks_of(words, case, here=True):
 
 
 def relays(words, case):
-    """{participant: command of its relay in the job}. Prints how the participants must be started."""
+    """Returns {participant: command of its relay in the job}. Prints how the participants must be started."""
     found = {}
     for word in words:
         name, _, listen = word.partition("=")
@@ -90,13 +94,10 @@ def build_of(folder):
 
 
 def batch_script(job, options):
-    ranks = sum(int(job.command[i + 1]) for i, word in enumerate(job.command) if word == "-n") or 1
-    words = [places.command(), "run", job.case.file.absolute(), "--bin", job.case.build / "bin"]
-    words += ["-n", ",".join(f"{name}={n}" for name, n in job.ranks.items())] if job.ranks else []
-    words += ["--participant", job.alone] if job.alone else []
-    words += [w for s in job.sets for w in ("--set", s)] + job.flags + [w for name, line in job.played_by.items() for w in ("--with", f"{name}={shlex.join(line)}")]
+    case, *words = job.case.words(job.alone, job.ranks, job.sets, job.flags, job.played_by)
+    words = [places.command(), "run", case.absolute(), *words]
     # Asks the job to end before its time limit, so that it saves and couplet resume can continue.
-    head = {"--job-name": mapping_of(job.case.data.get("simulation")).get("name", job.case.file.stem), "--ntasks": ranks, "--signal": "B:TERM@60"}
+    head = {"--job-name": mapping_of(job.case.data.get("simulation")).get("name", job.case.file.stem), "--ntasks": sum(n for n, _ in job.parts), "--signal": "B:TERM@60"}
     head = [f"{name}={value}" for name, value in head.items() if name not in {option.split("=")[0] for option in options}]
     return "\n".join(["#!/bin/bash", *(f"#SBATCH {shlex.quote(word)}" for word in (*head, *options)), "exec " + shlex.join(map(str, words)), ""])
 
@@ -110,11 +111,15 @@ def hand_to_slurm(job, options, only_show):
     return subprocess.run(["sbatch"], input=text, text=True).returncode
 
 
-def run(arguments):
+def job_of(arguments, here=False, relayed=()):
     case = Case(arguments.case, build_of(arguments.bin))
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
-    job = Job(case, ranks_of(arguments.ranks, case, arguments.slurm is None and not arguments.print), arguments.set, flags_of(arguments), arguments.participant,
-              {**{name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}, **relays(arguments.separate, case)})
+    return Job(case, ranks_of(arguments.ranks, case, here), arguments.set, flags_of(arguments), arguments.participant,
+               {**{name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}, **relays(relayed, case)})
+
+
+def run(arguments):
+    job = job_of(arguments, arguments.slurm is None and not arguments.print, arguments.separate)
     if arguments.slurm is not None:
         return hand_to_slurm(job, shlex.split(arguments.slurm), arguments.print)
     if arguments.print:

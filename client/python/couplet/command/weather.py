@@ -142,7 +142,7 @@ class Head:
 
 
 def quantity_of(cell):
-    """(quantity, unit) of a heading such as 'DNI (W/m^2)', 'Gb(n)' or 'T_degC'. (None, '') if unknown."""
+    """Returns (quantity, unit) of a heading such as 'DNI (W/m^2)', 'Gb(n)' or 'T_degC'. (None, '') if unknown."""
     for name, (_, names, units) in QUANTITIES.items():
         if cell == name:
             return name, next(iter(units))
@@ -201,7 +201,7 @@ def table(source, first, head):
 
 
 def hourly(source, records):
-    """[[hour, values]] averaged over the records of each hour, minutes of all records, and true if an hour has several."""
+    """Returns [[hour, values]] averaged over the records of each hour, minutes of all records, and true if an hour has several."""
     hours, minutes, several = [], [], False
     for i, hour, minute, values in records:
         if hour is None:
@@ -218,7 +218,7 @@ def hourly(source, records):
 
 
 def behind(source, first, word, without=None):
-    """(line, text) of 'Latitude (decimal degrees): text' above the head of a PVGIS file."""
+    """Returns (line, text) of 'Latitude (decimal degrees): text' above the head of a PVGIS file."""
     for i in range(first):
         if source.lines[i].strip().startswith(word) and ":" in source.lines[i]:
             return i, source.lines[i].partition(":")[2]
@@ -255,7 +255,7 @@ def pvgis(source, first, head):
 
 
 def sam_units(source, first):
-    """{quantity: unit} and location from the two lines above a SAM or NSRDB head. Pressure is in mbar by default."""
+    """Returns {quantity: unit} and location from the two lines above a SAM or NSRDB head. Pressure is in mbar by default."""
     names, values = (source.cells(first - 2), source.cells(first - 1)) if first >= 2 else ([], [])
     about = {name.lower(): value for name, value in zip(names, values) if value}
     units = {"p_Pa": "mbar"}
@@ -268,7 +268,7 @@ def sam_units(source, first):
 
 
 def read(source):
-    """(format, hours, location or None, seconds of the states after the full hour)."""
+    """Returns (format, hours, location or None, seconds of the states after the full hour)."""
     if source.lines[0].startswith("LOCATION,") or ".epw" in source.file.suffixes:
         source.expect(len(source.lines) > 8 and source.lines[0].startswith("LOCATION,"), 0, "this is not an EPW file: it must start with a line LOCATION,... and have 8 header lines.")
         place = source.cells(0)

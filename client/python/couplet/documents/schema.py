@@ -131,7 +131,7 @@ def case_schema(programs, simulation):
 
 
 def files(ask, programs, source):
-    """{name: text} of docs/schema. `ask`(program, question) returns its output; `source` is the text of common/base/units.cpp."""
+    """Returns {name: text} of docs/schema. `ask`(program, question) returns its output; `source` is the text of common/base/units.cpp."""
     used, found = set(), {}
     for program in programs:
         found[program] = with_units(json.loads(ask(program, "--schema")), used)

@@ -20,7 +20,12 @@ TUTORIALS = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutori
 REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in ("fluid_solver", "solid_solver", "plate_modal", "thermocline", "mesh_mover", "coupler")),
              "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/meshes.md", "docs/input-data.md", "docs/expressions.md", "docs/quantities.md",
              "docs/plots.md", "docs/checkpoints.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
-EXPLANATION = ("docs/theory.md", "docs/coupling.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
+THEORY = tuple(f"docs/theory/{name}.md" for name in ("README", "solid", "solid-gradients", "solid-motion", "solid-solution", "heat-contact", "fluid", "fluid-models", "mesh-motion", "coupling"))
+EXPLANATION = ("docs/coupling.md", "docs/mapping.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/plant.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
+GENERATED = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/stability.md")
+# MathJax as Debian packages it, with the parts that the configuration below loads.
+MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
+MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_CHTML-full.js", "jax/output/CommonHTML", "jax/element/mml/optable", "fonts/HTML-CSS/TeX/woff", "extensions")
 LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
 CONFIG = """site_name: Couplet
 docs_dir: {docs}
@@ -32,7 +37,7 @@ theme:
   palette: {{primary: indigo}}
   features: [navigation.indexes, navigation.top, search.highlight, toc.follow]
 plugins: [search]
-markdown_extensions: [tables, fenced_code, attr_list, md_in_html, {{toc: {{permalink: true}}}}]
+markdown_extensions: [tables, fenced_code, attr_list, md_in_html, {{toc: {{permalink: true}}}}, {{pymdownx.arithmatex: {{generic: true}}}}]
 extra: {{generator: false}}
 extra_css: [site.css]
 nav:
@@ -63,7 +68,7 @@ def title_of(page):
 
 
 def target_of(page, link, there):
-    """(link within the site, file to be copied) of a relative link. (None, None) if it has no target."""
+    """Returns (link within the site, file to be copied) of a relative link. (None, None) if it has no target."""
     path, _, anchor = link.partition("#")
     target = pathlib.Path(os.path.normpath(page.parent / path)) if path else page
     if (ROOT / target).is_dir():
@@ -124,10 +129,19 @@ def label(page):
     return title[0].upper() + title[1:]
 
 
+def is_for_users(page):
+    """True for the pages that users read, except the READMEs of cases."""
+    return str(page) in (*TUTORIALS, *REFERENCE, *EXPLANATION, *THEORY, "README.md", "docs/README.md") or page.parts[:2] == ("docs", "how-to")
+
+
+def is_generated(page):
+    """True for pages that programs or scripts write as a whole."""
+    return str(page) in GENERATED or page.parts[:2] == ("docs", "keys")
+
+
 def for_developers(there):
-    """{title of a group: its pages}: what users do not need."""
-    users = {pathlib.Path(p) for p in (*TUTORIALS, *REFERENCE, *EXPLANATION, "README.md", "docs/README.md")}
-    rest = [p for p in there if p not in users and p.parts[0] != "configs" and p.parts[:2] != ("docs", "how-to")]
+    """Returns {title of a group: its pages}: what users do not need."""
+    rest = [p for p in there if not is_for_users(p) and p.parts[0] != "configs"]
     groups = {"The project": [], "Validation": [], "Source folders": []}
     for page in rest:
         validation = page.parts[:2] == ("docs", "validation")
@@ -145,7 +159,7 @@ def nav_of(there):
     lines = ["  - Couplet: index.md", "  - All pages: docs/README.md"]
     for title, names in (("Tutorials", TUTORIALS), ("How-to", guides), ("Reference", REFERENCE), ("Explanation", EXPLANATION)):
         lines += [f"  - {title}:", *rows(names, 4)]
-    lines += ["  - Gallery:", "    - gallery.md", *rows([p for p in there if p.parts[0] == "configs"], 4), "  - For developers:"]
+    lines += ["    - Theory:", *rows(THEORY, 6), "  - Gallery:", "    - gallery.md", *rows([p for p in there if p.parts[0] == "configs"], 4), "  - For developers:"]
     for title, names in for_developers(there).items():
         lines += [f"    - {title}:", *rows(names, 6, (lambda p: str(p.parent)) if title == "Source folders" else label)] if names else []
     return "\n".join(lines)
@@ -160,6 +174,18 @@ def leave_out(site, names):
     file.write_text(json.dumps(index, separators=(",", ":")))
 
 
+def with_formulas(page, text):
+    """Text that loads MathJax if it has a formula."""
+    up = "../" * (len(page.parts) - 1)
+    return text + f'\n\n<script async src="{up}mathjax/MathJax.js?config=TeX-AMS_CHTML-full"></script>\n' if re.search(r"\$[^$`\n]*[\\^_][^$`\n]*\$|^ *\$\$$", text, flags=re.M) else text
+
+
+def copy_mathjax(folder):
+    for part in MATHJAX_PARTS:
+        (folder / part).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(MATHJAX / part, folder / part) if (MATHJAX / part).is_dir() else shutil.copy(MATHJAX / part, folder / part)
+
+
 def stage(folder):
     """Copies all sources of the site to a folder. Returns the nav."""
     there, needed = pages(), set()
@@ -167,21 +193,22 @@ def stage(folder):
     for page in there:
         to = folder / ("index.md" if str(page) == "README.md" else page)
         to.parent.mkdir(parents=True, exist_ok=True)
-        to.write_text(with_links(page, (ROOT / page).read_text(), known, needed).replace("](README.md", "](index.md") if str(page) == "README.md" else
-                      re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})",
-                             with_links(page, (ROOT / page).read_text(), known, needed)))
+        text = with_links(page, with_formulas(page, (ROOT / page).read_text()), known, needed)
+        to.write_text(text.replace("](README.md", "](index.md") if str(page) == "README.md" else
+                      re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})", text))
     (folder / "gallery.md").write_text(gallery(known, needed))
     for file in needed:
         to = folder / file
         to.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / file, to if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else to.with_name(to.name + ".txt"))
     (folder / "site.css").write_text(STYLE)
+    copy_mathjax(folder / "mathjax")
     return nav_of(there)
 
 
 def build(site):
     """Builds the site into a folder."""
-    expect(shutil.which("mkdocs"), "the site is built by MkDocs: apt install mkdocs mkdocs-material")
+    expect(shutil.which("mkdocs") and MATHJAX.is_dir(), "the site is built by MkDocs and MathJax: apt install mkdocs mkdocs-material libjs-mathjax")
     site = pathlib.Path(site).absolute()
     with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
         docs = pathlib.Path(scratch) / "docs"

@@ -11,7 +11,7 @@ BARE_NOT = ("K", "rad", "rad/s")  # as needs_unit() of common/base/units.hpp
 
 
 def symbols(source):
-    """{name: (takes a prefix, dimension (kg, m, s, K, rad))} of common/base/units.cpp."""
+    """Returns {name: (takes a prefix, dimension (kg, m, s, K, rad))} of common/base/units.cpp."""
     found = re.findall(r'\{"([^"]+)", (true|false), make\([^,]+, (-?\d+), (-?\d+), (-?\d+), (-?\d+), (-?\d+)', source)
     return {name: (prefixed == "true", tuple(map(int, dimension))) for name, prefixed, *dimension in found}
 
@@ -71,6 +71,6 @@ def name_of(unit):
 
 
 def definitions(units, source):
-    """{name: schema of a text} for units.json."""
+    """Returns {name: schema of a text} for units.json."""
     table = symbols(source)
     return {name_of(unit): {"title": unit, "type": "string", "pattern": f"^ *{NUMBER} *{pattern_of(unit, table)} *$"} for unit in sorted(units)}

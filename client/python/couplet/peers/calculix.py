@@ -20,7 +20,7 @@ THIN = 0.1  # relative thickness of a plane body: CalculiX expands plane element
 
 
 def kinds(solid):
-    """[(element, order)] for the cells of a case. Meshes with several shapes are rejected."""
+    """Returns [(element, order)] for the cells of a case. Meshes with several shapes are rejected."""
     shapes = list(solid.mesh(1).cells)
     if len(shapes) > 1:
         refuse(f"{solid.where}.mesh", f"cells of several shapes ({', '.join(shapes)}) are not exported to CalculiX")
@@ -41,7 +41,7 @@ class Input:
         self.body = self.flat.extruded(self.depth) if self.layer else self.flat
 
     def connections(self):
-        """(m, points) in CalculiX's order, numbered from 1."""
+        """Returns (m, points) in CalculiX's order, numbered from 1."""
         (shape, cells), = self.body.cells.items()
         n = CORNERS[shape]
         if self.body.order == 2 and shape in MIDDLES:
@@ -50,7 +50,7 @@ class Input:
         return cells + 1
 
     def held(self):
-        """{(node, axis): displacement} prescribed by the case and through the thickness of a plane body."""
+        """Returns {(node, axis): displacement} prescribed by the case and through the thickness of a plane body."""
         found, n = self.solid.prescribed(self.body), len(self.flat.points)
         if self.layer:
             found |= {(node, 2): 0.0 for node in range(n if self.solid.plane == "stress" else 2 * n)}

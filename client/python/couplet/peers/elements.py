@@ -38,7 +38,7 @@ def exponents(shape, order):
 
 @functools.cache
 def basis(shape, order):
-    """(exponents, coefficients), where column i of the coefficients is shape function i."""
+    """Returns (exponents, coefficients), where column i of the coefficients is shape function i."""
     nodes = np.array(NODES[shape], float)
     if order == 2:
         nodes = np.vstack([nodes, [(nodes[a] + nodes[b]) / 2 for a, b in EDGES[shape]]])
@@ -65,7 +65,7 @@ def derivatives(shape, order, at):
 
 @functools.cache
 def quadrature(shape):
-    """(points, weights), exact for the loads of second-order faces."""
+    """Returns (points, weights), exact for the loads of second-order faces."""
     g, w = np.polynomial.legendre.leggauss(3)
     if shape == "line":
         return g[:, None], w
@@ -99,7 +99,7 @@ def inverse(shape, order, points, place):
 
 
 def weights_at(mesh, place):
-    """(points, weights) that interpolate at a position, in the element that contains it or is closest to it."""
+    """Returns (points, weights) that interpolate at a position, in the element that contains it or is closest to it."""
     best, place = None, np.asarray(place, float)[:mesh.dimension]
     for shape, cells in mesh.cells.items():
         corners = mesh.points[cells[:, :CORNERS[shape]], :mesh.dimension]

@@ -44,7 +44,7 @@ class Flow:
                 refuse(f"{where}.profile", f"'{given['profile']}' is not exported; give the velocity as an expression")
 
     def mesh(self):
-        """(mesh of the case, its cells in 3-D, its faces)."""
+        """Returns (mesh of the case, its cells in 3-D, its faces)."""
         if self._mesh is None:
             flat = mesh.of_participant(self.section, self.folder, self.where, self.work, 1, self.trusted)
             self.depth = flat.size() if self.dimension == 2 else 1.0

@@ -62,7 +62,7 @@ class PolyMesh:
         self.faces, self.owner = np.vstack(self.faces), np.concatenate(self.owner)
 
     def all_faces(self):
-        """(faces padded with -1, their cells, centers of all cells). Every face normal points out of its cell."""
+        """Returns (faces padded with -1, their cells, centers of all cells). Every face normal points out of its cell."""
         faces, cells, centres, count = [], [], [], 0
         for shape, nodes in self.mesh.cells.items():
             middles = self.mesh.points[nodes].mean(axis=1)

@@ -64,7 +64,7 @@ class Mesh:
         return Mesh(3, 1, points, cells, {**patches, "back": dict(self.cells), "front": {s: c + n for s, c in self.cells.items()}})
 
     def outward(self, patch):
-        """{shape: (m) +1 if the point order of a face gives an outward normal, else -1}."""
+        """Returns {shape: (m) +1 if the point order of a face gives an outward normal, else -1}."""
         if not hasattr(self, "_owners"):
             self._owners = {}
             for shape, cells in self.cells.items():
@@ -130,7 +130,7 @@ def sections(text):
 
 
 def entities(body, names):
-    """{(dimension, entity): name of its physical group} in format 4.1."""
+    """Returns {(dimension, entity): name of its physical group} in format 4.1."""
     lines = iter(body.splitlines())
     counts, found = list(map(int, next(lines).split())), {}
     for dimension, count in enumerate(counts):
@@ -143,7 +143,7 @@ def entities(body, names):
 
 
 def read_41(parts, names):
-    """(tags, points, [(type, name of the group, rows)])."""
+    """Returns (tags, points, [(type, name of the group, rows)])."""
     groups, blocks = entities(parts["Entities"], names), []
     words = parts["Nodes"].split()
     at, tags, points = 4, [], []

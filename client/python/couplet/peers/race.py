@@ -33,7 +33,7 @@ class Contender:
 
 
 def contenders(data, participant, folder, work, trusted=False):
-    """([Contender], [(name, reason)]) for the sections of a case. Nothing is run."""
+    """Returns ([Contender], [(name, reason)]) for the sections of a case. Nothing is run."""
     program, found, refused = str(data["participants"][participant].get("program")), [], []
     if program == "fluid_solver":
         try:
@@ -65,7 +65,7 @@ class Race:
         self.folder = study.out / "peers"
 
     def settings(self, points):
-        """[(point, data)] of points with different input for a peer, by size. Our solver settings do not affect it."""
+        """Returns [(point, data)] of points with different input for a peer, by size. Our solver settings do not affect it."""
         seen, found = set(), []
         for point in sorted(points, key=lambda p: p.size):
             data = with_changes(self.study.case.data, point.changes)
@@ -79,7 +79,7 @@ class Race:
         return found
 
     def labels(self, settings):
-        """{point: part of a series name}: values of axes that distinguish settings of the same size."""
+        """Returns {point: part of a series name}: values of axes that distinguish settings of the same size."""
         size_axis = self.study.axes.refining.name if self.study.axes.refining else None
         found = {}
         for point, _ in settings:

@@ -70,7 +70,7 @@ class Solid:
         return int(np.argmin(spread))
 
     def prescribed(self, body):
-        """{(node, axis): displacement [m]}."""
+        """Returns {(node, axis): displacement [m]}."""
         found = {}
         for patch, given in self.boundaries.items():
             where, nodes = f"{self.where}.boundaries.{patch}", body.nodes_of(patch)

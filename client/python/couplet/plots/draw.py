@@ -64,7 +64,7 @@ def time_of(panel, out, where):
 
 
 def polygons_of(series, points, plane, where):
-    """(corners, cells) of 2-D cells, or of cells above a plane such as y = 0 with a face in it (below it if there are none), in its two other
+    """Returns (corners, cells) of 2-D cells, or of cells above a plane such as y = 0 with a face in it (below it if there are none), in its two other
     axes."""
     if series.is_flat():
         return [points[cell][:, :2] for cell in series.cells], np.arange(len(series.cells)), "xy"

@@ -24,7 +24,7 @@ def number(text):
 
 
 def columns_of(file):
-    """{head: numbers} with NaN for other values. The head is the first line without #, or the last comment if that is a row of numbers."""
+    """Returns {head: numbers} with NaN for other values. The head is the first line without #, or the last comment if that is a row of numbers."""
     warn_if_older(file)
     try:
         lines = [line for line in file.read_text().splitlines() if line.strip()]
@@ -118,7 +118,7 @@ def source_of(curve, case, out, where):
 
 
 def points_of(curve, case, out, where):
-    """[(x, y, value of `each` or None)]: one curve, or one per value of `each`. Empty for an optional run that does not exist."""
+    """Returns [(x, y, value of `each` or None)]: one curve, or one per value of `each`. Empty for an optional run that does not exist."""
     if curve.get("optional") and not (out / curve["monitor"]).is_file():
         return []
     source = source_of(curve, case, out, where)

@@ -55,7 +55,7 @@ class Import:
                 self._refuse(e, f"<{e.name}>: the attribute '{key}' is not known" + (f", only: {', '.join(words)}" if words else ""))
 
     def ask_library(self, file):
-        """What the library refuses of the configuration when its programs start: its rules are not repeated here."""
+        """Returns the parts of the configuration that the library would refuse at the start of its programs. Its rules are not repeated here."""
         places_of = [os.environ.get("COUPLET_PRECICE_LIBRARY", ""), *(places.build() / part / "libprecice.so.3" for part in ("precice/lib", "lib/couplet/precice/lib"))]
         library = next((path for path in map(pathlib.Path, places_of) if path.is_file()), None)
         if library is None:

@@ -97,7 +97,7 @@ MAPPED = {
 SILENT = {"log", "sink", "profiling", "m2n:", "intra-comm:", "master:", "data", "executor:", "imvj-restart-mode"}
 # Refused by the library itself.
 SILENT |= {"mapping:nearest-neighbor-gradient", "mapping:axial-geometric-multiscale", "mapping:radial-geometric-multiscale", "use-mesh"}
-# Has no part in the answer: what there is in its place.
+# Elements without influence on the answer, and their replacements.
 WITHOUT_EFFECT = {
     "export:": "`coupling.interface-output: true` writes the data of all interfaces for ParaView",
     "watch-point": "no watch at a point: `coupling.watch` has integrals", "watch-integral": "`coupling.watch` has integrals over interfaces",

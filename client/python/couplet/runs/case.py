@@ -4,8 +4,10 @@ import copy
 import functools
 import hashlib
 import json
+import os
 import pathlib
 import re
+import shlex
 import sys
 
 import yaml
@@ -196,19 +198,30 @@ class Case:
                 return [*([sys.executable] if name.endswith(".py") else []), beside, participant]
         return None
 
-    def command(self, changes, alone=None, ranks=None, raw=(), flags=(), played_by=None):
-        """Command line. `alone` runs only this participant; `ranks` is {participant or coupler: number}; `raw` are further --set arguments; `flags`
-        are arguments of all our programs; `played_by` is {participant: command}."""
+    def parts(self, changes, alone=None, ranks=None, raw=(), flags=(), played_by=None):
+        """Programs of a job in the order of their ranks: [(number of ranks, words)]. `alone` runs only this participant; `ranks` is {participant or
+        coupler: number}; `raw` are further --set arguments; `flags` are arguments of all our programs; `played_by` is {participant: command}."""
         sets = [*(word for a in (*self.assignments(changes), *raw) for word in ("--set", a)), *flags]
-        ranks = ranks or {}
-        if alone is not None or not self.coupled:
-            name = alone or next(iter(self.participants))
-            line = [self.program(name), self.file, "--participant", name, *sets]
-            return line if ranks.get(name, 1) == 1 else ["mpirun", "--oversubscribe", "-n", ranks[name], *line]
-        line = ["mpirun", "--oversubscribe", "-n", ranks.get(COUPLER, 1), self.build / "bin" / COUPLER, self.file, *sets]
-        for name in self.participants:
-            line += [":", "-n", ranks.get(name, 1), *(self.guest(name, played_by) or [self.program(name), self.file, "--participant", name, *sets])]
-        return line
+        names = [alone or next(iter(self.participants))] if alone is not None or not self.coupled else [COUPLER, *self.participants]
+
+        def words(name):
+            if name == COUPLER:
+                return [self.build / "bin" / COUPLER, self.file, *sets]
+            return len(names) > 1 and self.guest(name, played_by) or [self.program(name), self.file, "--participant", name, *sets]
+        return [(int((ranks or {}).get(name, 1)), [str(word) for word in words(name)]) for name in names]
+
+    def words(self, alone=None, ranks=None, sets=(), flags=(), played_by=None):
+        """Arguments of couplet run and couplet-exec for this job."""
+        words = [self.file, *(["--bin", self.build / "bin"] if self.build != places.build() or "COUPLET_BIN" in os.environ else []), *(["--participant", alone] if alone else [])]
+        words += ["-n", ",".join(f"{name}={n}" for name, n in ranks.items())] if ranks else []
+        return words + [w for s in sets for w in ("--set", s)] + [*flags] + [w for name, line in (played_by or {}).items() for w in ("--with", f"{name}={shlex.join(map(str, line))}")]
+
+    def command(self, changes, alone=None, ranks=None, raw=(), flags=(), played_by=None):
+        """Command line of a job, for the arguments of parts(). Several programs are one application, whose processes couplet-exec turns into them."""
+        parts = self.parts(changes, alone, ranks, raw, flags, played_by)
+        total = sum(n for n, _ in parts)
+        line = parts[0][1] if len(parts) == 1 else [places.command("couplet-exec"), *self.words(None, ranks, [*self.assignments(changes), *raw], flags, played_by)]
+        return line if total == 1 else ["mpirun", "--oversubscribe", "-n", total, *line]
 
     def named(self, node):
         """Files named in the case, such as a mesh or a weather file in another folder."""

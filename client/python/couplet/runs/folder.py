@@ -76,7 +76,7 @@ def sets_since(folder, seconds):
 
 
 def is_damaged(file):
-    """Returns true if a list of the files of a checkpoint is truncated, or one of them has not the size in the list."""
+    """Returns true if a list of the files of a checkpoint is truncated, or if one of them differs in size from the list."""
     text = file.read_text(errors="replace")
     sizes = {file.parent / name: int(size) for size, name in re.findall(r"^file (\d+) \w+ (.+)$", text, re.M)}
     return not re.search(r"^digest \w+$", text, re.M) or any(not f.is_file() or f.stat().st_size != size for f, size in sizes.items())

@@ -99,7 +99,7 @@ def find(name):
 
 # -- a copy --------------------------------------------------------------------------------------------------------------
 def scalars(node, path=()):
-    """{path: node} of the scalars of a composed YAML document."""
+    """Returns {path: node} of the scalars of a composed YAML document."""
     if isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             yield from scalars(value, (*path, key.value))

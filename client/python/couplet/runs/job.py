@@ -4,6 +4,7 @@ behind."""
 import collections
 import ctypes
 import datetime
+import json
 import os
 import pathlib
 import selectors
@@ -22,6 +23,7 @@ from couplet.runs.process import RunFailed, environment, last_words
 
 PATIENCE = 5.0  # [s] for mpirun to end before everything is killed; it does not listen while it launches many processes
 NOBODY_LEFT = 20.0  # [s] that mpirun may stay without any program before it is taken for stuck
+LONGEST_PLAN = 100_000  # characters that fit into a variable of the environment
 LEAST_TEMPORARY = 256 << 10  # bytes that MPI needs for its own files
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PR_SET_PDEATHSIG = 1
@@ -40,9 +42,13 @@ def output_of(case, sets):
     return case.file.parent / str(name)
 
 
-def surroundings():
-    """Environment of the programs: one thread per rank, and this package for participants in Python."""
+def surroundings(parts=()):
+    """Environment of the programs: one thread per rank, and this package for participants in Python. couplet-exec need not read the case for its
+    `parts`; where the launcher does not pass the variable on, it does."""
     env = environment()
+    plan = json.dumps(parts)
+    if len(parts) > 1 and len(plan) < LONGEST_PLAN:
+        env["COUPLET_PLAN"] = plan
     env["PYTHONPATH"] = os.pathsep.join([str(places.PACKAGE.parent), *filter(None, [env.get("PYTHONPATH")])])
     return env
 
@@ -64,7 +70,8 @@ class Job:
         known = {*case.participants, *([COUPLER] if case.coupled else [])}
         for name in (*self.ranks, *self.played_by, *([alone] if alone else [])):
             expect(name in known, f"there is no participant '{name}' in {case.file}; there is: {', '.join(sorted(known))}")
-        self.command = [str(w) for w in case.command({}, alone, self.ranks, self.sets, self.flags, self.played_by)]
+        job = ({}, alone, self.ranks, self.sets, self.flags, self.played_by)
+        self.parts, self.command = case.parts(*job), [str(w) for w in case.command(*job)]
         for name in [alone] if alone else known:
             program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
             expect(program.name in OURS and program.exists() or case.guest(name, self.played_by),
@@ -78,7 +85,7 @@ class Job:
         return shlex.join(self.command)
 
     def record(self):
-        """How the job was started, without absolute paths: a copied or moved folder refers to the files in its new place."""
+        """Command that started the job, without absolute paths, so that a copied or moved folder refers to the files in its new place."""
         flags, at = self.flags, self.flags.index("--restart") if "--restart" in self.flags else None
         return {"case": os.path.relpath(self.case.file, self.output), "restart": None if at is None else os.path.relpath(flags[at + 1], self.output),
                 "ranks": self.ranks, "sets": [s for s in self.sets if not s.startswith("simulation.output.folder=")], "flags": flags if at is None else flags[:at] + flags[at + 2:],
@@ -168,7 +175,7 @@ class Job:
         expect(self.command[0] != "mpirun" or not os.path.isdir(temporary) or shutil.disk_usage(temporary).free >= LEAST_TEMPORARY, f"{temporary} is full, and mpirun needs it for files of its own. Make room there, or set TMPDIR to another folder")
         self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
         former, began = folders.read_record(self.output), time.time()
-        self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),
+        self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(self.parts),
                                         start_new_session=True, preexec_fn=ends_with_us)
         before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
         try:

@@ -83,7 +83,7 @@ def launch(command, log, folder=None, timeout=3600, env=None):
 
 
 def machine():
-    """{name, cores, load} of this machine."""
+    """Returns {name, cores, load} of this machine."""
     model = next((line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
                   if line.startswith("model name")), platform.machine()) if pathlib.Path("/proc/cpuinfo").exists() else platform.machine()
     return {"processor": model, "cores": len(os.sched_getaffinity(0)), "load": round(os.getloadavg()[0], 1)}

@@ -35,7 +35,7 @@ class Logs:
         self.folder, self.logs = pathlib.Path(folder), {}
 
     def look(self):
-        """(status or "", [warnings and errors]) since the last poll. The status is that of the program that drives the steps."""
+        """Returns (status or "", [warnings and errors]) since the last poll. The status is that of the program that drives the steps."""
         status, worth = "", []
         for name in sorted(p.name for p in self.folder.iterdir() if p.is_dir() and (p / f"{p.name}.log").exists()):
             for line in self.logs.setdefault(name, Log(self.folder / name / f"{name}.log")).lines():
@@ -48,7 +48,7 @@ class Logs:
 
 
 def tail(file, rows=ROWS):
-    """{head: last numbers} of a growing table. Other values are skipped."""
+    """Returns {head: last numbers} of a growing table. Other values are skipped."""
     try:
         with open(file, "rb") as stream:
             head = stream.readline().decode(errors="replace")
@@ -72,7 +72,7 @@ def tail(file, rows=ROWS):
 
 
 def curves(folder):
-    """[{title, x label, log, lines: {name: [[x, y], ...]}}]: residuals, step size, probes."""
+    """Returns [{title, x label, log, lines: {name: [[x, y], ...]}}]: residuals, step size, probes."""
     folder, found = pathlib.Path(folder), []
     residuals = tail(folder / "coupler" / "residuals.csv")
     if residuals:

@@ -12,7 +12,7 @@ ELSEWHERE = ("OMPI_MCA_orte_default_hostfile", "SLURM_JOB_ID", "PBS_NODEFILE", "
 
 
 def measured(case, folder):
-    """{participant: processor seconds of work} of the run in this folder. Empty if one is missing."""
+    """Returns {participant: processor seconds of work} of the run in this folder. Empty if one is missing."""
     from couplet.runs.results import Results
     results = Results(folder)
     found = {name: float(results.report(name).get("processor-working", 0)) for name in case.participants if (folder / name / "run.json").exists()}
@@ -20,7 +20,7 @@ def measured(case, folder):
 
 
 def expected(case):
-    """{participant: ms per step on one rank}, from --explain of the programs. An external program counts as zero."""
+    """Returns {participant: ms per step on one rank}, from --explain of the programs. An external program counts as zero."""
     found = {}
     for name in case.participants:
         if case.program(name).name not in OURS:
@@ -63,7 +63,7 @@ def fit_total(total):
 
 
 def divide(case, total):
-    """{participant: ranks}. The coupler has one rank, which counts."""
+    """Returns {participant: ranks}. The coupler has one rank, which counts."""
     from couplet.runs.job import output_of
     expect(total <= MOST, f"-n {total}: at most {MOST} processes")
     names = [n for n in case.participants if not case.guest(n)]

@@ -46,7 +46,7 @@ class Results:
         return table[name]
 
     def last(self, participant, file):
-        """{head: last value} of a table."""
+        """Returns {head: last value} of a table."""
         return {name: values[-1] for name, values in self.table(participant, file).items()}
 
     def passes(self):

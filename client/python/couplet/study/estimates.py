@@ -38,7 +38,7 @@ def of_series(sizes, values, i, order):
 
 
 def guesses(series, orders=None):
-    """{(name, i): estimated error} of {name: (sizes, values)} with ascending sizes. The coarsest run of each series has none."""
+    """Returns {(name, i): estimated error} of {name: (sizes, values)} with ascending sizes. The coarsest run of each series has none."""
     own = {(name, i): of_series(*series[name], i, order_of(name, orders)) for name in series for i in range(1, len(series[name][0]))}
     found = {}
     for (name, i), guess in own.items():
@@ -66,7 +66,7 @@ def uncertainty(rows, quantity):
 
 
 def of(rows, quantity, clear=CLEAR):
-    """[(estimated, true, name of the run)] of runs with coarser ones. The distance from an exact field has the true value 0. If the reference is the
+    """Returns [(estimated, true, name of the run)] of runs with coarser ones. The distance from an exact field has the true value 0. If the reference is the
     study's own best value, only runs whose distance clearly exceeds its uncertainty are included."""
     if not quantity.is_error and quantity.reference is None:
         return []

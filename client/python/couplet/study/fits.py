@@ -88,7 +88,7 @@ class Fit:
 
 
 def solved(n, values, weights, orders):
-    """(limit, constants, standard deviation) of the least-squares fit with these orders."""
+    """Returns (limit, constants, standard deviation) of the least-squares fit with these orders."""
     scale = n[-1]  # the finest: columns of magnitude 1
     basis = np.column_stack([np.ones_like(n), *((n / scale)**-p for p in orders)])
     root = np.sqrt(weights)
@@ -101,7 +101,7 @@ def deviation_of(squares, count, unknowns):
 
 
 def one_term(n, values, weights, formal):
-    """(deviation, limit, terms, limit reached by the order: -1, 0, 1)."""
+    """Returns (deviation, limit, terms, limit reached by the order: -1, 0, 1)."""
     def squares(p):
         return solved(n, values, weights, (p,))[2]
     highest = formal + ABOVE
@@ -177,7 +177,7 @@ def diverges(n, values):
 
 
 def of_values(sizes, values, formal=2.0):
-    """(Fit, "") of a series with unknown limit, or (None, reason)."""
+    """Returns (Fit, "") of a series with unknown limit, or (None, reason)."""
     n, values = np.array(sizes, float), np.array(values, float)
     if len(n) < 3:
         return None, f"{len(n)} run{'s' if len(n) != 1 else ''} show no order, three are needed"
@@ -209,7 +209,7 @@ def settled(sizes, errors, formal):
 
 
 def of_errors(sizes, errors, formal=2.0):
-    """(Fit, "") of a series with known (signed or unsigned) errors, or (None, reason): a power law of the finest three or four runs."""
+    """Returns (Fit, "") of a series with known (signed or unsigned) errors, or (None, reason): a power law of the finest three or four runs."""
     if len(sizes) < 2:
         return None, "one run shows no order, two are needed"
     if not any(errors):
@@ -264,7 +264,7 @@ def slope(x, y):
 
 
 def pareto(points):
-    """(cost, error) pairs that no other pair beats in both, sorted by cost."""
+    """Returns (cost, error) pairs that no other pair beats in both, sorted by cost."""
     best, front = math.inf, []
     for cost, error in sorted(points):
         if error < best:

@@ -111,7 +111,7 @@ def order_of(own, coarser, coarsest, source):
 
 
 def runs_of(sources):
-    """{name: {source: factor}} of the runs."""
+    """Returns {name: {source: factor}} of the runs."""
     tight = {s.name: 1 / s.ratio for s in sources if s.tolerance}
     found = {AS_IT_IS: {}, **{f"{name} {TIGHTER}": {name: factor} for name, factor in tight.items()}}
     if len(tight) > 1:

@@ -33,7 +33,7 @@ def differing(rows):
 
 
 def panels(rows):
-    """[(heading, {series: its name in the legend})] with at most MOST series each, divided by as few axes and into as few panels as possible."""
+    """Returns [(heading, {series: its name in the legend})] with at most MOST series each, divided by as few axes and into as few panels as possible."""
     series, values = differing(rows)
     if len(series) <= MOST:
         return [("", {name: name for name in series})]
@@ -59,13 +59,13 @@ def divided(names):
 
 
 def looks(found):
-    """{name in the legend: keywords of its line}, the same in all panels."""
+    """Returns {name in the legend: keywords of its line}, the same in all panels."""
     names = list(dict.fromkeys(n for _, some in found for n in some.values()))
     return {n: {"color": f"C{k % 10}", "marker": MARKS[k % len(MARKS)], "markersize": 4, "lw": 1} for k, n in enumerate(names)}
 
 
 def figure(title, count=1):
-    """(figure, [axes]) of `count` panels with equal scales, with a title wrapped to the width of the picture."""
+    """Returns (figure, [axes]) of `count` panels with equal scales, with a title wrapped to the width of the picture."""
     columns = min(count, 2 if count in (2, 4) else 3)
     lines = -(-count // columns)
     width, height = (6.6, 4.4) if count == 1 else (4.6 * columns, 4.5 * lines + 0.3)
@@ -131,7 +131,7 @@ def error_against_time(title, rows, quantity, clock, file, others=()):
 
 
 def over_size(title, rows, value, words):
-    """(figure, [axes], points drawn) with a line for each series for which `words`([(size, value), ...]) returns a legend text."""
+    """Returns (figure, [axes], points drawn) with a line for each series for which `words`([(size, value), ...]) returns a legend text."""
     found, series, drawn = panels(rows), series_of(rows), []
     styles = looks(found)
     made, axes = figure(title, len(found))

@@ -3,7 +3,8 @@
 
 For each series (combination of all axes except the refinement) up to three of the smallest sizes are run. A fit of its values over the sizes
 (fits.py) gives the size that meets the target with an error bound, and seconds(n) = a + b n^q its cost. The series with the lowest predicted cost
-continues with larger sizes until a run meets the target. Series without a fit continue if that costs less than the best prediction. A reason is
+continues with larger sizes until a run meets the target. The target is met only where a second witness confirms the extrapolated error (Series.doubt);
+otherwise one more size is run. Series without a fit continue if that costs less than the best prediction. A reason is
 reported for each rejected series."""
 import json
 import math
@@ -44,7 +45,7 @@ class Search:
         return sum(s.spent() for s in self.every)
 
     def predictions(self):
-        """[(series, Prediction)] sorted by cost."""
+        """Returns [(series, Prediction)] sorted by cost."""
         found = [(s, p) for s in self.every if s.rows and isinstance(p := s.predict(self.target), Prediction)]
         return sorted(found, key=lambda pair: pair[1].seconds)
 
@@ -83,7 +84,7 @@ class Search:
 
     # -- larger ones
     def candidates(self, best, chosen):
-        """[(seconds, series)] that may still turn out cheaper: without prediction, or with an uncertain one from few runs."""
+        """Returns [(seconds, series)] that may still turn out cheaper: without prediction, or with an uncertain one from few runs."""
         found = []
         for i, series in enumerate(self.every):
             if series is chosen or series.failed or not series.rows or len(series.rows) >= ROUNDS:
@@ -114,10 +115,11 @@ class Search:
         self.say(f"{series.name}: size {best.size:g} should leave an error of {best.error:.2g} (at most {best.bound:.2g}) and take {best.seconds:.3g} s")
         size = self.next_size(series, best)
         row = self.run(series, size)
-        if size == best.size and row.good and series.meets(row, self.target) and not self.smaller(series, row):
+        reached = [r for r in series.rows if series.meets(r, self.target)]  # a run may have been too little to show that the ones before it suffice
+        if size == best.size and row in reached and reached[0] is row and not self.smaller(series, row):
             self.found = series, row, best
             return True
-        series.misses += size == best.size and row.good and not series.meets(row, self.target)
+        series.misses += size == best.size and row.good and row not in reached
         return False
 
     def next_size(self, series, best):
@@ -157,13 +159,30 @@ class Search:
         return True
 
     def go(self):
-        self.found = None, None, None
+        self.found, self.doubt = (None, None, None), ""
         self.pilots()
         expect(any(s.rows for s in self.every), "no series could be run: " + "; ".join(f"{s.name}: {s.failed}" for s in self.every))
         for _ in range(ROUNDS + 3 * len(self.every)):
             if self.step():
                 break
+        self.confirm()
         return self.found
+
+    def confirm(self):
+        """Refines once more if nothing but the extrapolation says that the run meets the target."""
+        series, row, best = self.found
+        self.doubt = series.doubt(row) if row is not None else ""
+        if not self.doubt or series.failed:
+            return
+        size = self.following(series)
+        self.say(f"{series.name}: size {row.point.size:g} is not sure to meet the target: {self.doubt}; size {size:g} may confirm it, in about {series.seconds(size):.2g} s")
+        made = self.run(series, size)
+        for one in (row, made) if made.good else ():
+            self.doubt = series.doubt(one) if one is made or not series.agree(row, made) else ""
+            if series.meets(one, self.target) and not self.doubt:
+                self.found = series, one, best
+                return
+        self.doubt = self.doubt or "its error was too large with one more size"
 
 
 def others(search, chosen, row):
@@ -218,8 +237,9 @@ def said(search, series, row, predicted):
     how = "against the reference" if true is not None else f"by extrapolation, at most {max(bound, elsewhere):.3g}"
     first = [f"Cheapest for {quantity.name} to {target:.3g}: {series.name}, size {row.point.size:g} ({settings})",
              f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})" + (f"; seen from {who}" if elsewhere > error else ""),
+             *([f"not confirmed: {search.doubt}"] if search.doubt else []),
              f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); the runs before it took {spent - seconds:.3g} s"]
-    return {"met": reached <= ENOUGH * target, "target": target, "quantity": quantity.name, "series": series.name, "size": row.point.size,
+    return {"met": reached <= ENOUGH * target and not search.doubt, "doubt": search.doubt, "target": target, "quantity": quantity.name, "series": series.name, "size": row.point.size,
             "value": row.values[quantity.name], "predicted error": predicted.error, "predicted seconds": predicted.seconds, "error": reached, "bound": bound, "estimate": error,
             "seconds": seconds, "before": spent - seconds, "others": rest, "lines": first + lines}
 

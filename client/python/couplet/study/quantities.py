@@ -55,7 +55,7 @@ def maxima(t, y):
 
 
 def top(t, y):
-    """(time, value) of the largest value, from the parabola through three samples unless it is at an end."""
+    """Returns (time, value) of the largest value, from the parabola through three samples unless it is at an end."""
     i = int(np.argmax(y))
     if not 0 < i < len(y) - 1:
         return t[i], y[i]

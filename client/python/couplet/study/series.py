@@ -15,6 +15,7 @@ GROWTH = 1.4     # ratio of the tried sizes
 NOISE = 0.5      # of the target: maximum standard deviation of values from their fit
 STRIDE = 1.25    # factor of the size after two predictions with too large errors
 FEW = 4          # number of runs up to which the order may be that of coarse runs
+ORDER_OFF, OWN_OFF = 0.5, 2  # largest distance of the observed order from the formal one, and ratio of extrapolated and estimated error, that confirm a run
 ROUNDS = 12      # maximum number of runs of one series
 
 
@@ -42,7 +43,7 @@ def telling(seconds):
 
 
 def power_cost(sizes, seconds):
-    """(a, b, q) of a + b n^q (startup and work), nonnegative, by least squares of the relative misfit, weighted to the latest runs."""
+    """Returns (a, b, q) of a + b n^q (startup and work), nonnegative, by least squares of the relative misfit, weighted to the latest runs."""
     keep = telling(seconds)
     n, t = np.array(sizes, float)[keep], np.array(seconds, float)[keep]
     best = None
@@ -119,7 +120,7 @@ class Series:
         return self.fitted[len(self.rows)]
 
     def fit_of_all(self):
-        """(Fit, "") or (None, reason), of relative errors if the quantity has them."""
+        """Returns (Fit, "") or (None, reason), of relative errors if the quantity has them."""
         if self.known:
             return fits.of_errors(self.sizes(), self.values(), self.formal)
         found, reason = fits.of_values(self.sizes(), self.values(), self.formal)
@@ -133,7 +134,7 @@ class Series:
                                    seen=[(n, e / scale) for n, e in found.seen]), ""
 
     def left(self, row):
-        """(error, bound) of a run. None without a fit."""
+        """Returns (error, bound) of a run. None without a fit."""
         if self.known:
             index = self.rows.index(row)
             return (fits.settled(self.sizes(), self.values(), self.formal)[index],) * 2
@@ -148,6 +149,28 @@ class Series:
             return False
         left = self.left(row)
         return left is not None and left[0] <= ENOUGH * target and left[1] <= SURE * target and self.scatter() <= NOISE * target
+
+    def doubt(self, row):
+        """Reason why nothing confirms the extrapolated error of a run: neither the order of the last three sizes nor the run's own estimate. Empty
+        if one of them does, or if the error is known."""
+        error = self.left(row)[0]
+        if self.known or error == 0:
+            return ""
+        last = fits.apart(np.array(self.sizes(), float))[-3:]
+        limit = fits.limit_of([self.sizes()[i] for i in last], [self.values()[i] for i in last])
+        if limit and abs(limit.order - self.formal) <= ORDER_OFF:
+            return ""
+        own = 0 if self.quantity.given.get("absolute") else row.own
+        if own and 1 / OWN_OFF <= error / own <= OWN_OFF:
+            return ""
+        shown = f"the last three sizes show order {limit.order:.2g} instead of {self.formal:g}" if limit else "the last three sizes show no order"
+        return f"{shown}, and the run itself estimates {own:.2g} instead of {error:.2g}" if own else f"{shown}, and the run has no estimate of its own"
+
+    def agree(self, row, finer):
+        """Returns true if the difference of a run from a finer one confirms its extrapolated error."""
+        name = self.quantity.name
+        apart = abs(row.values[name] - finer.values[name]) / (1 if self.quantity.given.get("absolute") else abs(finer.values[name]) or 1)
+        return apart > 0 and 1 / OWN_OFF <= self.left(row)[0] / apart <= OWN_OFF
 
     def scatter(self):
         return 0.0 if self.known or (fit := self.fit()[0]) is None else fit.deviation

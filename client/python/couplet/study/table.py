@@ -10,12 +10,14 @@ from couplet.study.axes import Point
 
 COSTS = ("wall", "cpu", "work", "memory", "steps", "iterations", "spread")
 HEADS = {"wall": "wall [s]", "cpu": "processor [s]", "work": "work [s]", "memory": "memory [MB]", "spread": "spread of processor [1]"}
+PARTS = ("mesh", "step", "linear", "coupling")  # of an estimated error, without that of the model
 ITSELF = "itself"  # reference of a quantity that is already an error
 
 
 class Row:
     def __init__(self, point, record, series):
         self.point, self.record, self.series = point, record, series
+        self.own = 0.0  # error that the run itself estimates, relative; 0 if unknown
         self.values, self.errors, self.reason = {}, {}, re.sub(r" \(see \S+\)$", "", record.reason)  # a log's location is meaningless elsewhere
 
     @property
@@ -33,6 +35,8 @@ def rows_of(axes, quantities, points, tasks, records):
 
 def value_row(row, quantities, results):
     """Row with every quantity read from its results, or with the reason of a failure."""
+    if row.good and hasattr(results, "budget"):
+        row.own = max((sum(v for part, v in parts.items() if part in PARTS and v > 0) for parts in results.budget().values()), default=0.0)
     for quantity in quantities if row.good else ():
         try:
             row.values[quantity.name] = quantity.value(results)
@@ -44,7 +48,7 @@ def value_row(row, quantities, results):
 
 
 def series_of(rows):
-    """{series: successful rows by size}."""
+    """Returns {series: successful rows by size}."""
     found = {}
     for row in rows:
         if row.good:
@@ -53,7 +57,7 @@ def series_of(rows):
 
 
 def limits_of(rows, quantity):
-    """{series: Limit or None} of a quantity's values over the sizes."""
+    """Returns {series: Limit or None} of a quantity's values over the sizes."""
     return {name: fits.limit_of([r.point.size for r in some], [r.values[quantity.name] for r in some])
             for name, some in series_of(rows).items()}
 

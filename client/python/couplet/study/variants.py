@@ -11,7 +11,7 @@ from couplet.runs import Task, expect
 
 
 def variants_of(case):
-    """(participant, {name: {full key: value}})."""
+    """Returns (participant, {name: {full key: value}})."""
     study = case.study
     unknown = set(study) - {"participant", "variants", "sweeps", "optimise"}
     expect(not unknown, f"{case.file}: study: unknown key '{next(iter(unknown), '')}'; valid are participant, variants, sweeps, or those of "

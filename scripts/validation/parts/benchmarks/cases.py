@@ -9,7 +9,7 @@ from couplet.study.quantities import top
 
 
 def band(job, which, low, high):
-    """Of Mok's cavity: least and largest height of the middle [m] over the last period of 5 s, time between its last two maxima [s]."""
+    """Returns, for Mok's cavity, the smallest and largest height of the middle [m] over the last period of 5 s, time between its last two maxima [s]."""
     run = job.case("cavity-flexible-bottom")
     t, y = (run.column("membrane", "probes.csv", name) for name in ("time [s]", "middle y [m]"))
     last, before = t > t[-1] - 5, (t > t[-1] - 10) & (t <= t[-1] - 5)

@@ -95,7 +95,7 @@ def flag(case, rows):
 
 
 def figure(text, rows, flagship):
-    """(figure, core-hours) as it stands, or those of our rows."""
+    """Returns (figure, core-hours) as given, or those of our rows."""
     where, _, names = text.partition(":")
     if where not in ("row", "flagship"):
         return text, None

@@ -110,7 +110,7 @@ def sheet(job):
 
 
 def coupled(job, ranks):
-    """What the programs print, and run.json of the coupler."""
+    """Returns the output of the programs and run.json of the coupler."""
     def make():
         folder = job.scratch / f"sheet-{ranks}"
         folder.mkdir()
@@ -132,7 +132,7 @@ def maps(job):
 
 
 def share(job):
-    """By memory as the system counts it: the surfaces, what was copied of them, and the maps."""
+    """Returns the share of memory, as the system counts it, of the surfaces, their copies and the maps."""
     _, run = coupled(job, WALL_RANKS)
     fullest = run["memory-most"] / (run["memory-all"] / WALL_RANKS)
     return (f"{fullest:.2f} of the mean of {WALL_RANKS} ranks, {run['memory-all'] / 1000:.2f} GB over all, {run['memory-most'] / 1000:.2f} GB on the fullest; "

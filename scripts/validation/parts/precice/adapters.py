@@ -59,7 +59,7 @@ def libraries(job):
 
 
 def motion_of(frd, node):
-    """(time, x displacement) of each step of CalculiX's result file."""
+    """Returns (time, x displacement) of each step of CalculiX's result file."""
     rows, time, displacement = [], 0.0, False
     with open(frd, errors="replace") as lines:
         for line in lines:

@@ -45,7 +45,7 @@ def compiled(job, source, where, refused):
 
 
 def starts(file):
-    """Whether a test, or a helper that it calls, calls initialize()."""
+    """Returns true if a test, or a helper that it calls, calls initialize()."""
     text = file.read_text()
     near = [p for folder in list(file.parents)[:3] for p in folder.glob("helper*.cpp")] if "helper" in text else []
     return "initialize(" in text.replace("BOOST_CHECK_THROW(p.initialize()", "") + "".join(p.read_text() for p in near)

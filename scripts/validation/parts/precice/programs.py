@@ -181,7 +181,7 @@ def cost(job):
 
 
 def cost_of_sockets(job):
-    """The same window of the client itself, both participants launched separately and joined over sockets."""
+    """Measures the same window with the client itself. Both participants are launched separately and joined over sockets."""
     where = job.scratch / "cost-sockets"
     where.mkdir(exist_ok=True)
     (where / "two.xml").write_text(TWO)

@@ -66,7 +66,7 @@ def asked(job, name, target):
 
 
 def judged(rows, truth, r):
-    """(text, all four bars of the case are met)."""
+    """Returns the text of a case, and true if all its four bars are met."""
     if "error" not in r:
         return "none found", False
     error, cheapest = wrong(r["value"], truth), min((t for _, _, v, t in rows if wrong(v, truth) <= r["target"]), default=math.inf)
