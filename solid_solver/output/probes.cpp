@@ -193,12 +193,34 @@ namespace {
 
 double larger_of(double left, double mesh) { return std::isnan(left) ? left : std::fmax(left, mesh); }
 
+/// Points of the cells and boundary faces with at least half of the largest equivalent stress before recovery, because recovery
+/// of the whole field takes longer than the solve. Collective.
+std::vector<std::uint8_t> points_of_large_stress(const SolidBody& body, const SolidFields& fields,
+                                                 std::span<const double> points) {
+  const mesh::Mesh& mesh = body.mesh();
+  const std::vector<Tensor3> cells = fields.cell_stress(points),
+                             faces = fields.face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
+  std::vector<double> stress(std::size_t(mesh.cells.n_owned()));
+  for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = equivalent_stress(cells[c]);
+  for (std::size_t b = 0; b < faces.size(); ++b) {
+    double& there = stress[std::size_t(mesh.owner[mesh.n_interior + Index(b)])];
+    there = std::max(there, equivalent_stress(faces[b]));
+  }
+  const double most = parallel::max(mesh.comm, stress.empty() ? 0 : std::ranges::max(stress));
+  std::vector<Index> wanted;
+  for (std::size_t c = 0; c < stress.size(); ++c)
+    if (stress[c] >= most / 2)
+      for (const Index v : mesh.cell_points[Index(c)]) wanted.push_back(v);
+  return flags_of(mesh, wanted);
+}
+
 /// Largest equivalent stress of the recovered field. Probes interpolate between points and the equivalent stress is convex, so
 /// none sees more than the points.
 ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::span<const double> points,
                        double mesh_part) {
   const mesh::Mesh& mesh = body.mesh();
-  const SidedTensors sides = fields.stress_sides(points);
+  std::vector<std::uint8_t> wanted = points_of_large_stress(body, fields, points);
+  const SidedTensors sides = fields.stress_sides(points, wanted);
   struct Seen {
     double value = -1;
     GlobalIndex point = -1;  // the same one on any number of ranks
@@ -212,6 +234,7 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::sp
   Seen most;
   for (std::size_t m = 0; m < sides.size(); ++m)
     for (Index v = 0; v < mesh.points.n_owned(); ++v) {
+      if (!wanted[std::size_t(v)]) continue;
       const double value =
           equivalent_stress(unpack(std::span(sides[m]).subspan(std::size_t(v) * tensor_size, tensor_size)));
       const Seen here{value, mesh.point_id[v], int(m), body.geometry().points[v]};
@@ -219,7 +242,7 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::sp
     }
   for (const Seen& one : parallel::all_gather(mesh.comm, std::vector<Seen>{most}))
     if (most.is_below(one)) most = one;
-  std::vector<std::uint8_t> wanted(std::size_t(mesh.points.n_local()), 0);
+  std::ranges::fill(wanted, 0);
   const auto at = std::ranges::find(mesh.point_id, most.point) - mesh.point_id.begin();
   if (at < mesh.points.n_local()) wanted[std::size_t(at)] = 1;
   std::vector<std::vector<double>> all_left;
