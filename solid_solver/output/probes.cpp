@@ -193,7 +193,7 @@ namespace {
 
 double larger_of(double left, double mesh) { return std::isnan(left) ? left : std::fmax(left, mesh); }
 
-/// Points of the cells and boundary faces with at least half of the largest equivalent stress before recovery, because recovery
+/// Points of the cells and boundary faces with at least three quarters of the largest equivalent stress before recovery, because recovery
 /// of the whole field takes longer than the solve. Collective.
 std::vector<std::uint8_t> points_of_large_stress(const SolidBody& body, const SolidFields& fields,
                                                  std::span<const double> points) {
@@ -209,7 +209,7 @@ std::vector<std::uint8_t> points_of_large_stress(const SolidBody& body, const So
   const double most = parallel::max(mesh.comm, stress.empty() ? 0 : std::ranges::max(stress));
   std::vector<Index> wanted;
   for (std::size_t c = 0; c < stress.size(); ++c)
-    if (stress[c] >= most / 2)
+    if (stress[c] >= 0.75 * most)
       for (const Index v : mesh.cell_points[Index(c)]) wanted.push_back(v);
   return flags_of(mesh, wanted);
 }
