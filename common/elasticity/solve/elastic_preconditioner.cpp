@@ -45,8 +45,6 @@ ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const Elast
     : mesh_(&mesh),
       geometry_(&rows.geometry()),
       rows_(&rows),
-      inertia_(inertia.begin(), inertia.end()),
-      between_(options.between),
       is_symmetric_(options.scheme == FaceGradientScheme::symmetric),
       left_out_(options.without_cells_bulk ? rows.volume_strain() : VolumeStrain::faces) {
   // On the boundary the corrected gradient contains 2 (u_B - u_P).
@@ -60,10 +58,6 @@ ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const Elast
                          : multigrid_cycle(std::move(compact), of_cycle);
   find_face_rows(boundary_factor, options.node_inertia);
   if (is_symmetric_) add_true_diagonal(options.node_inertia);
-  if (options.n_aggregates > 0 && !is_symmetric_)
-    coarse_ = std::make_unique<RigidCoarseSpace>(mesh, rows, inertia, options.n_aggregates);
-  if (!coarse_) between_ = nullptr;
-  if (between_) left_.resize(rows.n_unknowns()), smooth_.resize(rows.n_unknowns());
 }
 
 void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<const double> node_inertia) {
@@ -153,12 +147,6 @@ void ElasticPreconditioner::solve_faces(std::span<const double> r, std::span<dou
   }
 }
 
-void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> z) {
-  const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * mesh_->dim;
-  cycle_(r.first(n_cells), z.first(n_cells), mesh_->dim);
-  solve_faces(r, z);
-}
-
 /// Applies [1, C^T] before the cycle and [1; C] after it, and adds the diagonal of K.
 void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::span<double> z) {
   const int dim = mesh_->dim;
@@ -180,19 +168,9 @@ void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::spa
 
 void ElasticPreconditioner::apply(std::span<const double> r, std::span<double> z) {
   if (is_symmetric_) return smooth_symmetric(r, z);
-  if (!between_) {
-    smooth(r, z);
-    if (coarse_) coarse_->add_correction(r, z);
-    return;
-  }
-  std::fill(z.begin(), z.end(), 0.0);
-  coarse_->add_correction(r, z);
-  between_->apply(z, {}, left_);
-  for (std::size_t i = 0; i < left_.size(); ++i) left_[i] = r[i] - left_[i];
-  const std::size_t dim = mesh_->dim;
-  for (std::size_t i = 0; i < inertia_.size() * dim; ++i) left_[i] -= inertia_[i / dim] * z[i];
-  smooth(left_, smooth_);
-  for (std::size_t i = 0; i < smooth_.size(); ++i) z[i] += smooth_[i];
+  const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * mesh_->dim;
+  cycle_(r.first(n_cells), z.first(n_cells), mesh_->dim);
+  solve_faces(r, z);
 }
 
 }  // namespace couplet::elastic
