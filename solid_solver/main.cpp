@@ -8,7 +8,6 @@
 #include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/effects.hpp"
 #include "solid_solver/solid.hpp"
-#include "solid_solver/thermal_solid.hpp"
 
 namespace {
 

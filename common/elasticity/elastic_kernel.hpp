@@ -8,7 +8,6 @@
 
 #include "common/base/types.hpp"
 #include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/wrench.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::elastic {

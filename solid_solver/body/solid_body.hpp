@@ -10,7 +10,7 @@
 #include "common/fv/expression.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/boundaries.hpp"
-#include "solid_solver/boundary/rigid_patches.hpp"
+#include "solid_solver/boundary/loads.hpp"
 #include "solid_solver/boundary/seat.hpp"
 #include "solid_solver/equilibrium/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "solid_solver/diagnostics/neglected.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "common/csv/csv_reader.hpp"
+#include "common/elasticity/vector_at.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/mesh/topology.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/diagnostics/view.hpp"
 #include "solid_solver/effects.hpp"
 
 namespace couplet::solid {
@@ -162,5 +170,220 @@ Opinion thermoelastic_coupling(const P& p, double coupling_number) {
              .saves = diagnostics::saved_share("solid_solver", "thermoelastic coupling")};
   return diagnostics::finding_of(found);
 }
+
+namespace {
+
+/// Inertia of a static run with several steps, from the velocities between them.
+class NeglectedInertia final : public diagnostics::Diagnostic {
+ public:
+  explicit NeglectedInertia(const SolidView& view) : view_(view) {}
+
+  void observe(diagnostics::Report&) override {
+    const SolidState &now = view_.now(), &before = view_.before();
+    if (before.steps < 1) return;
+    const mesh::Mesh& mesh = view_.body.mesh();
+    Vec3 inertia = Vec3::Zero();
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      for (int a = 0; a < mesh.dim; ++a) {
+        const std::size_t i = std::size_t(c) * mesh.dim + a;
+        inertia[a] += view_.body.density(c) * view_.body.geometry().volume[c] *
+                      (now.cell_v[i] - before.cell_v[i]) / (0.5 * (now.dt + before.dt));
+      }
+    for (int a = 0; a < mesh.dim; ++a) inertia[a] = parallel::sum(mesh.comm, inertia[a]);
+    const double load = view_.fields.total_load().norm();
+    if (load > 0) over_load_ = std::max(over_load_, inertia.norm() / load);
+  }
+
+  void look(diagnostics::Report& report) override {
+    if (view_.now().steps > 1) add(report, neglected_inertia(view_.body.parameters(), over_load_));
+  }
+
+  void visit(io::Archive& archive) override { archive.common("inertia", over_load_); }
+
+ private:
+  SolidView view_;
+  double over_load_ = 0;
+};
+
+/// Yielding and volumetric locking.
+class NeglectedOfMaterial final : public diagnostics::Diagnostic {
+ public:
+  explicit NeglectedOfMaterial(const SolidView& view) : view_(view) {}
+
+  void look(diagnostics::Report& report) override {
+    add(report, neglected_yielding(share_of_yield()));
+    if (Opinion locks = near_incompressibility(view_.body.parameters())) {
+      report.position.push_back({"Poisson's ratio", locks->number, locks->limit, "solid-nu"});
+      add(report, std::move(locks));
+    }
+  }
+
+ private:
+  /// Largest von Mises stress over the yield strength; NaN if unknown.
+  double share_of_yield() const {
+    const SolidBody& body = view_.body;
+    const mesh::Mesh& mesh = body.mesh();
+    if (std::ranges::none_of(body.materials(),
+                             [](const SolidMaterial& m) { return m.yield_strength.has_value(); }))
+      return std::numeric_limits<double>::quiet_NaN();
+    const std::vector<Tensor3> stress =
+        view_.fields.face_stress(0, mesh.n_flux_faces(), view_.fields.point_displacement());
+    double share = 0;
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+      if (const auto& yield = body.materials()[mesh.material_of(mesh.owner[f])].yield_strength)
+        share = std::max(share, equivalent_stress(stress[f]) / *yield);
+    return parallel::max(mesh.comm, share);
+  }
+
+  SolidView view_;
+};
+
+/// Thermal strain and heat of deformation, for a case with temperatures.
+class NeglectedOfHeat final : public diagnostics::Diagnostic {
+ public:
+  explicit NeglectedOfHeat(const SolidView& view) : view_(view) {}
+
+  void look(diagnostics::Report& report) override {
+    const SolidParameters& p = view_.body.parameters();
+    const ThermalStrain& thermal = *view_.body.thermal();
+    const auto [low, high] = thermal.temperatures_seen();
+    const double reference = p.expansion.value_or(ThermalExpansion{}).reference_temperature;
+    const double gradient = view_.fields.deformation(view_.fields.point_displacement()).gradient;
+    largest_gradient_ = std::max(largest_gradient_, gradient);
+    add(report, neglected_thermal_strain(p, largest_gradient_, high - low,
+                                         std::max(std::abs(high - reference), std::abs(low - reference))));
+    if (const double number = thermal.coupling_number(); number > 0)
+      add(report, thermoelastic_coupling(p, number));
+  }
+
+  void visit(io::Archive& archive) override { archive.common("gradient", largest_gradient_); }
+
+ private:
+  SolidView view_;
+  double largest_gradient_ = 0;
+};
+
+}  // namespace
+
+diagnostics::Made neglected_inertia(const SolidView& view) {
+  if (view.body.is_dynamic()) return nullptr;
+  return std::make_shared<NeglectedInertia>(view);
+}
+
+diagnostics::Made limits_of_material(const SolidView& view) {
+  return std::make_shared<NeglectedOfMaterial>(view);
+}
+
+diagnostics::Made effects_of_heat(const SolidView& view) {
+  if (!view.body.thermal()) return nullptr;
+  return std::make_shared<NeglectedOfHeat>(view);
+}
+
+namespace {
+
+/// Faces of the body that pass through each other: the depth of displaced boundary points in displaced cells that are not their
+/// neighbors.
+class MissingContact final : public diagnostics::Diagnostic {
+ public:
+  explicit MissingContact(const SolidView& view) : view_(view) {}
+  void look(diagnostics::Report& report) override {
+    const double share = depth_over_motion();
+    if (!(share > 0)) return;
+    add(report,
+        diagnostics::finding_of(
+            {.effect = "contact",
+             .number = share,
+             .limit = 0.01,
+             .what =
+                 fmt::format("faces pass through each other by {:.2g} of the largest displacement", share),
+             .advice = "there is no contact of bodies with each other: hold the faces apart, or end the "
+                       "loads before they meet",
+             .share = std::min(share, 1.)}));
+  }
+
+ private:
+  struct Place {
+    double x, y, z;
+    GlobalIndex point;
+    Vec3 at() const { return {x, y, z}; }
+  };
+
+  double depth_over_motion() const {
+    const mesh::Mesh& mesh = view_.body.mesh();
+    const std::vector<double> u = view_.fields.point_displacement();
+    std::vector<Vec3> moved = view_.body.geometry().points;
+    double motion = 0;
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      const Vec3 here = elastic::vector_at(u, Index(v), mesh.dim);
+      moved[v] += here;
+      if (Index(v) < mesh.points.n_owned()) motion = std::max(motion, here.norm());
+    }
+    motion = parallel::max(mesh.comm, motion);
+    std::vector<std::uint8_t> outside(moved.size(), 0);
+    for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+      if (mesh.twin.empty() || mesh.twin[std::size_t(f - mesh.n_interior)] < 0)
+        for (const Index v : mesh.face_points[f]) outside[std::size_t(v)] = 1;
+    std::vector<Place> mine;
+    for (Index v = 0; v < Index(moved.size()); ++v)
+      if (outside[std::size_t(v)]) mine.push_back({moved[v][0], moved[v][1], moved[v][2], mesh.point_id[v]});
+    std::vector<Place> places = parallel::all_gather(mesh.comm, mine);
+    std::ranges::sort(places, {}, &Place::x);
+    const mesh::Csr cells_of_point = mesh::transpose(mesh.cell_points, 0, mesh.points.n_local());
+    mesh::Csr cells_of_face;
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+      const std::array<Index, 2> sides{mesh.owner[f], f < mesh.n_interior ? mesh.neighbour[f] : -1};
+      cells_of_face.push_row({sides.data(), std::size_t(f < mesh.n_interior ? 2 : 1)});
+    }
+    const mesh::Csr faces_of_cell = mesh::transpose(cells_of_face, 0, mesh.cells.n_local());
+    const auto is_near = [&](Index cell, GlobalIndex point) {
+      for (const Index v : mesh.cell_points[cell])
+        for (const Index c : cells_of_point[v])
+          for (const Index w : mesh.cell_points[c])
+            if (mesh.point_id[w] == point) return true;
+      return false;
+    };
+    double depth = 0;
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+      if (std::ranges::none_of(faces_of_cell[c], [&](Index f) { return f >= mesh.n_interior; })) continue;
+      Vec3 low = Vec3::Constant(1e300), high = -low, middle = Vec3::Zero();
+      for (const Index v : mesh.cell_points[c]) {
+        low = low.cwiseMin(moved[v]), high = high.cwiseMax(moved[v]);
+        middle += moved[v] / double(mesh.cell_points[c].size());
+      }
+      for (auto p = std::ranges::lower_bound(places, low[0], {}, &Place::x);
+           p != places.end() && p->x < high[0]; ++p) {
+        if ((p->at() - low).minCoeff() < 0 || (high - p->at()).minCoeff() < 0 || is_near(c, p->point))
+          continue;
+        double here = std::numeric_limits<double>::max();
+        bool is_inside = true;
+        for (const Index f : faces_of_cell[c]) {
+          const double away = inward(mesh.face_points[f], moved, middle, p->at());
+          is_inside = is_inside && away > 0;
+          if (f >= mesh.n_interior) here = std::min(here, away);
+        }
+        if (is_inside) depth = std::max(depth, here);
+      }
+    }
+    return motion > 0 ? parallel::max(mesh.comm, depth) / motion : 0;
+  }
+
+  /// Distance of a place from the plane of a face, on the side of `middle`.
+  static double inward(std::span<const Index> points, const std::vector<Vec3>& moved, const Vec3& middle,
+                       const Vec3& at) {
+    const Vec3 along = moved[points[1]] - moved[points[0]];
+    const Vec3 normal = points.size() == 2
+                            ? Vec3(along[1], -along[0], 0)
+                            : Vec3((moved[points[points.size() - 1]] - moved[points[1]])
+                                       .cross(moved[points[points.size() / 2]] - moved[points[0]]));
+    const double side = normal.dot(middle - moved[points[0]]);
+    return normal.dot(at - moved[points[0]]) / normal.norm() * (side < 0 ? -1 : 1);
+  }
+
+  SolidView view_;
+};
+
+}  // namespace
+
+diagnostics::Made missing_contact(const SolidView& view) { return std::make_shared<MissingContact>(view); }
 
 }  // namespace couplet::solid

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/diagnostics/energy_balance.hpp"
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 

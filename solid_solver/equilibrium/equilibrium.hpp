@@ -15,9 +15,8 @@
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::io {
-class CheckpointReader;
-class CheckpointWriter;
-}  // namespace couplet::io
+class Archive;
+}
 
 namespace couplet::solid {
 
@@ -101,8 +100,8 @@ class Equilibrium {
   /// Ends the current step; accept() makes it the start of the next one. Throws SolveFailure.
   virtual void end_step(std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {}
   virtual void accept() {}
-  virtual void save(io::CheckpointWriter&) const {}
-  virtual void load(io::CheckpointReader&, std::span<const double>, std::span<const double>) {}
+  /// Saves or loads what the accepted state adds to these unknowns and known columns.
+  virtual void visit(io::Archive&, std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {}
 
   /// Path whose load factor multiplies all loads and is an unknown of find(); nullptr for fixed loads.
   virtual LoadPath* load_path() { return nullptr; }

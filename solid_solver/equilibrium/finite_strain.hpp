@@ -56,8 +56,7 @@ class FiniteStrain final : public LargeStrain {
     return kernel_->holding_forces(unknowns, known, loads);
   }
   LoadPath* load_path() override { return path_ ? &*path_ : nullptr; }
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) override;
+  void visit(io::Archive& archive, std::span<const double>, std::span<const double>) override;
   /// Newton iterates of the last solve.
   const std::vector<NewtonIterate>& iterates() const { return iterates_; }
   /// Summary of the last solve, for example "3 iterations of Newton's method, ...".

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
@@ -181,13 +182,9 @@ linalg::SolveStatistics FiniteStrain::follow_path(const Load& load, std::span<do
   return statistics;
 }
 
-void FiniteStrain::save(io::CheckpointWriter& file) const {
-  if (path_) path_->save(file, rows_);
-}
-
-void FiniteStrain::load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) {
-  if (path_) path_->load(file, rows_);
-  is_restored_ = true;
+void FiniteStrain::visit(io::Archive& archive, std::span<const double>, std::span<const double>) {
+  if (path_) path_->visit(archive, rows_);
+  is_restored_ = is_restored_ || archive.reads();
 }
 
 // Stability of the equilibrium.

@@ -68,9 +68,7 @@ class UpdatedLagrangian final : public LargeStrain {
                                               const elastic::ElasticLoads& loads) override;
   void end_step(std::span<const double> unknowns, std::span<const double> known) override;
   void accept() override;
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file, std::span<const double> unknowns,
-            std::span<const double> known) override;
+  void visit(io::Archive& archive, std::span<const double> unknowns, std::span<const double> known) override;
 
  private:
   /// Configuration of the body and its deformation.

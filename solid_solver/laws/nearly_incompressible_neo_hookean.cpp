@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/laws/law_of.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::laws {

@@ -8,24 +8,21 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
-#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
 namespace {
 
-// Maximum aggregates of the rigid coarse space: more hardly help, and their factors grow.
+// Maximum aggregates of the coarse space of rigid motions: more hardly help, and their factors grow.
 constexpr int most_aggregates = 200;
-// Minimum cells per aggregate for its rigid motions to be smooth on the scale of cells.
-constexpr GlobalIndex cells_of_aggregate = 64;
-// Likewise for the symmetric operator, only for slender bodies; and the minimum for both.
-constexpr GlobalIndex cells_of_slender_aggregate = 32;
+// Cells per aggregate for its rigid motions to be smooth on the scale of cells, and the fewest ones.
+constexpr GlobalIndex cells_of_aggregate = 32;
 constexpr int fewest_aggregates = 8;
 constexpr GlobalIndex fewest_cells = 4;
-// Length over thickness 2 V/S above which bending needs the rigid coarse space; a cube has 3.
+// Length over thickness 2 V/S above which bending needs the coarse space; a cube has 3.
 constexpr double slender = 12;
-// For the symmetric operator: slenderness, or this many cells for the first limit.
+// Slenderness without which it takes this many cells, too.
 constexpr double very_slender = 60;
 constexpr GlobalIndex many_cells = 4000;
 // Inertia over the stiffness of a cell's faces above which no motion is slow.
@@ -151,8 +148,8 @@ void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia) {
   // Half as long as thick, if the cells are fine enough.
   const GlobalIndex cells = mesh.cells.n_global();
   const GlobalIndex aggregates = std::min<GlobalIndex>(
-      most_aggregates, std::max(cells / cells_of_slender_aggregate,
-                                std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
+      most_aggregates,
+      std::max(cells / cells_of_aggregate, std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
   if (aggregates < fewest_aggregates) return;
   modes_ = std::make_unique<elastic::CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates),
                                                         inertia, problem_.is_symmetric());

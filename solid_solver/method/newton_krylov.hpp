@@ -7,7 +7,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/solve/current_rigid_modes.hpp"
 #include "common/elasticity/solve/elastic_preconditioner.hpp"
-#include "common/elasticity/symmetric/tied_matrix.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/method/solution_method.hpp"

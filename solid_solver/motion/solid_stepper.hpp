@@ -54,12 +54,11 @@ class SolidStepper final {
   /// Frees the solvers at the end of a static run, before its output, which needs memory.
   void release_solver();
 
-  void save_state(io::CheckpointWriter& file) const;
-  void load_state(io::CheckpointReader& file);
-  /// First guesses affect results below the tolerance, so a restarted run uses the same ones. Load them after
-  /// the effects.
-  void save_guesses(io::CheckpointWriter& file) const;
-  void load_guesses(io::CheckpointReader& file);
+  /// Saves or loads the accepted state. Collective.
+  void visit(io::Archive& archive);
+  /// First guesses affect results below the tolerance, so a restarted run uses the same ones. Call after the
+  /// effects. Collective.
+  void visit_guesses(io::Archive& archive);
 
  private:
   void start_from_rest();

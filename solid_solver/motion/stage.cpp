@@ -2,6 +2,8 @@
 // One stage of a step: system, right-hand side and solution (equations: SolidStepper).
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
@@ -10,7 +12,6 @@
 #include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
-#include "solid_solver/motion/stage_contact.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -33,6 +34,73 @@ double highest_frequency(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
     highest = std::max(highest, 2 / length * std::sqrt(youngs_modulus / body.density(cell)));
   }
   return parallel::max(mesh.comm, highest);
+}
+
+/// Linear combinations of time levels per component of cells or faces. `start`: state at the start of the
+/// step, which is the old level of a second stage.
+class History {
+ public:
+  History(const SolidState& now, const SolidState& start, bool of_faces)
+      : u_(of_faces ? now.face_u : now.cell_u),
+        v_(of_faces ? now.face_v : now.cell_v),
+        a_(of_faces ? now.face_a : now.cell_a),
+        u_old_(&now == &start ? (of_faces ? now.face_u_old : now.cell_u_old)
+                              : (of_faces ? start.face_u : start.cell_u)),
+        v_old_(&now == &start ? (of_faces ? now.face_v_old : now.cell_v_old)
+                              : (of_faces ? start.face_v : start.cell_v)) {}
+  double operator()(const time::Levels& l, std::size_t i, double x = 0) const {
+    double value = l.x * x + l.u * u_[i] + l.v * v_[i];
+    if (!a_.empty()) value += l.a * a_[i];
+    if (!u_old_.empty()) value += l.u_old * u_old_[i] + l.v_old * v_old_[i];
+    return value;
+  }
+
+ private:
+  std::span<const double> u_, v_, a_, u_old_, v_old_;
+};
+
+/// Part of a displacement independent of w, from levels `shown` of x = (w - beta v_h)/s.
+std::vector<double> known_part(const SolidBody& body, const StageWork& work, const time::Levels& shown,
+                               const SolidState& now, const SolidState& start) {
+  const mesh::Mesh& mesh = body.mesh();
+  const double beta = body.parameters().damping ? body.parameters().damping->stiffness : 0;
+  const time::Levels rest = time::Levels{0, shown.u, shown.v, shown.a, shown.u_old, shown.v_old} -
+                            (shown.x * beta / work.damping_scale) * work.stage.rate;
+  std::vector<double> cells(std::size_t(mesh.cells.n_local()) * mesh.dim, 0),
+      faces(std::size_t(mesh.boundary.n_local()) * mesh.dim, 0);
+  const History of_cells(now, start, false), of_faces(now, start, true);
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = of_cells(rest, i);
+  for (std::size_t i = 0; i < faces.size(); ++i) faces[i] = of_faces(rest, i);
+  return body.unknowns_of(cells, faces);
+}
+
+/// Response of the seat to the unknown w = x + beta v of a stage. The conserving rule uses the penetration at
+/// the end of the step, other schemes that at the stage's equilibrium. `now`: start of the stage, `start`:
+/// start of the step. Empty without a seat. Collective.
+std::optional<Pressing> pressing_of(const SolidBody& body, const StageWork& work, const SolidState& now,
+                                    const SolidState& start) {
+  const Seat* seat = body.seat();
+  if (!seat) return {};
+  const std::size_t n_known = body.prescribed().size() * body.mesh().dim;
+  std::vector<double> known_before(n_known, 0), known_shown(n_known, 0);
+  if (!body.is_dynamic()) {
+    const std::vector<double> still(body.elastic().n_unknowns(), 0);
+    return Pressing(*seat, 1, seat->penetration(still, {}), {});
+  }
+  const bool conserves = seat->is_conserving();
+  const time::Levels shown = conserves ? work.stage.end_value : time::Levels{1, 0, 0, 0, 0, 0};
+  const double factor = shown.x / work.damping_scale;
+  if (!body.prescribed().is_zero()) {
+    body.prescribed().evaluate(work.start_time, known_before);
+    body.prescribed().evaluate(work.end_time, known_shown);
+    const double place = conserves ? 1 : work.stage.place;
+    for (std::size_t i = 0; i < n_known; ++i)
+      known_shown[i] = known_before[i] + place * (known_shown[i] - known_before[i]) - factor * work.known[i];
+  }
+  std::vector<double> base = seat->penetration(known_part(body, work, shown, now, start), known_shown),
+                      before;
+  if (conserves) before = seat->penetration(body.unknowns_of(now.cell_u, now.face_u), known_before);
+  return Pressing(*seat, factor, std::move(base), std::move(before));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "common/log/log.hpp"
 #include "common/modes/modal_model.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/output/buckling.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/output.hpp"
 

@@ -17,7 +17,7 @@
 #include "solid_solver/body/stress.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/output/files.hpp"
-#include "solid_solver/output/spectrum.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
 
 namespace couplet::solid {
 

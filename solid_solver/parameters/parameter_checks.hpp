@@ -15,7 +15,6 @@ void check_finite_strain(config::Section& section, SolidParameters& parameters);
 void check_rigid_patches(config::Section& section, SolidParameters& parameters);
 /// Rejects settings that are incompatible with a buckling analysis.
 void check_buckling(config::Section& section, SolidParameters& parameters);
-/// Rejects settings that are incompatible with the estimate of large strain.
 /// Rejects settings that are incompatible with quantities of interest.
 void check_quantities(config::Section& section, SolidParameters& parameters);
 /// Rejects settings that are incompatible with a body of revolution.

@@ -13,6 +13,10 @@
 #include "solid_solver/parameters/heat_parameters.hpp"
 #include "solid_solver/thermal/heat_boundaries.hpp"
 
+namespace couplet::io {
+class Archive;
+}
+
 namespace couplet::solid {
 
 /// Thermal properties of one material.
@@ -55,8 +59,8 @@ class Heat final {
   /// empty. Throws SolveFailure. Collective.
   void solve(const coupling::Step& step, std::span<const double> source = {});
   void accept_step();
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  /// Saves or loads the accepted state. Collective.
+  void visit(io::Archive& archive);
 
   const fv::ConductionOperator& conduction() const { return conduction_; }
   const HeatState& accepted() const { return state_; }

@@ -61,8 +61,8 @@ class ThermalStrain {
   /// If wants_stress(), take_stress() receives that of the owned cells after each accepted step [Pa].
   bool wants_stress() const { return coupled_; }
   void take_stress(std::span<const Tensor3> stress);
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  /// Saves or loads the accepted state. Collective.
+  void visit(io::Archive& archive);
   /// Adds the thermal part of the stress of owned cells at the accepted time [Pa].
   void add_cell_stress(std::span<Tensor3> stress) const;
   /// Adds the thermal part of the stress of the local faces first, first + 1, ...

@@ -9,8 +9,6 @@
 #include "common/base/processor_clones.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/elastic_rows.hpp"
-#include "common/elasticity/thesis/elastic_corrected_face.hpp"
 #include "common/elasticity/thesis/elastic_corrections.hpp"
 #include "common/parallel/collective.hpp"
 
