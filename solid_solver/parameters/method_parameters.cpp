@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/parameters/method_parameters.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <string>
 #include <vector>
 
-#include "common/fv/expression.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
@@ -136,18 +132,6 @@ void declare(config::Section& s, MethodParameters& m) {
   declare_iteration(s, m);
 }
 
-namespace {
-
-/// True if a partner's forces act on some patch or part of one.
-bool is_loaded_by_partner(const SolidParameters& p) {
-  if (p.interface_data && p.interface_data->temperature) return false;
-  return std::ranges::any_of(p.boundaries, [](const auto& entry) {
-    return is_interface(entry.second) || std::ranges::any_of(entry.second.parts, is_interface);
-  });
-}
-
-}  // namespace
-
 void declare(config::Section& s, SolidDamping& d) {
   s.value("mass", d.mass)
       .unit("1/s")
@@ -174,62 +158,13 @@ time::TimeSchemeParameters scheme_of(const SolidParameters& p) {
   time::TimeSchemeParameters scheme = p.time_scheme;
   if (scheme.type != time::TimeScheme::automatic) return scheme;
   const bool keeps_contact = p.contact && p.contact->rule == contact::ContactRule::conserving;
+  const bool is_loaded_by_partner =
+      !(p.interface_data && p.interface_data->temperature) && any_condition(p, is_interface);
   const bool damps = has_finite_strain(p) && !is_updated_lagrangian(p) && !p.energy_momentum &&
-                     !keeps_contact && is_loaded_by_partner(p);
+                     !keeps_contact && is_loaded_by_partner;
   scheme.type = damps ? time::TimeScheme::generalised_alpha : time::TimeScheme::trapezoidal;
   return scheme;
 }
-
-namespace {
-
-using Texts = std::vector<config::ExpressionText>;
-
-/// First text that depends on t; empty if none does, or it is invalid, which is reported elsewhere.
-std::string first_in_time(const Texts& texts) {
-  for (const config::ExpressionText& e : texts)
-    if (fv::problem_of(e).empty() && fv::Expression(e).uses_time()) return e.text;
-  return {};
-}
-
-Texts texts_of(const TotalLoad& load) {
-  Texts all = load.force;
-  all.insert(all.end(), load.moment.begin(), load.moment.end());
-  all.push_back(load.level);
-  return all;
-}
-
-Texts texts_of(const SolidCondition& c) {
-  Texts all = texts_of(c.load);
-  for (const Texts* more : {&c.value, &c.traction}) all.insert(all.end(), more->begin(), more->end());
-  for (const auto& component : c.components)
-    if (component) all.push_back(*component);
-  all.push_back(c.pressure);
-  all.push_back(c.along);
-  return all;
-}
-
-constexpr const char* why =
-    "depends on t; 'load-stepping: {type: arc-length}' multiplies all loads and prescribed displacements by one load "
-    "factor, so they must be constant in time: give those of load factor 1";
-
-std::string wrong_boundary(const SolidParameters& p) {
-  for (const auto& [name, b] : p.boundaries) {
-    std::vector<SolidCondition> all(b.parts.begin(), b.parts.end());
-    all.push_back(b);
-    for (const SolidCondition& c : all) {
-      if (is_interface(c))
-        return fmt::format(
-            "patch '{}' takes its load from the coupler, and 'load-stepping: {{type: arc-length}}' cannot scale it; "
-            "use 'type: load'",
-            name);
-      if (const std::string text = first_in_time(texts_of(c)); !text.empty())
-        return fmt::format("'{}' of patch '{}' {}", text, name, why);
-    }
-  }
-  return {};
-}
-
-}  // namespace
 
 void declare(config::Section& s, LoadStepping& l) {
   using Type = LoadStepping::Type;
@@ -247,43 +182,6 @@ void declare(config::Section& s, LoadStepping& l) {
   s.value("longest", l.longest)
       .range(1, 1e4)
       .doc("for arc-length: largest length of a step over that of the first one");
-}
-
-void check_load_stepping(config::Section& s, SolidParameters& p) {
-  const auto check = [&](const char* key, auto problem) {
-    s.check(
-        [&p, problem]() -> std::string {
-          return p.load_stepping.type == LoadStepping::Type::arc_length ? problem() : std::string();
-        },
-        key);
-  };
-  check("load-stepping", [&p]() -> std::string {
-    return p.analysis == SolidParameters::Analysis::static_ && has_finite_strain(p) &&
-                   !is_updated_lagrangian(p)
-               ? ""
-               : "'type: arc-length' requires 'analysis: static', 'kinematics: finite-strain' and Newton's method "
-                 "('solution-method: {type: auto}')";
-  });
-  check("boundaries", [&p] { return wrong_boundary(p); });
-  check("point-loads", [&p]() -> std::string {
-    for (const auto& [name, load] : p.point_loads)
-      if (const std::string text = first_in_time(texts_of(load)); !text.empty())
-        return fmt::format("'{}' of '{}' {}", text, name, why);
-    return {};
-  });
-  check("body-force", [&p]() -> std::string {
-    const std::string text = first_in_time(p.body_force);
-    return text.empty() ? text : fmt::format("'{}' {}", text, why);
-  });
-  check("thermal-expansion", [&p]() -> std::string {
-    return p.expansion
-               ? "thermal strain cannot be multiplied by the load factor of 'load-stepping: {type: arc-length}'; "
-                 "use 'type: load'"
-               : "";
-  });
-  check("output", [&p]() -> std::string {
-    return p.output.energies ? "'energies' is not available with 'load-stepping: {type: arc-length}'" : "";
-  });
 }
 
 }  // namespace couplet::solid

@@ -284,6 +284,7 @@ void declare(config::Section& s, SolidParameters& p) {
       "solution-method", [&](config::Section& m) { declare(m, p.method); },
       "solution method for the equations of a step");
   declare_output(s, p);
+  check_heat(s, p);
   check_together(s, p);
   check_finite_strain(s, p);
   check_orthotropic(s, p);

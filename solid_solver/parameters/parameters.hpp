@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -111,6 +112,18 @@ inline elastic::LameConstants lame_constants(const SolidParameters& parameters) 
 /// True for a body of revolution; x is the radius.
 inline bool is_axisymmetric(const SolidParameters& p) {
   return p.dimension == 2 && p.plane == SolidParameters::Plane::axisymmetric;
+}
+
+inline bool is_plane_stress(const SolidParameters& p) {
+  return p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
+}
+
+/// Tests all conditions, including those of parts of patches.
+template <class Test>
+bool any_condition(const SolidParameters& p, const Test& test) {
+  return std::ranges::any_of(p.boundaries, [&](const auto& entry) {
+    return test(entry.second) || std::ranges::any_of(entry.second.parts, test);
+  });
 }
 
 /// True for large strain by the method of the thesis.
