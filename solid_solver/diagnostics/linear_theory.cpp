@@ -143,12 +143,10 @@ class Forces {
   explicit Forces(const SolidBody& body) : n_(body.elastic().n_unknowns()) {
     const char* name =
         body.elastic().volume_by_cells() ? "nearly-incompressible-neo-hookean" : "saint-venant-kirchhoff";
-    std::vector<const elastic::FiniteLaw*> all;
-    for (const SolidMaterial& material : materials_of(body.parameters())) {
-      laws_.push_back(laws::of(name)->make(lame_constants(body.parameters(), material), {}));
-      all.push_back(laws_.back().get());
-    }
-    kernel_ = std::make_unique<elastic::FiniteKernel>(body.mesh(), body.elastic(), all);
+    std::vector<elastic::FiniteLaw> all;
+    for (const SolidMaterial& material : materials_of(body.parameters()))
+      all.push_back(laws::of(name)->make(lame_constants(body.parameters(), material), {}));
+    kernel_ = std::make_unique<elastic::FiniteKernel>(body.mesh(), body.elastic(), std::move(all));
   }
   /// [F(s u) + sign F(-s u)] / 2.
   Values part(double s, const Displacement& u, double sign) {
@@ -166,7 +164,6 @@ class Forces {
   }
 
   std::size_t n_;
-  std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
   std::unique_ptr<elastic::FiniteKernel> kernel_;
 };
 

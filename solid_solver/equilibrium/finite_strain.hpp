@@ -97,7 +97,6 @@ class FiniteStrain final : public LargeStrain {
   double tolerance_, noise_, noise_of_motion_;
   double whole_ = 0;  // norm of the last residual with U'(J) instead of those pressures
   int most_linear_;
-  std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
   std::unique_ptr<elastic::FiniteKernel> kernel_;
   std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
   std::vector<double> r_, trial_, du_;

@@ -170,7 +170,7 @@ bool UpdatedLagrangian::find_stress() {
   if (!(parallel::min(mesh_.comm, least_) > 0)) return false;
   stress_.resize(n);
   energy_.resize(n);
-  first_piola(*law_, deformation_, stress_, energy_);
+  first_piola(law_, deformation_, stress_, energy_);
   return true;
 }
 

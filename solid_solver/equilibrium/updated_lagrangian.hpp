@@ -96,7 +96,7 @@ class UpdatedLagrangian final : public LargeStrain {
 
   const MethodParameters method_;
   double noise_ = 0;
-  std::unique_ptr<elastic::FiniteLaw> law_;
+  elastic::FiniteLaw law_;
   linalg::Accelerator accelerator_;
   Place now_, next_;
   std::unique_ptr<UpdatedFrame> frame_;

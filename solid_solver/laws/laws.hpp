@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,16 +11,14 @@
 namespace couplet::laws {
 
 /// `lame`: at small strain. `coefficients`: further constants of the law; missing ones are zero.
-using MakeLaw = std::unique_ptr<elastic::FiniteLaw> (*)(const elastic::LameConstants& lame,
-                                                        std::span<const double> coefficients);
+using MakeLaw = elastic::FiniteLaw (*)(const elastic::LameConstants& lame,
+                                       std::span<const double> coefficients);
 
-std::unique_ptr<elastic::FiniteLaw> saint_venant_kirchhoff(const elastic::LameConstants&,
-                                                           std::span<const double>);
-std::unique_ptr<elastic::FiniteLaw> neo_hookean(const elastic::LameConstants&, std::span<const double>);
-std::unique_ptr<elastic::FiniteLaw> nearly_incompressible_neo_hookean(const elastic::LameConstants&,
-                                                                      std::span<const double>);
-std::unique_ptr<elastic::FiniteLaw> mooney_rivlin(const elastic::LameConstants&, std::span<const double>);
-std::unique_ptr<elastic::FiniteLaw> yeoh(const elastic::LameConstants&, std::span<const double>);
+elastic::FiniteLaw saint_venant_kirchhoff(const elastic::LameConstants&, std::span<const double>);
+elastic::FiniteLaw neo_hookean(const elastic::LameConstants&, std::span<const double>);
+elastic::FiniteLaw nearly_incompressible_neo_hookean(const elastic::LameConstants&, std::span<const double>);
+elastic::FiniteLaw mooney_rivlin(const elastic::LameConstants&, std::span<const double>);
+elastic::FiniteLaw yeoh(const elastic::LameConstants&, std::span<const double>);
 
 /// Law with its name in the YAML file.
 struct Entry {
@@ -89,31 +86,24 @@ elastic::BulkOf<T> quadratic_bulk(double K, const T& J) {
   return {0.5 * K * (J - 1.0) * (J - 1.0), K * (J - 1.0), K + 0.0 * J};
 }
 
-/// Adapts a law to FiniteLaw. The struct provides
+/// FiniteLaw of a struct that provides
 ///   static constexpr bool has_bulk, has_second_invariant;
 ///   template <class T> EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const;   without the bulk part
 ///   template <class T> BulkOf<T> bulk(const T& J) const;
 template <class Law>
-class LawOf final : public elastic::FiniteLaw {
- public:
-  explicit LawOf(const Law& law) : law_(law) {}
-  void evaluate(std::span<const elastic::Invariants> at, bool with_bulk,
-                std::span<elastic::Energy> energy) const override {
+elastic::FiniteLaw finite_law(const Law& law) {
+  const auto evaluate = [law](std::span<const elastic::Invariants> at, bool with_bulk,
+                              std::span<elastic::Energy> energy) {
     for (std::size_t i = 0; i < at.size(); ++i) {
-      energy[i] = law_.shape(at[i].i1, at[i].i2, at[i].j);
+      energy[i] = law.shape(at[i].i1, at[i].i2, at[i].j);
       if (!with_bulk || !Law::has_bulk) continue;
-      const elastic::BulkOf<elastic::Four> bulk = law_.bulk(at[i].j);
+      const elastic::BulkOf<elastic::Four> bulk = law.bulk(at[i].j);
       energy[i].w += bulk.u;
       energy[i].wj += bulk.pressure;
       energy[i].wjj += bulk.modulus;
     }
-  }
-  elastic::BulkOf<double> bulk(double j) const override { return law_.bulk(j); }
-  bool has_bulk() const override { return Law::has_bulk; }
-  bool has_second_invariant() const override { return Law::has_second_invariant; }
-
- private:
-  Law law_;
-};
+  };
+  return {evaluate, [law](double j) { return law.bulk(j); }, Law::has_bulk, Law::has_second_invariant};
+}
 
 }  // namespace couplet::laws

@@ -27,10 +27,9 @@ struct MooneyRivlin {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> mooney_rivlin(const elastic::LameConstants& lame,
-                                                  std::span<const double> coefficients) {
+elastic::FiniteLaw mooney_rivlin(const elastic::LameConstants& lame, std::span<const double> coefficients) {
   const double share = coefficients.empty() ? 0 : coefficients[0];
-  return std::make_unique<LawOf<MooneyRivlin>>(
+  return finite_law(
       MooneyRivlin{lame.mu / 2 * (1 - share), lame.mu / 2 * share, elastic::bulk_modulus(lame)});
 }
 

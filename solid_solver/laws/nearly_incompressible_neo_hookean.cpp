@@ -26,10 +26,9 @@ struct NearlyIncompressible {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> nearly_incompressible_neo_hookean(const elastic::LameConstants& lame,
-                                                                      std::span<const double>) {
-  return std::make_unique<LawOf<NearlyIncompressible>>(
-      NearlyIncompressible{lame.mu, elastic::bulk_modulus(lame)});
+elastic::FiniteLaw nearly_incompressible_neo_hookean(const elastic::LameConstants& lame,
+                                                     std::span<const double>) {
+  return finite_law(NearlyIncompressible{lame.mu, elastic::bulk_modulus(lame)});
 }
 
 }  // namespace couplet::laws

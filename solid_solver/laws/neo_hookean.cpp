@@ -27,8 +27,8 @@ struct NeoHookean {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> neo_hookean(const elastic::LameConstants& lame, std::span<const double>) {
-  return std::make_unique<LawOf<NeoHookean>>(NeoHookean{lame.mu, lame.lambda});
+elastic::FiniteLaw neo_hookean(const elastic::LameConstants& lame, std::span<const double>) {
+  return finite_law(NeoHookean{lame.mu, lame.lambda});
 }
 
 }  // namespace couplet::laws

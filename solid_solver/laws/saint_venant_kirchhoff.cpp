@@ -28,9 +28,8 @@ struct SaintVenantKirchhoff {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> saint_venant_kirchhoff(const elastic::LameConstants& lame,
-                                                           std::span<const double>) {
-  return std::make_unique<LawOf<SaintVenantKirchhoff>>(SaintVenantKirchhoff{lame.mu, lame.lambda});
+elastic::FiniteLaw saint_venant_kirchhoff(const elastic::LameConstants& lame, std::span<const double>) {
+  return finite_law(SaintVenantKirchhoff{lame.mu, lame.lambda});
 }
 
 }  // namespace couplet::laws

@@ -292,7 +292,7 @@ elastic::VolumeStrain volume_strain_of(const SolidParameters& p) {
     return elastic::VolumeStrain::faces;
   const bool has_bulk =
       !has_finite_strain(p) || std::ranges::all_of(materials_of(p), [](const SolidMaterial& m) {
-        return laws::of(m.law)->make({1, 1}, {})->has_bulk();
+        return laws::of(m.law)->make({1, 1}, {}).has_bulk;
       });
   return has_bulk ? elastic::VolumeStrain::cells : elastic::VolumeStrain::faces;
 }

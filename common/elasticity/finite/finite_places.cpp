@@ -147,7 +147,7 @@ void scatter(const Four (&t)[3][3], const std::array<Index, 4>& at, double* valu
 }  // namespace
 
 FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
-                         std::span<const double> volume, std::span<const FiniteLaw* const> laws)
+                         std::span<const double> volume, std::span<const FiniteLaw> laws)
     : edges_(mesh, rows, faces, volume),
       value_(edges_.n_edges() * SharedEdges::gradient_stride, 0),
       kept_(value_) {
@@ -157,7 +157,7 @@ FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
       for (const Index e : edges_.edges_of(i)) material[e] = mesh.material_of(mesh.owner[faces[i]]);
   for (std::size_t m = 0; m < laws.size(); ++m) {
     Group group;
-    group.law = laws[m];
+    group.law = &laws[m];
     Index last = -1;  // padding uses the last edge of the block
     std::size_t n = 0;
     const auto add = [&](Index e, double of_edge) {
@@ -204,7 +204,7 @@ double FiniteEdges::to_stress(bool with_bulk, double& energy) {
       group.evaluate(i, {&at, 1}, with_bulk, {&e, 1});
       for (int k = 0; k < 4; ++k) energy += group.volume[i][k] * e.w[k];
       Four p[3][3];
-      group.law->has_second_invariant() ? finite::stress<true>(state, p) : finite::stress<false>(state, p);
+      group.law->has_second_invariant ? finite::stress<true>(state, p) : finite::stress<false>(state, p);
       scatter(p, group.edges[i], value_.data());
     }
   return least;
@@ -229,8 +229,8 @@ void FiniteEdges::to_tangent() {
     for (std::size_t i = 0; i < group.edges.size(); ++i) {
       Four df[3][3], dp[3][3];
       gather(value_.data(), group.edges[i], true, df);
-      group.law->has_second_invariant() ? finite::tangent<true>(group.states[i], df, Four{}, dp)
-                                        : finite::tangent<false>(group.states[i], df, Four{}, dp);
+      group.law->has_second_invariant ? finite::tangent<true>(group.states[i], df, Four{}, dp)
+                                      : finite::tangent<false>(group.states[i], df, Four{}, dp);
       scatter(dp, group.edges[i], value_.data());
     }
 }

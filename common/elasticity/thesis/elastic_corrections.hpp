@@ -179,31 +179,6 @@ template <int D, class Value>
   return result;
 }
 
-/// grad_t u in 3-D from the corner values with linear edges. The c_V of thesis (2.56) sum to zero, so grad_t
-/// u = sum_i c_i (u_plus - u_minus) has two differences: diagonals of a quadrilateral or two sides of a
-/// triangle.
-template <class Value>
-[[gnu::always_inline]] inline Surface<3> plain_surface(const CorrectedFace& face,
-                                                       std::span<const Index> corners, const Vec3* x,
-                                                       const Value& value) {
-  elastic::lanes::Lane<3> d[2], u[2];
-  for (int i = 0; i < 2; ++i) {
-    const bool diagonals = corners.size() == 4;
-    const Index plus = corners[diagonals ? i : i + 1], minus = corners[diagonals ? i + 2 : 0];
-    d[i] = between<3>(x[minus], x[plus]);
-    u[i] = value(plus) - value(minus);
-  }
-  const double scale = 0.5 * face.inverse_area;
-  const elastic::lanes::Lane<3> twice = lanes::cross(d[0], d[1]);
-  Surface<3> result;
-  result.n = twice * scale;
-  result.area = 0.5 * lanes::dot<3>(twice, result.n);
-  const elastic::lanes::Lane<3> c[2] = {lanes::cross(d[1], result.n) * scale,
-                                        lanes::cross(result.n, d[0]) * scale};
-  for (int a = 0; a < 3; ++a) result.grad.row[a] = c[0][a] * u[0] + c[1][a] * u[1];
-  return result;
-}
-
 /// n . grad u from `along` = d . grad u at the face center: with k = n - d / (d . n) and grad_t across n,
 /// g = along / (d . n) + k . grad_t u = (along - d . grad_t u) / (d . n).
 template <int D>
