@@ -12,7 +12,6 @@
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
-#include "common/parallel/collective.hpp"
 #include "solid_solver/output/heat_quantities.hpp"
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
@@ -110,7 +109,8 @@ ThermalSolid::ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, So
       geometry_(std::move(body.geometry)),
       parameters_(std::move(parameters)),
       context_(std::move(context)),
-      heat_(make_heat(mesh_, geometry_, parameters_)) {
+      heat_(make_heat(mesh_, geometry_, parameters_)),
+      series_(context_, mesh_.comm) {
   for (const auto& [name, probe] : parameters_.probes)
     probes_.emplace_back(mesh_, geometry_.points, name, probe.point);
   check_heat_quantities(*heat_, parameters_.quantities);
@@ -171,39 +171,24 @@ void ThermalSolid::write_surfaces(double time, std::span<const double> points) {
 
 void ThermalSolid::write_monitors(double time) {
   if (context_.output_folder.empty()) return;
-  if (!probes_.empty()) write_probes(time);
-  write_heat(time);
-}
-
-void ThermalSolid::write_probes(double time) {
-  const std::vector<double> points = heat_->point_temperature(heat_->accepted());
-  std::vector<double> row{time};
-  for (const io::Probe& probe : probes_) {
-    const std::vector<double> value = probe.sample(points, 1);
-    row.insert(row.end(), value.begin(), value.end());
-  }
-  if (parallel::comm_rank(mesh_.comm) != 0) return;
-  if (!probe_series_) {
+  if (!probes_.empty()) {
+    const std::vector<double> points = heat_->point_temperature(heat_->accepted());
     std::vector<std::string> columns{"time [s]"};
+    std::vector<double> row{time};
     for (const auto& [name, probe] : parameters_.probes) columns.push_back(name + " temperature [K]");
-    probe_series_.emplace(context_.output_folder / "probes.csv", columns, context_.restart_time);
+    for (const io::Probe& probe : probes_)
+      for (const double value : probe.sample(points, 1)) row.push_back(value);
+    series_.add("probes.csv", columns, row);
   }
-  probe_series_->row(row);
-}
-
-void ThermalSolid::write_heat(double time) {
-  const std::vector<PatchHeat> heat = heat_->patch_heat();
+  std::vector<std::string> columns{"time [s]"};
   std::vector<double> row{time};
-  for (const PatchHeat& h : heat) row.push_back(h.heat);
-  row.push_back(heat_->stored_heat());
-  if (parallel::comm_rank(mesh_.comm) != 0) return;
-  if (!heat_series_) {
-    std::vector<std::string> columns{"time [s]"};
-    for (const PatchHeat& h : heat) columns.push_back(h.patch + " [W]");
-    columns.emplace_back("stored [J]");
-    heat_series_.emplace(context_.output_folder / "heat.csv", columns, context_.restart_time);
+  for (const PatchHeat& h : heat_->patch_heat()) {
+    columns.push_back(h.patch + " [W]");
+    row.push_back(h.heat);
   }
-  heat_series_->row(row);
+  columns.emplace_back("stored [J]");
+  row.push_back(heat_->stored_heat());
+  series_.add("heat.csv", columns, row);
 }
 
 }  // namespace couplet::solid

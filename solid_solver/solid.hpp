@@ -10,7 +10,6 @@
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/fields/surface_series.hpp"
 #include "common/io/probes/probe.hpp"
-#include "common/io/series.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/body/solid_interface.hpp"
 #include "solid_solver/diagnostics/view.hpp"
@@ -80,8 +79,6 @@ class ThermalSolid final : public coupling::Participant {
   HeatView view() const { return {*heat_, parameters_, context_}; }
 
  private:
-  void write_probes(double time);
-  void write_heat(double time);
   void write_surfaces(double time, std::span<const double> points);
 
   const mesh::Mesh mesh_;
@@ -94,7 +91,7 @@ class ThermalSolid final : public coupling::Participant {
   std::optional<io::FieldWriter> fields_;
   std::optional<io::SurfaceSeries> surfaces_;
   bool surfaces_open_ = false;
-  std::optional<io::Series> probe_series_, heat_series_;  // on rank 0
+  SeriesFiles series_;
 };
 
 }  // namespace couplet::solid

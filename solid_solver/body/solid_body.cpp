@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
@@ -272,17 +273,12 @@ std::vector<double> SolidBody::known_of(const BodyField& field) const {
   const int dim = mesh_.dim;
   const elastic::VertexConstraints& constraints = elastic_.constraints();
   std::vector<double> known(elastic_.n_known() * dim, 0);
-  const auto at = [dim](std::span<const double> values, Index i) {
-    Vec3 u = Vec3::Zero();
-    for (int a = 0; a < dim; ++a) u[a] = values[std::size_t(i) * dim + a];
-    return u;
-  };
   for (const Index v : constraints.points()) {
-    const Vec3 u = at(field.points, v), held = u - constraints.free_part(v) * u;
+    const Vec3 u = elastic::vector_at(field.points, v, dim), held = u - constraints.free_part(v) * u;
     for (int a = 0; a < dim; ++a) known[std::size_t(constraints.column(v)) * dim + a] = held[a];
   }
   for (const Index f : elastic_.known_faces()) {
-    const Vec3 u = at(field.faces, f - mesh_.n_interior);
+    const Vec3 u = elastic::vector_at(field.faces, f - mesh_.n_interior, dim);
     for (int a = 0; a < dim; ++a) known[std::size_t(elastic_.known_of_face(f)) * dim + a] = u[a];
   }
   return known;

@@ -119,7 +119,7 @@ Opinion neglected_yielding(double share_of_yield) {
 
 Opinion near_incompressibility(const P& p) {
   if (!deforms(p) || has_volume_strain_of_cells(p)) return {};
-  if (p.dimension == 2 && p.plane == P::Plane::stress) return {};  // its thickness is free: no locking
+  if (is_plane_stress(p)) return {};  // its thickness is free: no locking
   const double nu = std::max(0.0, largest_poissons_ratio(p));
   return diagnostics::finding_of(
       {.effect = "near incompressibility",

@@ -75,11 +75,9 @@ class SolidStepper final {
   linalg::SolveStatistics find_equilibrium(const StageWork& work, const SolidState& now);
   void scale_loads(const StageWork& work, double factor);
   void add_inertia(const StageWork& work, const SolidState& now);
-  void add_kernel_inertia(const SolidState& now, const time::Levels& known);
   void add_face_forces(const StageWork& work);
   void guess(const StageWork& work, const SolidState& now);
-  void finish_cells(const StageWork& work, const SolidState& now);
-  void finish_faces(const StageWork& work, const SolidState& now);
+  void finish_nodes(const StageWork& work, const SolidState& now);
   void finish_offsets(const time::Stage& stage, const SolidState& now);
   void finish_acceleration();
   void update_trial_ghosts();

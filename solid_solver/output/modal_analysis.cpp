@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
@@ -92,46 +93,42 @@ bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method
   return parallel::sum(mesh.comm, blocks) * mesh.dim <= (mesh.dim == 2 ? most_rows_2d : most_rows_3d);
 }
 
-/// Search with factors of the shifted stiffness.
-modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
-                                    double shift) {
-  const mesh::Geometry& geometry = problem.geometry();
-  const mesh::Mesh& mesh = problem.mesh;
-  std::vector<double> density;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    density.push_back(cell_mass[std::size_t(c)] / geometry.volume[std::size_t(c)]);
-  elastic::TiedMatrix shifted(mesh, problem.elastic, {.mass = shift, .density = density});
-  check_factors(problem, shifted, shift);
-  shifted.factorise();
-  const modes::Pencil of{
-      .comm = mesh.comm,
-      .n = problem.elastic.n_unknowns(),
-      .k = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
-      .m = [&](std::span<const double> x,
-               std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
-      .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
+/// The lowest `n` modes, with an approximate inverse of K + shift M.
+modes::EigenModes search(const SolidProblem& problem, int n, double shift, linalg::LinearMap solve) {
+  const elastic::ElasticKernel& kernel = problem.kernel;
+  const modes::Pencil of{.comm = problem.mesh.comm,
+                         .n = problem.elastic.n_unknowns(),
+                         .k = [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, {}, y); },
+                         .m = [&](std::span<const double> x,
+                                  std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); },
+                         .solve = std::move(solve)};
   return modes::lowest_modes(of, n, -shift);
 }
 
-/// Search with one preconditioner.
-modes::EigenModes search(const SolidProblem& problem, const MethodParameters& method,
-                         std::span<const double> cell_mass, int n, double shift) {
+/// By factors of the shifted stiffness.
+modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
+                                    double shift) {
+  std::vector<double> density;
+  for (Index c = 0; c < problem.mesh.cells.n_owned(); ++c)
+    density.push_back(cell_mass[std::size_t(c)] / problem.geometry().volume[std::size_t(c)]);
+  elastic::TiedMatrix shifted(problem.mesh, problem.elastic, {.mass = shift, .density = density});
+  check_factors(problem, shifted, shift);
+  shifted.factorise();
+  return search(problem, n, shift,
+                [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); });
+}
+
+/// By one preconditioner.
+modes::EigenModes search_by_iteration(const SolidProblem& problem, const MethodParameters& method,
+                                      std::span<const double> cell_mass, int n, double shift) {
   std::vector<double> inertia;
   for (const double m : cell_mass) inertia.push_back(shift * m);
   const auto shifted =
       make_solution_method({problem.mesh, problem.elastic, inertia, problem.kernel, shift}, method);
-  const modes::Pencil of{
-      .comm = problem.mesh.comm,
-      .n = problem.elastic.n_unknowns(),
-      .k = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
-      .m = [&](std::span<const double> x,
-               std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
-      .solve =
-          [&](std::span<const double> x, std::span<double> y) {
-            std::ranges::fill(y, 0);
-            if (norm(problem.mesh.comm, x) > 0) shifted->solve(x, y);
-          }};
-  return modes::lowest_modes(of, n, -shift);
+  return search(problem, n, shift, [&](std::span<const double> x, std::span<double> y) {
+    std::ranges::fill(y, 0);
+    if (norm(problem.mesh.comm, x) > 0) shifted->solve(x, y);
+  });
 }
 
 }  // namespace
@@ -151,12 +148,12 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
   modes::EigenModes modes;
   try {
     modes = by_factors ? search_by_factors(problem, cell_mass, n, shift_part * scale)
-                       : search(problem, method, cell_mass, n, shift_part * scale);
+                       : search_by_iteration(problem, method, cell_mass, n, shift_part * scale);
   } catch (const SolveFailure& e) {
     if (!chooses || !by_factors) throw;
     log::info("modes: the factorised search did not succeed: {}", e.what());
     method.preconditioner = MethodParameters::Preconditioner::multigrid;
-    modes = search(problem, method, cell_mass, n, shift_part * scale);
+    modes = search_by_iteration(problem, method, cell_mass, n, shift_part * scale);
   }
   for (double& value : modes.eigenvalue)
     if (value < rigid_part * scale) value = 0;

@@ -220,24 +220,29 @@ double Heat::take_solution() {
   double change = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (Index c = 0; c < n_owned; ++c) {
     change = std::max(change, std::abs(unknowns_[c] - trial_.cells[c]));
-    trial_.cells[c] = unknowns_[c];
-    for (const double t : {state_.cells[c], trial_.cells[c]}) {
+    for (const double t : {state_.cells[c], unknowns_[c]}) {
       lowest = std::min(lowest, t);
       highest = std::max(highest, t);
     }
   }
-  const auto& faces = conduction_.flux_faces();
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    trial_.boundary[faces[i] - mesh_->n_interior] = unknowns_[n_owned + i];
-  const auto& known = conduction_.known_faces();
-  for (std::size_t i = 0; i < known.size(); ++i)
-    trial_.boundary[known[i] - mesh_->n_interior] = trial_.known[conduction_.known_points().size() + i];
-  mesh_->cells.update_ghosts(trial_.cells);
-  mesh_->boundary.update_ghosts(trial_.boundary);
-  conduction_.join_twins(trial_.boundary);
+  take(unknowns_, trial_);
   const double level = parallel::max(mesh_->comm, highest),
                range = level - parallel::min(mesh_->comm, lowest);
   return parallel::max(mesh_->comm, change) / std::max({range, 1e-3 * std::abs(level), 1e-300});
+}
+
+/// Sets cells and faces from the unknowns and from the known values of the state.
+void Heat::take(std::span<const double> unknowns, HeatState& state) const {
+  const Index n_owned = mesh_->cells.n_owned();
+  std::copy_n(unknowns.begin(), n_owned, state.cells.begin());
+  const auto &faces = conduction_.flux_faces(), &known = conduction_.known_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    state.boundary[faces[i] - mesh_->n_interior] = unknowns[n_owned + i];
+  for (std::size_t i = 0; i < known.size(); ++i)
+    state.boundary[known[i] - mesh_->n_interior] = state.known[conduction_.known_points().size() + i];
+  mesh_->cells.update_ghosts(state.cells);
+  mesh_->boundary.update_ghosts(state.boundary);
+  conduction_.join_twins(state.boundary);
 }
 
 /// R(T^{n+1}), required by the next step of the trapezoidal rule.
@@ -266,26 +271,19 @@ void Heat::set_inflow(std::span<const double> source) {
 
 void Heat::accept_step() { std::swap(state_, trial_); }
 
-/// Known values as fields, zero elsewhere: per local point, per boundary face of owned cells.
-std::pair<std::vector<double>, std::vector<double>> Heat::known_fields() const {
-  std::pair<std::vector<double>, std::vector<double>> fields;
-  fields.first.assign(mesh_->points.n_local(), 0.);
-  fields.second.assign(mesh_->boundary.n_owned(), 0.);
-  std::size_t i = 0;
-  for (const Index v : conduction_.known_points()) fields.first[v] = state_.known[i++];
-  for (const Index f : conduction_.known_faces()) fields.second[f - mesh_->n_interior] = state_.known[i++];
-  return fields;
-}
-
 void Heat::visit(io::Archive& archive) {
   archive.field(mesh::Entries::cells, "cell-temperature", state_.cells, 1);
   archive.field(mesh::Entries::boundary, "face-temperature", state_.boundary, 1);
-  auto [points, faces] = known_fields();
+  std::vector<double> points(mesh_->points.n_local(), 0), faces(mesh_->boundary.n_owned(), 0);
+  const auto each = [&](const auto& pass) {
+    std::size_t i = 0;
+    for (const Index v : conduction_.known_points()) pass(points[v], state_.known[i++]);
+    for (const Index f : conduction_.known_faces()) pass(faces[f - mesh_->n_interior], state_.known[i++]);
+  };
+  each([](double& field, double value) { field = value; });
   archive.field(mesh::Entries::points, "known-temperature", points, 1);
   archive.field(mesh::Entries::owned_boundary, "known-face-temperature", faces, 1);
-  std::size_t i = 0;
-  for (const Index v : conduction_.known_points()) state_.known[i++] = points[v];
-  for (const Index f : conduction_.known_faces()) state_.known[i++] = faces[f - mesh_->n_interior];
+  each([](double field, double& value) { value = field; });
   archive.field(mesh::Entries::owned_cells, "enthalpy", state_.enthalpy, 1);
   archive.field(mesh::Entries::owned_cells, "enthalpy-before", state_.enthalpy_before, 1);
   archive.field(mesh::Entries::owned_cells, "heat-inflow", state_.inflow, 1);
@@ -354,20 +352,9 @@ HeatState Heat::answer(std::vector<double> sources, std::vector<double> known) c
   conduction_.subtract_known({conductivity_, transfer_, capacity_, 1}, answer.known, sources);
   std::vector<double> unknowns(sources.size(), 0);
   solver_->solve(sources, unknowns);
-  const auto n_owned = std::size_t(mesh_->cells.n_owned());
   answer.cells.assign(std::size_t(mesh_->cells.n_local()), 0);
   answer.boundary.assign(std::size_t(mesh_->boundary.n_local()), 0);
-  std::copy_n(unknowns.begin(), n_owned, answer.cells.begin());
-  const auto& faces = conduction_.flux_faces();
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    answer.boundary[std::size_t(faces[i] - mesh_->n_interior)] = unknowns[n_owned + i];
-  const auto& fixed = conduction_.known_faces();
-  for (std::size_t i = 0; i < fixed.size(); ++i)
-    answer.boundary[std::size_t(fixed[i] - mesh_->n_interior)] =
-        answer.known[conduction_.known_points().size() + i];
-  mesh_->cells.update_ghosts(answer.cells);
-  mesh_->boundary.update_ghosts(answer.boundary);
-  conduction_.join_twins(answer.boundary);
+  take(unknowns, answer);
   return answer;
 }
 

@@ -98,13 +98,13 @@ class Heat final {
   void start();
   /// Throws Error if a steady field is `is_missing` a temperature that determines its level.
   void require_level(bool is_missing) const;
-  std::pair<std::vector<double>, std::vector<double>> known_fields() const;
   Coefficients coefficients(double dt) const;
   std::vector<double> face_heat() const;  // through flux faces into their owners [W]
   void set_conductivity(const HeatState& state, std::span<double> conductivity) const;
   std::vector<double> sources(double t, std::span<const double> further) const;
   void assemble(const Coefficients& c, std::span<const double> source);
   double take_solution();
+  void take(std::span<const double> unknowns, HeatState& state) const;
   void set_inflow(std::span<const double> source);
 
   const mesh::Mesh* mesh_;
