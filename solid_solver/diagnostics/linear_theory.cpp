@@ -17,6 +17,7 @@
 #include "common/base/text.hpp"
 #include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/linalg/krylov.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
@@ -123,6 +124,8 @@ constexpr double probe_gradient = 0.01;
 constexpr double steeper = 1.1;
 /// Change of the displacement below which small strain is not in question.
 constexpr double harmless = 0.02;
+/// Relative residual of the solutions of an estimate, which needs three digits.
+constexpr double three_digits = 1e-5;
 /// Part of the work from which loads along a component count, and part of the displacement from which the component does.
 constexpr double least_work = 1e-9, least_component = 0.1;
 
@@ -266,9 +269,17 @@ std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, 
     if (of > least_work * work) share = std::max(share, (std::abs(sums[1]) + std::abs(sums[2])) / of);
   }
   if (steepest + share < harmless) return {};
+  const auto apply = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); };
+  const auto precondition = [&](std::span<const double> x, std::span<double> y) {
+    method.approximate_inverse(x, y);
+  };
+  linalg::KrylovSolver loosely("displacement by large strain", mesh.comm, n, apply, precondition);
+  const linalg::KrylovOptions options{.relative_tolerance = three_digits,
+                                      .max_iterations = body.parameters().method.max_iterations,
+                                      .is_symmetric = true};
   const auto solve = [&](const Values& b) {
     Values u(n, 0);
-    method.solve(b, u);
+    method.approximate_inverse(b, u) ? void(loosely.solve(b, u, options)) : void(method.solve(b, u));
     return u;
   };
   const Displacement u2{solve(q), Values(known.size(), 0)};
