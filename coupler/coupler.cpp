@@ -182,8 +182,8 @@ void Coupler::finalise(const std::string& problem) {
   }
   if (const std::string where = diagnostics::position_sentence(position()); !where.empty())
     log::info("{}", where);
-  if (problem.empty())
-    log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, diagnostics::verdict(parts)));
+  // The launcher prints the verdict, because the participants still have findings to report.
+  if (problem.empty()) log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, {}));
 }
 
 std::vector<diagnostics::Coordinate> Coupler::position() const {
