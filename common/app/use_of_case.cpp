@@ -115,8 +115,8 @@ class UseOfCase final : public diagnostics::Diagnostic {
           find(
               "unseen-between-steps", use.unseen / use.largest(), least_unseen,
               fmt::format(
-                  "{}: {} goes {:.3g} beyond the values at the steps around t = {:g} s, {:.2g} of its largest: the steps do not see it; shorten 'time-step'",
-                  name, use.given, use.unseen, use.unseen_at, use.unseen / use.largest()));
+                  "{}: {} goes {:.3g} beyond its values at the steps around t = {:g} s, the largest of all steps is {:.3g}: the steps do not see it; shorten 'time-step'",
+                  name, use.given, use.unseen, use.unseen_at, use.largest()));
         break;
       case Use::Kind::table:
         if (use.highest < use.from || use.lowest > use.to)
