@@ -40,6 +40,7 @@ HeatErrors::HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
     : mesh_(mesh),
       geometry_(geometry),
       steady_(parameters.analysis == HeatParameters::Analysis::steady),
+      scheme_(parameters.scheme),
       steps_(scheme_of(parameters.scheme)) {}
 
 double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, int width,
@@ -109,6 +110,37 @@ std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   return gap;
 }
 
+/// Error of one or two steps [K]. The temperature of a cell approaches its end like e^(-z) per step; the scheme leaves
+/// `left` of the distance instead. The ratio q of its two changes tells z. For Euler and the trapezoidal rule q is what one
+/// step leaves, for three-point, which begins with Euler, 1.5/(1.5 + z). A single step gets its second change from the same
+/// matrix. Measured on slabs with a source and with a shock, for Fourier numbers from 0.02 to 1000: 0.5 to 1.25 of the error.
+double HeatErrors::of_first_steps(const Heat& heat) const {
+  using Scheme = HeatParameters::Scheme;
+  constexpr double even = 1e-3, least = 1e-9;  // from which 1 - q and 1/q have digits
+  const int steps = heat.accepted().steps;
+  const std::vector<double> second = steps == 1 ? heat.next_change(rate_) : rate_;
+  const std::span<const double> first = steps == 1 ? std::span<const double>(rate_) : steps_.before();
+  if (parallel::any(mesh_.comm, second.size() != first.size())) return diagnostics::ErrorParts::unknown;
+  std::vector<double> error(first.size());
+  for (std::size_t c = 0; c < error.size(); ++c) {
+    const double q = second[c] / first[c];
+    if (!(q < 1 - even)) {  // a rate that does not decay
+      error[c] = 0.5 * steps * dt_ * (second[c] - first[c]);
+      continue;
+    }
+    double z = 1 / std::max(q, least) - 1, left = std::pow(q, steps), changed = 1 - q;
+    if (scheme_ == Scheme::trapezoidal) {
+      z = 2 * (1 - q) / std::max(1 + q, least);
+    } else if (scheme_ == Scheme::three_point && steps == 2) {
+      z *= 1.5;
+      left = (2 - 0.5 * (1 + z)) / ((1 + z) * (1.5 + z));
+      changed = z / (1 + z);
+    }
+    error[c] = (left - std::exp(-steps * z)) / changed * dt_ * first[c];
+  }
+  return root_mean_square(mesh_, geometry_, 1, error);
+}
+
 diagnostics::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
   const HeatState& now = heat.accepted();
   diagnostics::ErrorParts parts;
@@ -119,7 +151,9 @@ diagnostics::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double
   if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
     return parts;  // uniform temperature has no error
   parts.mesh = root_mean_square(mesh_, geometry_, 1, gaps(heat)) / size;
-  if (!steady_) parts.step = steps_.over_size() * varies / size;
+  if (steady_) return parts;
+  parts.step = steps_.over_size() * varies / size;
+  if (std::isnan(parts.step) && now.steps <= 2) parts.step = of_first_steps(heat) / size;
   return parts;
 }
 

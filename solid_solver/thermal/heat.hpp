@@ -78,6 +78,10 @@ class Heat final {
   /// Heat stored in the whole solid relative to an arbitrary level [J]. Collective.
   double stored_heat() const;
 
+  /// Change [K] in a next step with the same loads, after an Euler or trapezoidal step that changed the owned
+  /// cells by `change`. Collective.
+  std::vector<double> next_change(std::span<const double> change) const;
+
   // Linear steady problem with constant conductivities, for other data: used by the dual problem.
 
   /// Conductivity in the last step, per local face [W/(m K)].

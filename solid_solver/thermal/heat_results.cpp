@@ -133,6 +133,17 @@ HeatState Heat::answer(std::vector<double> sources, std::vector<double> known) c
   return answer;
 }
 
+// (C/dt + theta K) x = C/dt change; the next change is x by Euler, and 2 x - change by the trapezoidal rule.
+std::vector<double> Heat::next_change(std::span<const double> change) const {
+  std::vector<double> rhs(conduction_.n_unknowns(), 0), next(conduction_.n_unknowns(), 0);
+  for (std::size_t i = 0; i < capacity_.size(); ++i) rhs[i] = capacity_[i] * change[i];
+  solver_->solve(rhs, next);
+  next.resize(capacity_.size());
+  if (parameters_.scheme == HeatParameters::Scheme::trapezoidal)
+    for (std::size_t i = 0; i < next.size(); ++i) next[i] = 2 * next[i] - change[i];
+  return next;
+}
+
 std::vector<double> Heat::transfer() const {
   std::vector<double> all = transfer_;
   for (std::size_t i = 0; i < all.size(); ++i)
