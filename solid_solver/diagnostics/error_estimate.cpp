@@ -225,6 +225,9 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
     parts.linear = strain_ ? missed_work() : left_by_solver();
   }
   parts.mesh = strain_ ? linear_mesh_error() : finite_mesh_error();
+  // Frequencies are the answer of a body at rest, load factors that of a loaded one.
+  if (body_.is_dynamic() ? !(linear_.size() > 0) : view_.output.buckling_factor().has_value())
+    parts.mesh = std::fmax(parts.mesh, view_.output.eigenvalue_error());
   if (!strain_) return;
   add_heat(parts);
   if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);

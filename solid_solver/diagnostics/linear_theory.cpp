@@ -69,7 +69,7 @@ class LinearTheory final : public diagnostics::Diagnostic {
     const SolidBody& body = view_.body;
     SolutionMethod* method = view_.stepper.method();
     if (!method || !body.kernel().is_symmetric() || is_axisymmetric(body.elastic()) ||
-        body.parameters().output.buckling > 0)
+        body.parameters().output.buckling > 0 || body.parameters().output.modes > 0)
       return;
     for (const FreeMotion& free : free_motions(body.mesh(), body.elastic()))
       if (!free.modes.empty())

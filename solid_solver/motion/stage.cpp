@@ -84,7 +84,7 @@ void SolidStepper::announce(const SolidSystem& system) {
   const bool first = method_announced_.empty();
   method_announced_ = chosen;
   log::info("Solution method: {}", chosen);
-  if (first && body_.is_dynamic())
+  if (first && body_.is_dynamic() && parameters_.output.modes == 0)
     log::info(
         "elastic Courant number of a step of {:.3g} s: {:.3g} (an explicit scheme would need at most 1)",
         step_.dt, step_.dt * highest_frequency(mesh_, geometry_, elastic_, body_) / 2);

@@ -158,26 +158,27 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
   return modes;
 }
 
-double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
+double energy_error(const SolidBody& body, const std::vector<double>& shape) {
   const mesh::Mesh& mesh = body.mesh();
+  const StrainGap gap =
+      strain_gap(body, shape, {}, [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); });
+  RecoveredStrain recovered(mesh, body.elastic());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.add(f, gap.strain[std::size_t(f)]);
+  recovered.recover();
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.compare(f, gap.strain[std::size_t(f)]);
+  return std::max({gap.missed + recovered.missed(), gap.variation, first_order_part * std::sqrt(gap.missed)});
+}
+
+double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
   double most = 0;
   for (std::size_t m = 0; m < modes.shape.size(); ++m) {
     if (!(modes.eigenvalue[m] > 0)) continue;  // a rigid motion
-    const std::vector<double>& shape = modes.shape[m];
-    const StrainGap gap =
-        strain_gap(body, shape, {}, [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); });
-    RecoveredStrain recovered(mesh, body.elastic());
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.add(f, gap.strain[std::size_t(f)]);
-    recovered.recover();
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.compare(f, gap.strain[std::size_t(f)]);
     // In a loaded body the stress stiffness contributes to the eigenvalue.
-    const elastic::ElasticField u{shape, {}};
+    const elastic::ElasticField u{modes.shape[m], {}};
     const double share =
-        parallel::sum(mesh.comm, body.kernel().product(elastic::ElasticPart::stiffness, u, u)) /
+        parallel::sum(body.mesh().comm, body.kernel().product(elastic::ElasticPart::stiffness, u, u)) /
         modes.eigenvalue[m];
-    const double missed =
-        std::max({gap.missed + recovered.missed(), gap.variation, first_order_part * std::sqrt(gap.missed)});
-    most = std::max(most, share * missed);
+    most = std::max(most, share * energy_error(body, modes.shape[m]));
   }
   return 0.5 * most;
 }

@@ -2,6 +2,7 @@
 // Free vibrations and buckling in SolidOutput.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -74,7 +75,7 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
   model.mass = 0;
   for (const double m : cell_masses(body_)) model.mass += m;
   model.mass = parallel::sum(mesh.comm, model.mass);
-  const double error = mode_error(body_, found);
+  const double error = eigenvalue_error_ = mode_error(body_, found);
   write_shapes("mode-shapes", "mode", found.shape);
   if (parallel::comm_rank(mesh.comm) != 0) return;
   io::Series series(context_.output_folder / "modes.csv",
@@ -87,11 +88,12 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
     series.row(row);
   }
   if (mesh.dim == 3) couplet::modes::write_modes(context_.output_folder / "modes.h5", model, "");
+  const auto first = std::ranges::find_if(model.frequency, [](double f) { return f > 0; });
+  const std::ptrdiff_t rigid = first - model.frequency.begin(), left = model.frequency.end() - first;
   diagnostics::set_result(
-      {"free vibrations",
+      {fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid motions", rigid) : ""),
        "Hz",
-       {model.frequency.begin(),
-        model.frequency.begin() + std::min<std::ptrdiff_t>(5, std::ssize(model.frequency))},
+       {first, first + std::min<std::ptrdiff_t>(5, left)},
        error});
   log::info(
       "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv, shapes in mode-shapes.xdmf{}; max residual {:.1e}; estimated error due "
@@ -124,8 +126,11 @@ void SolidOutput::write_buckling() {
     throw Error("output.buckling: {}", e.what());
   }
   write_shapes("buckling", "buckling", found.shape);
+  // The factor is the strain energy of its shape over the work of the stress.
+  if (!found.factor.empty()) eigenvalue_error_ = energy_error(body_, found.shape.front());
   if (parallel::comm_rank(mesh.comm) == 0) {
-    if (!found.factor.empty()) diagnostics::set_result({"load factors of buckling", "1", found.factor});
+    if (!found.factor.empty())
+      diagnostics::set_result({"load factors of buckling", "1", found.factor, eigenvalue_error_});
     io::Series series(context_.output_folder / "buckling.csv", {"number", "load factor [-]"});
     for (std::size_t m = 0; m < found.factor.size(); ++m)
       series.row(std::vector<double>{double(m + 1), found.factor[m]});

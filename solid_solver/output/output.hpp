@@ -57,6 +57,8 @@ class SolidOutput {
   void write_buckling();
   /// Lowest load factor of write_buckling(); empty if not computed or there is none.
   std::optional<double> buckling_factor() const { return buckling_factor_; }
+  /// Relative error due to the mesh of the frequencies or of the lowest load factor; NaN if there are none.
+  double eigenvalue_error() const { return eigenvalue_error_; }
   const SolidProbes& probes() const { return probes_; }
 
  private:
@@ -77,6 +79,7 @@ class SolidOutput {
   SolidProbes probes_;
   bool spectrum_written_ = false, modes_written_ = false;
   std::optional<double> buckling_factor_;
+  double eigenvalue_error_ = std::numeric_limits<double>::quiet_NaN();
   std::optional<io::FieldWriter> fields_;
   std::optional<SolidSurfaces> surfaces_;
   // On rank 0.
