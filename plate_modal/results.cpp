@@ -126,8 +126,9 @@ PlateResults::PlateResults(const Structure& structure)
             structure.context().name, name, x.x(), x.y(), x.z(), distance, allowed);
       if (distance < 1e-6 * size) continue;
       const Vec3 at = place_in(model, probes_.back());
-      log::info("probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m off the surface; moved to ({:g}, {:g}, {:g}).",
-                name, x.x(), x.y(), x.z(), distance, at.x(), at.y(), at.z());
+      log::info(
+          "probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m from the upper or lower face of the structure; moved to ({:g}, {:g}, {:g}).",
+          name, x.x(), x.y(), x.z(), distance, at.x(), at.y(), at.z());
     }
   });
 }

@@ -41,7 +41,7 @@ std::string summary(const std::vector<Effect>& effects) {
     list += list.empty() ? "" : ", ";
     list += e.on() ? fmt::format("{} ({})", e.name, e.asked_by) : e.name;
   }
-  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; neglected: ", off);
+  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; off: ", off);
 }
 
 std::string explanation(const std::vector<Effect>& effects) {

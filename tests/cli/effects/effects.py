@@ -55,7 +55,7 @@ with tempfile.TemporaryDirectory() as folder:
                           f"simulation.output.folder={folder}", "--set", "simulation.end-time=0.01", "--set",
                           "simulation.time-step=0.01"], capture_output=True, text=True, timeout=100)
     assert out.returncode == 0, out.stdout + out.stderr
-    assert re.search(r"effects: .*neglected: .*turbulence model", out.stdout), out.stdout
+    assert re.search(r"effects: .*off: .*turbulence model", out.stdout), out.stdout
 
 # What a run leaves out is judged while it runs: a traction that grows for ten steps passes the limit of the linear theory
 # in its midst, that is said once, with the time; --strict=effects makes it the
