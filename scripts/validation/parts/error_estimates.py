@@ -3,12 +3,17 @@
 report on the atlas of stability."""
 import csv
 import json
+import math
 import pathlib
 import re
 import sys
 import tempfile
 
 import atlas
+import yaml
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[3] / "benchmarks"))
+import ablation  # noqa: E402
 
 FOAM = "solidDisplacementFoam"
 # Part of a study that is run (--only: the sizes that a busy machine allows), its quantity, and the largest error of each program's best run.
@@ -167,6 +172,46 @@ def all_studies(job):
     good, all_ = estimates.inside(judged) + estimates.inside(coarse), len(judged) + len(coarse)
     return (f"{good} of {all_} runs ({100 * good / all_:.0f} %): {estimates.inside(judged)} of {len(judged)} with a clear reference, {estimates.inside(coarse)} of "
             f"{len(coarse)} whose reference is too coarse; beyond: {', '.join(lines)}"), good >= 0.85 * all_
+
+
+# -- new cases ---------------------------------------------------------------------------------------------------------
+FRESH = pathlib.Path(__file__).resolve().parents[1] / "estimates"
+
+
+def fresh_run(job, one, n, name):
+    """Numbers of a case of estimates/cases.yaml at one size, and the estimated error of its run."""
+    folder, names = job.scratch / f"fresh-{name.replace(' ', '-').replace(':', '').replace(',', '')}-{n}", {"n": n, "root": str(job.root)}
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in FRESH.glob("*.geo"):
+        (folder / file.name).write_text(file.read_text())
+    text = re.sub(r'"<([^">]+)>"', lambda m: json.dumps(eval(m[1], {}, names)), json.dumps(one["case"]))  # expressions of our own file
+    (folder / "case.yaml").write_text(text.replace("<root>", names["root"]))
+    reports = ablation.launch(job.build / "bin", folder / "case.yaml", [], folder / "out")
+    if "profile" in one:
+        return ablation.profile(one["profile"])(folder / "out"), ablation.estimated(reports, "all")
+    file, *columns = one["read"].split(", ") if isinstance(one["read"], str) else one["read"]
+    with open(folder / "out" / file, newline="") as rows:
+        last = list(csv.DictReader(rows))[-1]
+    at = lambda column: float(next(v for k, v in last.items() if k.startswith(column)))
+    return [at(column) - one.get("beyond", 0) for column in columns], ablation.estimated(reports, "all")
+
+
+def fresh(job, least=(0.75, 0.92), only=""):
+    """Estimates of runs of problems that no estimator was developed on, beside their true errors."""
+    ratios, lines = [], []
+    for name, one in yaml.safe_load((FRESH / "cases.yaml").read_text()).items():
+        if only not in name:
+            continue
+        found = []
+        for n in one["sizes"]:
+            values, estimate = fresh_run(job, one, n, name)
+            truth = ablation.distance(values, [t - one.get("beyond", 0) for t in one["truth"]])
+            found.append((estimate or 0) / truth if truth else math.nan)
+        ratios += found
+        lines.append(f"{name} {', '.join(f'{r:.2g}' for r in found)}")
+    near = [sum(1 / f <= r <= f for r in ratios) / len(ratios) for f in (2, 3)]
+    return (f"{near[0]:.0%} of {len(ratios)} within 2, {near[1]:.0%} within 3, the least {min(ratios):.2g}; estimate over truth: {'; '.join(lines)}",
+            near[0] >= least[0] and near[1] >= least[1] and min(ratios) >= 0.2)
 
 
 # -- positions on the atlas --------------------------------------------------------------------------------------------
