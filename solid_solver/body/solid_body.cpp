@@ -161,9 +161,12 @@ std::vector<double> SolidBody::scaled(std::vector<double> values) const {
 }
 
 std::vector<double> SolidBody::dead_loads(double t) const {
-  std::vector<double> forces(boundaries_.n_forces(), 0);
-  boundaries_.add_forces(t, forces, !equilibrium_->means().takes_pressure);
-  return scaled(std::move(forces));
+  if (t != time_of_dead_loads_) {
+    dead_loads_.assign(boundaries_.n_forces(), 0);
+    boundaries_.add_forces(t, dead_loads_, !equilibrium_->means().takes_pressure);
+    time_of_dead_loads_ = t;
+  }
+  return scaled(dead_loads_);
 }
 
 std::vector<double> SolidBody::body_forces(double t, const Vec3& shift) const {

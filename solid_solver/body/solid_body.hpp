@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -119,6 +120,8 @@ class SolidBody final {
   std::unique_ptr<Seat> seat_;
   bool has_mass_ = false;
   double load_factor_ = 1;
+  mutable std::vector<double> dead_loads_;  // at the last time asked for, without the factor
+  mutable double time_of_dead_loads_ = std::numeric_limits<double>::quiet_NaN();
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
   std::vector<fv::Expression> body_force_;
