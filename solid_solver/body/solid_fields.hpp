@@ -64,6 +64,8 @@ class SolidFields final {
   /// Sum of all loads of the last solve: tractions, pressures, interface, body forces.
   Vec3 total_load() const;
   Deformation deformation(std::span<const double> points) const;
+  /// Loads at the accepted time; the interface's are those of the last solve.
+  elastic::ElasticLoads loads_now() const;
 
  private:
   BodyField displacement(std::span<const double> points) const {
@@ -75,7 +77,6 @@ class SolidFields final {
   std::vector<SurfaceTraction> known_tractions() const;
   DiscreteStress discrete_stress(std::span<const double> points) const;
   std::vector<PatchForce> reactions_by_trial_functions() const;
-  elastic::ElasticLoads loads_now() const;
   Displaced displaced(std::span<const double> points) const;
 
   const SolidBody& body_;
