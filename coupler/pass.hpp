@@ -55,7 +55,6 @@ class Pass {
   const std::vector<std::size_t>& group() const { return group_; }  ///< indices of the iterated participants
   const std::vector<Side>& sides() const { return sides_; }
   const Links& links() const { return *links_; }
-  bool has_closed_fluid() const { return volume_level_.has_value(); }
   /// nullptr if there is no closed fluid.
   VolumeLevel* volume_level() { return volume_level_ ? &*volume_level_ : nullptr; }
   /// Data given by each in the last pass of the last solved step.

@@ -23,12 +23,6 @@ std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs) {
   return list;
 }
 
-int MpiChannel::ranks() const {
-  int size = 1;
-  MPI_Comm_remote_size(peers_, &size);
-  return size;
-}
-
 void MpiChannel::send(const Command& command) {
   pending_ = command.op;
   const std::string what = fmt::format("'{}' to take {}", name_, couplet::coupling::name(pending_));

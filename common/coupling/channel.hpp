@@ -21,8 +21,6 @@ class Channel {
   virtual Reply receive() = 0;
   /// Offers the arrays of an earlier reply for the next one, to save allocations.
   virtual void reuse(Exchange) {}
-  /// Number of ranks of the participant.
-  virtual int ranks() const { return 1; }
   /// Processor time [s] that this process has spent waiting for replies or inside the participant.
   virtual double waiting_seconds() const { return 0; }
 };
@@ -40,7 +38,6 @@ class MpiChannel final : public Channel {
   void reuse(Exchange old) override {
     if (!old.empty()) spare_ = std::move(old);
   }
-  int ranks() const override;
   double waiting_seconds() const override { return waiting_seconds_; }
 
  private:
