@@ -13,8 +13,8 @@ namespace {
 int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters& read) {
   using namespace couplet;
   const coupler::CouplingParameters parameters = read.in_force();
-  log::info("{}", diagnostics::summary(
-                      diagnostics::effects_of("coupler", coupler::coupling_effect_cards(), parameters)));
+  log::info("{}",
+            diagnostics::summary(diagnostics::effects_of(coupler::coupling_effect_cards(), parameters)));
   std::vector<std::unique_ptr<coupling::Channel>> channels;
   for (const app::Member& m : job.members)
     if (m.participant != app::coupler_name)
@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
       .declare = [&](couplet::config::Section& section) { declare(section, parameters); },
       .effects =
           [&](const couplet::diagnostics::CaseScene&) {
-            return couplet::diagnostics::effects_of("coupler", couplet::coupler::coupling_effect_cards(),
+            return couplet::diagnostics::effects_of(couplet::coupler::coupling_effect_cards(),
                                                     parameters.in_force());
           },
       .is_coupler = true};

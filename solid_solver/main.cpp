@@ -55,8 +55,7 @@ int main(int argc, char** argv) {
       .environment = couplet::linalg::petsc_environment,
       .effects =
           [&](const couplet::diagnostics::CaseScene&) {
-            return couplet::diagnostics::effects_of("solid_solver", couplet::solid::solid_effect_cards(),
-                                                    parameters);
+            return couplet::diagnostics::effects_of(couplet::solid::solid_effect_cards(), parameters);
           },
       .choose =
           [&](const couplet::diagnostics::CaseScene& scene) {

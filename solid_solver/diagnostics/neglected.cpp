@@ -158,8 +158,7 @@ Opinion thermoelastic_coupling(const P& p, double coupling_number) {
              .limit = 0.005,
              .what = found.what,
              .left_out = false,
-             .is_spare = true,
-             .saves = diagnostics::saved_share("solid_solver", "thermoelastic coupling")};
+             .is_spare = true};
   return diagnostics::finding_of(found);
 }
 

@@ -53,12 +53,11 @@ TEST(EffectCards, a_scene_has_the_effects_that_it_asks_for_and_no_others) {
   SolidParameters p = static_solid();
   p.gravity = {0, 0, -9.81};
   std::vector<std::string> on;
-  for (const Effect& e : effects_of("solid_solver", solid_effect_cards(), p))
+  for (const Effect& e : effects_of(solid_effect_cards(), p))
     if (e.on()) on.push_back(e.name);
   EXPECT_THAT(on, ElementsAre("gravity", "third dimension"));
   p.analysis = SolidParameters::Analysis::dynamic;
-  EXPECT_THAT(summary(effects_of("solid_solver", solid_effect_cards(), p)),
-              HasSubstr("inertia (analysis: dynamic)"));
+  EXPECT_THAT(summary(effects_of(solid_effect_cards(), p)), HasSubstr("inertia (analysis: dynamic)"));
 }
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -203,7 +202,7 @@ TEST(ComplianceWatch, knows_nothing_of_walls_at_rest_and_of_the_first_step) {
 
 // `--effects` asks before a case is read: this dereferenced the fluid that is not there yet.
 TEST(EffectCards, coupling_cards_answer_without_participants) {
-  EXPECT_NO_THROW(effects_of("coupler", coupling_effect_cards(), CouplingParameters{}));
+  EXPECT_NO_THROW(effects_of(coupling_effect_cards(), CouplingParameters{}));
   EXPECT_THROW(schedule_of(CouplingParameters{}), std::bad_optional_access);
 }
 
