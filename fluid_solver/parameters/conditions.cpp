@@ -139,19 +139,6 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
           "structure itself, for each face (solid_solver with `interface: {surface-density: true}`, "
           "plate_modal with `surface-density: true`, or any program that gives 'surface-density' "
           "[kg/m^2] at its faces)");
-  s.choice("sides", b.sides,
-           {{"auto", Sides::automatic}, {"together", Sides::together}, {"apart", Sides::apart}})
-      .doc(
-          "Robin condition of faces that lie opposite each other, on two wet sides of one body no thicker than a "
-          "quarter of the interface's extent: together: one motion, driven by the difference of their pressures, with "
-          "the mass of both, refused where there are none, and in a fluid without an outlet; apart: each for itself, for a body that a pressure wave needs more than a step to cross; auto: together where that is possible");
-  s.check(
-      [&b] {
-        return b.sides != Sides::automatic && !b.foresees()
-                   ? "there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key"
-                   : "";
-      },
-      "sides");
   s.check(
       [&b] {
         return b.surface_density && b.impedance == Impedance::structure

@@ -43,8 +43,6 @@ struct RotationParameters {
 
 /// Source of the mass per area behind a Robin interface.
 enum class Impedance { given, structure };
-/// Motion of Robin faces on the two sides of a thin body.
-enum class Sides { automatic, together, apart };
 
 /// Keys of all conditions; those that a condition does not read keep their defaults.
 struct BoundaryParameters {
@@ -62,7 +60,6 @@ struct BoundaryParameters {
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
   Impedance impedance = Impedance::given;            // interface
-  Sides sides = Sides::automatic;                    // interface
   /// True if the pressure equation accounts for the response of the wall.
   bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };

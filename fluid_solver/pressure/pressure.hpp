@@ -12,13 +12,6 @@
 
 namespace couplet::fluid {
 
-/// Entries in rows of owned cells in addition to those of the mesh. Symmetric as a whole.
-struct Couplings {
-  std::vector<Index> row;
-  std::vector<GlobalIndex> column;
-  std::vector<double> value;  ///< [m]
-};
-
 /// Additions to the diagonal; an empty vector adds nothing.
 struct Diagonal {
   std::vector<double> faces;  ///< per boundary face [m]
@@ -30,10 +23,8 @@ struct Diagonal {
 template <int D>
 class PressureEquation {
  public:
-  /// `fixed`: the mesh is at rest, so nothing is kept for a second set(). `couplings`: set() reads their
-  /// values at fixed positions; nullptr if there are none. They must outlive the equation.
-  PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
-                   const Couplings* couplings = nullptr);
+  /// `fixed`: the mesh is at rest, so nothing is kept for a second set().
+  PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed);
   /// `regular`: the additions determine the level in a closed domain. Collective.
   void set(const Placement<D>& at, bool regular = false, const Diagonal& added = {});
   /// True if the pressure is determined only up to a constant.
@@ -66,13 +57,12 @@ class PressureEquation {
                                         std::span<double> p, double relative, double absolute);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
-  const Couplings* couplings_;  // nullptr if there are none
   bool fixed_, regular_ = false;
   bool pinned_ = true;  // one cell's pressure is zero if it is determined up to a constant
   bool direct_;         // small 2-D meshes: Cholesky factors are kept
   std::unique_ptr<linalg::CellSolver> solver_;
   void fill(std::span<const double> coefficients);
-  // Moving mesh only. Matrix entries: diagonal per owned cell, one entry per face, then the couplings. The
+  // Moving mesh only. Matrix entries: diagonal per owned cell, then one entry per face. The
   // preconditioner is stored with the entries it was made from, now and at the accepted level.
   std::vector<double> values_;
   struct Lagging {

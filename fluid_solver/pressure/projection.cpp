@@ -46,13 +46,6 @@ std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const St
   return terms;
 }
 
-template <int D>
-const Couplings* couplings_of(const std::vector<std::unique_ptr<Term<D>>>& terms) {
-  for (const auto& term : terms)
-    if (const Couplings* found = term->couplings()) return found;
-  return nullptr;
-}
-
 }  // namespace
 
 template <int D>
@@ -64,8 +57,7 @@ PressureProjection<D>::PressureProjection(const Scene<D>& scene, const Step<D>& 
       prediction_(prediction),
       out_(result),
       terms_(make_terms(scene, step, prediction)),
-      equation_(scene.mesh, scene.boundary, !moving && scene.parameters.bodies.empty() && terms_.empty(),
-                couplings_of(terms_)) {}
+      equation_(scene.mesh, scene.boundary, !moving && scene.parameters.bodies.empty() && terms_.empty()) {}
 
 template <int D>
 void PressureProjection<D>::prepare(const State<D>& from) {

@@ -91,8 +91,6 @@ class Term {
   /// Changes whenever the matrix entries do, on a mesh at rest. 0 stands for a matrix without terms.
   virtual double version() const { return 0; }
   virtual void add_to_diagonal(Diagonal&) {}
-  /// Entries in addition to those of the mesh; nullptr if none. add_to_diagonal() sets the values.
-  virtual const Couplings* couplings() const { return nullptr; }
   /// Called with a new matrix. Collective.
   virtual void respond(PressureEquation<D>&) {}
 

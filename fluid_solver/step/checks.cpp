@@ -67,15 +67,6 @@ void check_order(FluidParameters& parameters, bool moving) {
   parameters.face_values = FaceValues::second_order;
 }
 
-void check_sides(const FluidParameters& parameters) {
-  for (const auto& [name, b] : parameters.boundaries)
-    if (b.sides == Sides::together)
-      throw Error(
-          "boundaries.{}.sides: together needs an outlet, since in a closed fluid the level of the pressure depends on "
-          "each side by itself; use 'auto' or 'apart'.",
-          name);
-}
-
 void check_axes(const FluidParameters& parameters, int dim) {
   if (parameters.rotating_frame) fv::check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
   for (const auto& [name, b] : parameters.boundaries)
@@ -141,7 +132,6 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
                     bool moving) {
   check_axes(parameters, D);
   check_frame(mesh, boundary, parameters, moving);
-  if (boundary.closed()) check_sides(parameters);
   check_parts(mesh, boundary);
   if (!parameters.bodies.empty()) {
     if (!parameters.gaps.empty())
