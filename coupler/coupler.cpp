@@ -29,31 +29,6 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters,
   start_acceleration();
 }
 
-namespace {
-
-CouplingParameters with_roles(CouplingParameters p, const CouplerChannels& c) {
-  if (!p.fluid) p.fluid.emplace();
-  p.fluid->participant = c.fluid->name();
-  if (!p.structure) p.structure.emplace();
-  p.structure->participant = c.structure->name();
-  if (c.mesh) p.mesh = {c.mesh->name()};
-  return p;
-}
-
-std::vector<std::unique_ptr<coupling::Channel>> list(CouplerChannels c) {
-  std::vector<std::unique_ptr<coupling::Channel>> channels;
-  for (auto* one : {&c.fluid, &c.structure, &c.mesh}) channels.push_back(std::move(*one));
-  return channels;
-}
-
-}  // namespace
-
-Coupler::Coupler(const CouplingParameters& parameters, const app::SimulationParameters& simulation,
-                 CouplerChannels channels, CouplerFolders folders)
-    // Braces fix the order: names are read before the channels are moved.
-    : Coupler{MPI_COMM_SELF, with_roles(parameters, channels), simulation, list(std::move(channels)),
-              std::move(folders)} {}
-
 Coupler::Known::Known(MPI_Comm comm, const Coupler& c)
     : unknown(comm, c.pass_.sides(), c.pass_.links(), c.pass_.group(), c.pass_.schedule().side_by_side),
       record(comm, c.parameters_, c.pass_),

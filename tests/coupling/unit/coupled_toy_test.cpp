@@ -3,6 +3,7 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/support/passing.hpp"
 #include "tests/coupling/toy/piston.hpp"
 #include "tests/coupling/toy/spring.hpp"
@@ -152,10 +153,8 @@ struct ToyRun {
     Participant& pusher = deaf                ? static_cast<Participant&>(deaf_one)
                           : renewed_push == 0 ? static_cast<Participant&>(piston)
                                               : renewing;
-    CouplerChannels channels{std::make_unique<LocalChannel>("fluid", pusher),
-                             std::make_unique<LocalChannel>("solid", hasty), nullptr};
-    if (with_mover) channels.mesh = std::make_unique<LocalChannel>("mover", mover);
-    Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", restart});
+    tests::LocalCoupler coupler(coupling, simulation, pusher, hasty, with_mover ? &mover : nullptr,
+                                {folder, folder / "checkpoints", restart});
     problem = coupler.run();
     steps = coupler.steps();
     halvings = coupler.halvings();

@@ -8,6 +8,7 @@
 #include "coupler/coupler.hpp"
 #include "coupler/mapping/surface_checks.hpp"
 #include "coupler/output/mechanics.hpp"
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/support/passing.hpp"
 #include "tests/coupling/toy/spring.hpp"
 #include "tests/support/test.hpp"

@@ -2,6 +2,7 @@
 // Programs that read their configuration themselves, and the case that was made of it.
 #include "coupler/exchange/start_checks.hpp"
 
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet::introductions_test {
