@@ -8,7 +8,6 @@
 #include "common/base/text.hpp"
 #include "common/config/document.hpp"
 #include "common/config/load.hpp"
-#include "common/config/magnitude.hpp"
 #include "common/config/values.hpp"
 
 namespace couplet::config {
