@@ -86,7 +86,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
         "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
         "current interface");
   if (context.mesh_peer != MPI_COMM_NULL)
-    sink_ = coupling::make_mesh_motion_sink(context.mesh_peer, mesh_, geometry_.points);
+    sink_ = std::make_unique<coupling::MeshMotionSink>(context.mesh_peer, mesh_, geometry_.points);
   if (!context.coupled && !context.output_folder.empty())
     base::when_started([this, folder = context.output_folder, restart_time = context.restart_time] {
       fields_ = std::make_unique<io::FieldWriter>(mesh_, geometry_.points, folder, name_, true, restart_time);
