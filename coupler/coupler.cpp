@@ -11,7 +11,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/start_checks.hpp"
+#include "coupler/exchange/partners.hpp"
 
 namespace couplet::coupler {
 

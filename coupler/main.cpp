@@ -6,7 +6,7 @@
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "coupler/coupler.hpp"
-#include "coupler/parameters/effect_cards.hpp"
+#include "coupler/parameters/parameters.hpp"
 
 namespace {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/parameters/effect_cards.hpp"
-
 #include <array>
 
 #include "coupler/parameters/schedule.hpp"
+
 namespace couplet::coupler {
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/fixed_point.hpp"
-#include "coupler/acceleration/growing_qr.hpp"
+#include "coupler/acceleration/quasi_newton.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::accelerator_test {

@@ -7,7 +7,7 @@
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "coupler/mapping/surface_checks.hpp"
-#include "coupler/output/mechanics.hpp"
+#include "coupler/output/record.hpp"
 #include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/support/passing.hpp"
 #include "tests/coupling/toy/spring.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs that read their configuration themselves, and the case that was made of it.
-#include "coupler/exchange/start_checks.hpp"
+#include "coupler/exchange/partners.hpp"
 
 #include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/unit/foreign.hpp"

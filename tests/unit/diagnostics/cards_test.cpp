@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/effects.hpp"
-#include "coupler/parameters/effect_cards.hpp"
+#include "coupler/parameters/parameters.hpp"
 #include "coupler/parameters/schedule.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/parameters/effects.hpp"
