@@ -3,13 +3,11 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "common/config/section.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/diagnostics/effects.hpp"
 
 namespace couplet::coupler {
 
@@ -104,9 +102,5 @@ void declare(config::Section& section, CouplingParameters& parameters);
 void declare(config::Section& section, AccelerationParameters& parameters);
 void declare(config::Section& section, ConvergenceParameters& parameters);
 void declare(config::Section& section, MappingParameters& parameters);
-
-using CouplingCard = diagnostics::EffectCard<CouplingParameters>;
-/// Features of a coupling beyond one pass per step over matching surfaces, in the order of the report.
-std::span<const CouplingCard> coupling_effect_cards();
 
 }  // namespace couplet::coupler

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/effects.hpp"
-#include "coupler/parameters/parameters.hpp"
-#include "coupler/parameters/schedule.hpp"
 #include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/parameters/effects.hpp"
 #include "plate_modal/model/parameters.hpp"
@@ -13,7 +11,6 @@
 
 namespace couplet::testing::cards_test {
 using namespace diagnostics;
-using namespace coupler;
 using namespace solid;
 
 using ::testing::ElementsAre;
@@ -198,12 +195,6 @@ TEST(ComplianceWatch, knows_nothing_of_walls_at_rest_and_of_the_first_step) {
   EXPECT_EQ(watch.totals().pressure_volume, 0) << "the impulse of the start";
   for (int n = 0; n < 5; ++n) watch.add(0.1, {0, 0}, {});
   EXPECT_EQ(watch.walls().square, 0);
-}
-
-// `--effects` asks before a case is read: this dereferenced the fluid that is not there yet.
-TEST(EffectCards, coupling_cards_answer_without_participants) {
-  EXPECT_NO_THROW(effects_of(coupling_effect_cards(), CouplingParameters{}));
-  EXPECT_THROW(schedule_of(CouplingParameters{}), std::bad_optional_access);
 }
 
 }  // namespace couplet::testing::cards_test
