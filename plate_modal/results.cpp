@@ -7,31 +7,13 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/base/point_tree.hpp"
 #include "common/diagnostics/results.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet::plate {
 namespace {
-
-/// The point of a triangle that is nearest to p, as weights of its corners [ericson2005].
-std::array<double, 3> nearest_in_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
-               d6 = ac.dot(cp);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const double sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
-}
 
 /// The whole surface on rank 0 as a mesh for output; other ranks write none of it.
 mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& whole) {
@@ -89,13 +71,10 @@ SurfacePlace nearest_place(const modes::ModalModel& model, const Vec3& point) {
     const auto corners = model.faces[f];
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
       const std::array<Index, 3> v{corners[0], corners[i], corners[i + 1]};
-      const auto w =
-          nearest_in_triangle(model.vertices[v[0]], model.vertices[v[1]], model.vertices[v[2]], point);
-      const Vec3 place =
-          w[0] * model.vertices[v[0]] + w[1] * model.vertices[v[1]] + w[2] * model.vertices[v[2]];
-      const double distance = (place - point).norm();
-      if (distance >= best.distance) continue;
-      best = {{v.begin(), v.end()}, {w.begin(), w.end()}, distance};
+      const base::Nearest<3> nearest =
+          base::nearest_on_triangle(model.vertices[v[0]], model.vertices[v[1]], model.vertices[v[2]], point);
+      if (nearest.distance >= best.distance) continue;
+      best = {{v.begin(), v.end()}, {nearest.weights.begin(), nearest.weights.end()}, nearest.distance};
     }
   }
   return best;
