@@ -250,7 +250,9 @@ void declare(config::Section& section, FluidParameters& p) {
 }
 
 void declare(config::Section& s, Filler& f) {
-  as_density(s.value("density", f.density))
+  s.value("density", f.density)
+      .unit("kg/m^3")
+      .plausible(50, 25000)
       .positive()
       .doc("density of the grains; the defaults are those of quartzite");
   as_specific_heat(s.value("specific-heat", f.specific_heat)).positive().doc("specific heat of the grains");

@@ -40,19 +40,13 @@ void check_together(config::Section& s, TankParameters& p) {
          [&p] { return p.elsewhere && p.elsewhere->insulation && !p.insulation && !p.shell; });
   refuse("insulation", "requires a shell; add one", [&p] { return p.insulation && !p.shell; });
   refuse("bed", "a gas crosses a cell in milliseconds: set bed.advection: implicit", [&p] {
-    return p.fluid.type == FluidParameters::Type::air && p.bed.advection != Advection::implicit;
+    constexpr double lightest_liquid = 50;  // [kg/m^3]
+    const bool is_light = p.fluid.type == FluidParameters::Type::custom && p.fluid.density < lightest_liquid;
+    return (p.fluid.type == FluidParameters::Type::air || is_light) && p.bed.advection != Advection::implicit;
   });
   s.check([&p] { return forgotten_unit_of_bed(p); }, "bed");
   s.check([&p] { return forgotten_unit_of_flow(p); }, "flow");
-  s.check([&p] { return slip_in_tank(p.bed, p.diameter); }, "diameter");
-  s.check([&p] { return slip_in_fluid(p.fluid, p.bed.advection); }, "fluid");
-  s.check([&p] { return slip_in_filler(p.filler); }, "filler");
-  s.check([&p] { return slip_in_bed(p.bed, p.diameter); }, "bed");
-  s.check([&p] { return p.shell ? slip_in_plates(*p.shell, p.diameter) : ""; }, "shell");
-  s.check([&p] { return p.insulation ? slip_in_insulation(*p.insulation, p.diameter) : ""; }, "insulation");
-  s.check([&p] { return p.ground ? slip_in_ground(*p.ground) : ""; }, "ground");
   s.check([&p] { return season_without_dates(p); }, "flow");
-  s.check([&p, is_plant] { return is_plant() ? slip_in_plant(p.flow.plant) : ""; }, "flow");
 }
 
 }  // namespace
