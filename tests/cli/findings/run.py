@@ -99,6 +99,8 @@ def scenes_():
     check("a folded mesh does not run in the mover alone", code != 0 and "folded at (0" in text, (code, text[-300:]))
     code, text, _ = in_folder(lambda f: scenes.folded(f, fold=False), "mesh_mover")
     check("the same mesh without the fold does", code == 0, (code, text[-300:]))
+    code, text, found = in_folder(scenes.pushed_in, "mesh_mover")
+    check("a cell that the motion folds at a corner is a finding", code == 0 and -0.3 < found["mover"].get("distorted-mesh", {}).get("number", 0) < -0.2, (code, found, text[-300:]))
     code, text, found = in_folder(scenes.explicit_step, "fluid_solver")
     check("an explicit step far beyond its limit ends the run with its cause",
           code == 1 and "10 halvings of the step for one cause did not help: The flow diverges" in text, (code, text[-400:]))
