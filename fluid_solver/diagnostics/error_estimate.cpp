@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <mpi.h>
 #include <Eigen/Dense>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,15 +10,93 @@
 
 #include "common/base/processor_clones.hpp"
 #include "common/diagnostics/error_parts.hpp"
+#include "common/fv/expression.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
-#include "fluid_solver/diagnostics/driving.hpp"
 #include "fluid_solver/diagnostics/phase_drift.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/pressure/term.hpp"
 
 namespace couplet::fluid {
+
+/// Time-dependent expressions that drive a flow: body force, motion of the mesh, velocities and pressures at boundaries. A
+/// flow that responds linearly to such an expression does not drift from it, because errors cancel over half
+/// a period. A flow coupled to a structure or with vortices may oscillate and never counts as driven.
+class Driving {
+ public:
+  explicit Driving(const FluidParameters& parameters);
+  /// True if some expression depends on time, or a mesh mover moves walls as the case says.
+  bool is_possible() const { return by_mover_ || !timed_.empty(); }
+  /// True if walls, bodies or the mesh move. These expressions then do not describe the driving completely.
+  bool moves() const { return moves_; }
+  /// True if an expression still changes over the last steps of `dt` before `time` [s] at one of the `places`
+  /// [m] of this rank, or if the mesh mover has moved the mesh in the last step. Collective over `comm`.
+  bool acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt,
+            std::span<const double> mesh_flux) const;
+
+ private:
+  std::vector<fv::Expression> timed_;
+  bool moves_ = false, by_mover_ = false;
+};
+
+namespace {
+
+constexpr int places_looked_at = 16, steps_looked_at = 16;
+constexpr double still = 1e-6;  // of the largest value: a gust that has passed, a ramp that has ended
+
+}  // namespace
+
+Driving::Driving(const FluidParameters& parameters) {
+  const auto add = [this](const config::ExpressionText& text) {
+    if (fv::Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
+  };
+  moves_ = parameters.motion || !parameters.gaps.empty();
+  for (const auto& [name, body] : parameters.bodies) moves_ = moves_ || !body.velocity.empty();
+  for (const auto& [patch, b] : parameters.boundaries) {
+    const GivenBy by = condition_of(b).velocity;
+    moves_ = moves_ || by == GivenBy::structure || by == GivenBy::motion;
+  }
+  for (const auto& [patch, b] : parameters.boundaries)
+    if (condition_of(b).velocity == GivenBy::structure) return;
+  for (const auto& [patch, b] : parameters.boundaries)
+    by_mover_ = by_mover_ || (condition_of(b).velocity == GivenBy::motion && !parameters.motion);
+  for (const auto& text : parameters.body_force) add(text);
+  if (const auto& motion = parameters.motion) {
+    for (const auto* texts : {&motion->translation, &motion->displacement})
+      for (const auto& text : *texts) add(text);
+    add(motion->angle);
+  }
+  for (const auto& [patch, b] : parameters.boundaries) {
+    for (const auto& text : b.velocity) add(text);
+    add(b.pressure);
+  }
+}
+
+bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt,
+                   std::span<const double> mesh_flux) const {
+  const auto moves = [](double flux) { return flux != 0; };
+  if (by_mover_ && parallel::any(comm, std::ranges::any_of(mesh_flux, moves))) return true;
+  double change = 0;  // largest of the expressions, each over its own largest value
+  const std::size_t stride = 1 + places.size() / places_looked_at;
+  for (const fv::Expression& e : timed_) {
+    double largest = 0, apart = 0;
+    for (std::size_t i = 0; i < places.size(); i += stride) {
+      const double now = e(places[i], time);
+      largest = std::max(largest, std::abs(now));
+      for (int k = 1; k <= steps_looked_at; ++k) {
+        const double before = e(places[i], std::max(0., time - k * dt));
+        largest = std::max(largest, std::abs(before));
+        apart = std::max(apart, std::abs(now - before));
+      }
+    }
+    largest = parallel::max(comm, largest), apart = parallel::max(comm, apart);
+    if (largest > 0) change = std::max(change, apart / largest);
+  }
+  return change > still;
+}
+
 namespace {
 
 constexpr double adams_bashforth_error = 5. / 12;

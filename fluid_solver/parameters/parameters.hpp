@@ -5,9 +5,11 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "common/base/types.hpp"
 #include "common/config/section.hpp"
 #include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
@@ -290,5 +292,15 @@ std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& 
 void declare(config::Section& section, FluidParameters& parameters);
 /// Declares the section `output`.
 void declare_output(config::Section& section, FluidOutputParameters& parameters);
+
+/// A field made from the velocity gradient g, g(i, j) = du_i/dx_j [1/s], of each cell. In 2-D, z has no part in g.
+struct GradientField {
+  const char *name, *unit;  ///< the name is a key of `output` that enables the field
+  const char* meaning;
+  bool is_vector;  ///< three components; in 2-D only the last one. Otherwise only the first.
+  Vec3 (*value)(const Tensor3& g);
+};
+/// All such fields.
+std::span<const GradientField> gradient_fields();
 
 }  // namespace couplet::fluid

@@ -29,7 +29,7 @@ constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
 // Closed domain: share of the boundary fluxes that a moving wall may leave as a discretization error, and the
 // speed of a fluid at rest [m/s]. Walls that move tangentially leave a share of their speeds as the error.
-constexpr double largest_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
+constexpr double largest_open_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
 
 template <int D>
 std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const Step<D>& step,
@@ -252,7 +252,7 @@ void PressureProjection<D>::balance_closed_domain() {
   if (adjustable && !scene_.boundary.has_convective_outlet() &&
       !(scene_.boundary.sealed() && scene_.boundary.interface_patches().empty()) &&
       scene_.parameters.volume_level == VolumeLevelBy::nobody && !scene_.boundary.yields() &&
-      std::abs(sums[total]) > largest_leftover * sums[size] &&
+      std::abs(sums[total]) > largest_open_leftover * sums[size] &&
       std::abs(sums[total]) > round_speed * sums[speeds] &&
       sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
     throw Error(

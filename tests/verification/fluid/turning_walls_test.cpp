@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "fluid_case.hpp"
-#include "fluid_solver/motion/rotation.hpp"
+#include "fluid_solver/motion/scene.hpp"
 #include "participant_case.hpp"
 #include "ring_mesh.hpp"
 #include "tests/support/apart.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -248,5 +248,176 @@ std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<
 
 template decltype(make_upstream_volume<2>) make_upstream_volume<2>;
 template decltype(make_upstream_volume<3>) make_upstream_volume<3>;
+
+namespace {
+
+// Default averaging time, in travel times of sound across the mesh.
+constexpr double mean_times = 10;
+
+/// Boundaries that let pressure waves out. With v the outward speed relative to the given one at t^{n+1/2},
+///   outlet: p_b = p_given + rho c (v - mean v),  v = phi/S
+///   inlet:  rho c v = p_b - mean p_b,            v = (w - given).n
+/// Means over the patch and a relaxation time preserve the given values. Implicit: v at t^{n+1/2} is
+/// middle_weights() of v at t^{n+1} and before, which scales the face's conductance by 1/(1 + a c dt g/S).
+template <int D>
+class AbsorbingBoundaries final : public Term<D> {
+ public:
+  AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+      : Term<D>(scene, step, prediction) {
+    const double size = largest_extent(scene.mesh, scene.points_at_rest);
+    mean_time_ = scene.parameters.compressibility->mean_time.value_or(mean_times * size / scene.fluid.sound);
+  }
+
+  /// The means follow their filter as if the last half step continued.
+  void prepare(const State<D>& from) override {
+    before_ = &from.openings;
+    weight_ = middle_weights(step_.dt, step_.by.dt_old);
+    const std::vector<double> rest(from.w.size(), 0.0);
+    means_of(from.openings.now, step_.by.pressure[0] ? step_.by.pressure[0]->boundary : rest, *from.placement,
+             mean_);
+    const double moved = -std::expm1(-0.5 * step_.dt / mean_time_);
+    for (std::size_t i = 0; i < mean_.size(); ++i) {
+      const double last = from.openings.mean[i];
+      mean_[i] = last + moved * (mean_[i] - last);
+    }
+  }
+  double version() const override { return weight_[0] * step_.dt; }
+  void add_to_diagonal(Diagonal& diagonal) override {
+    diagonal.faces.resize(prediction_.w.size(), 0.);
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count; ++b)
+        diagonal.faces[b] += (share(b) - (inlet ? 0 : 1)) * step_.to->conductance[mesh_.n_interior + b];
+  }
+  void foresee(const State<D>& from, Projected<D>& out) override {
+    const Placement<D>& at = *step_.to;
+    const double impedance = scene_.fluid.rho * scene_.fluid.sound;
+    std::size_t i = 0;
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches()) {
+      const double mean = mean_[i++];
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        if (!inlet) {
+          out.boundary[b] += impedance * (past(b) - mean);
+          continue;
+        }
+        // p_b = p_P + source - inertia (w - w^n).n
+        const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+        const double area = at.area[f].norm(), g = at.conductance[f],
+                     inertia = scene_.fluid.rho * area / (g * step_.dt);
+        const Vec<D> n = at.area[f] / area;
+        double source = 0;
+        if (!prediction_.force.empty()) source += scene_.fluid.rho * prediction_.force[p].dot(at.area[f]) / g;
+        if (!out.gradient.empty()) source -= out.gradient[p].dot(at.oblique_of(f)) / g;
+        const double pressure = source - mean - inertia * (out.w[b] - from.w[b]).dot(n);
+        out.w[b] += (pressure - impedance * past(b)) / (weight_[0] * impedance + inertia) * n;
+        out.phi[f] = out.w[b].dot(at.area[f]);
+      }
+    }
+  }
+  /// Subtracts the response of faces with given pressure.
+  void before(Projected<D>& out, RightSide& side) override {
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches()) {
+      if (inlet) continue;
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        const double more =
+            scene_.fluid.rho / step_.dt * out.phi[f] - step_.to->conductance[f] * out.boundary[b];
+        side.b[mesh_.owner[f]] += (1 - share(b)) * more;
+      }
+    }
+  }
+  void after(Projected<D>& out) override {
+    const Placement<D>& at = *step_.to;
+    const double factor = step_.dt / scene_.fluid.rho;
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        const double area = at.area[f].norm(), g = at.conductance[f], p = out.p[mesh_.owner[f]];
+        if (inlet) {
+          out.w[b] += factor * share(b) * g * p / area * (at.area[f] / area);
+          out.phi[f] = out.w[b].dot(at.area[f]);
+        } else {
+          const double flux = share(b) * (out.phi[f] - factor * g * (out.boundary[b] - p));
+          out.boundary[b] += weight_[0] * scene_.fluid.rho * scene_.fluid.sound * flux / area;
+        }
+      }
+  }
+  /// Sets state.openings.
+  void commit(const Projected<D>& out, State<D>& s) const override {
+    const Placement<D>& at = *step_.to;
+    Vectors<D> given(out.w.size(), Vec<D>::Zero());
+    scene_.boundary.velocity_at(step_.end(), at.boundary_centre, given);
+    std::vector<double> means, now;
+    means_of(s.openings.now, out.boundary, *s.placement, means);
+    s.openings.old.swap(s.openings.now);
+    s.openings.now.assign(out.w.size(), 0.0);
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const Index f = mesh_.n_interior + b;
+        const double area = at.area[f].norm();
+        s.openings.now[b] = (inlet ? (out.w[b] - given[b]).dot(at.area[f]) : out.phi[f]) / area;
+      }
+    means_of(s.openings.now, out.boundary, at, now);
+    const double moved = -std::expm1(-step_.dt / mean_time_);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      s.openings.mean[i] += moved * (0.5 * (means[i] + now[i]) - s.openings.mean[i]);
+  }
+  void start(State<D>& s) const override {
+    s.openings.now.assign(s.w.size(), 0.0);
+    for (const auto& [faces, inlet] : scene_.boundary.absorbing_patches())
+      for (Index b = faces.first; b < faces.first + faces.count && !inlet; ++b) {
+        const Index f = mesh_.n_interior + b;
+        s.openings.now[b] = s.phi[f] / s.placement->area[f].norm();
+      }
+    s.openings.old = s.openings.now;
+    const std::vector<double> rest(s.w.size(), 0.0);
+    means_of(s.openings.now, s.pressure[0] ? s.pressure[0]->boundary : rest, *s.placement, s.openings.mean);
+  }
+  using Term<D>::start;
+
+ private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+  using Term<D>::prediction_;
+  double share(Index b) const {
+    const Index f = mesh_.n_interior + b;
+    const double area = step_.to->area[f].norm();
+    return 1 / (1 + weight_[0] * scene_.fluid.sound * step_.dt * step_.to->conductance[f] / area);
+  }
+  double past(Index b) const { return weight_[1] * before_->now[b] + weight_[2] * before_->old[b]; }
+  /// Over each patch: of v at outlets, of p at inlets.
+  void means_of(const std::vector<double>& v, const std::vector<double>& p, const Placement<D>& at,
+                std::vector<double>& means) const {
+    const auto& patches = scene_.boundary.absorbing_patches();
+    std::vector<double> sums(2 * patches.size(), 0.0);
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      const auto& [faces, inlet] = patches[i];
+      for (Index b = faces.first; b < faces.first + faces.count; ++b) {
+        const double area = at.area[mesh_.n_interior + b].norm();
+        sums[2 * i] += area * (inlet ? p : v)[b];
+        sums[2 * i + 1] += area;
+      }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    means.resize(patches.size());
+    for (std::size_t i = 0; i < patches.size(); ++i) means[i] = sums[2 * i] / sums[2 * i + 1];
+  }
+
+  double mean_time_;                       // [s]
+  std::array<double, 3> weight_{};         // of v at t^{n+1}, t^n, t^{n-1}
+  const OpeningsState* before_ = nullptr;  // of level n
+  std::vector<double> mean_;               // at t^{n+1/2}, per patch
+};
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const Step<D>& step,
+                                                   const Prediction<D>& prediction) {
+  return std::make_unique<AbsorbingBoundaries<D>>(scene, step, prediction);
+}
+
+template decltype(make_absorbing_boundaries<2>) make_absorbing_boundaries<2>;
+template decltype(make_absorbing_boundaries<3>) make_absorbing_boundaries<3>;
 
 }  // namespace couplet::fluid
