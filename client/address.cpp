@@ -35,8 +35,7 @@ bool whole(const std::string& word, T& value) {
   return code == std::errc() && end == word.data() + word.size();
 }
 
-/// First address of a family on an interface, as bytes for bind(). Link-local ones are omitted, because their
-/// meaning depends on the machine.
+/// First address of a family on an interface, as bytes for bind(), except link-local ones (meant for one machine).
 socklen_t address_of(const std::string& name, int family, int port, sockaddr_storage& result) {
   ifaddrs* all = nullptr;
   if (::getifaddrs(&all) != 0) refuse("The network interfaces cannot be read.");

@@ -2,6 +2,7 @@
 // C++ interface to couplet.h with vectors.
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>

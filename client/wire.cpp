@@ -214,7 +214,7 @@ Command unpack(const std::vector<char>& head) {
   if (in.integer() != command_mark) throw std::runtime_error("a message of the coupler is not a command.");
   if (const auto v = in.integer(); v != version)
     throw std::runtime_error("the coupler uses version " + std::to_string(v) +
-                             " of the protocol, this client version " + std::to_string(version) + ".");
+                             " of the protocol, but this client uses " + std::to_string(version) + ".");
   Command c;
   c.op = in.integer();
   if (c.op < 1 || c.op > 9)
@@ -256,7 +256,7 @@ Place join(const std::string& participant, const std::string& program) {
   for (std::size_t r = 0; r < std::size_t(size); ++r)
     if (all[4 * r + 1] != version)
       throw std::runtime_error("process " + std::to_string(r) + " of the job uses version " +
-                               std::to_string(all[4 * r + 1]) + " of the protocol, this client version " +
+                               std::to_string(all[4 * r + 1]) + " of the protocol, but this client uses " +
                                std::to_string(version) +
                                ": use the client library and the programs of one version of Couplet.");
   // 2. Guests are not part of the programs' own communicator.

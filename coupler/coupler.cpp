@@ -11,7 +11,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/start_checks.hpp"
+#include "coupler/exchange/partners.hpp"
 
 namespace couplet::coupler {
 
@@ -28,31 +28,6 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters,
       diagnostics_(parallel::comm_rank(comm), simulation.error_estimate) {
   start_acceleration();
 }
-
-namespace {
-
-CouplingParameters with_roles(CouplingParameters p, const CouplerChannels& c) {
-  if (!p.fluid) p.fluid.emplace();
-  p.fluid->participant = c.fluid->name();
-  if (!p.structure) p.structure.emplace();
-  p.structure->participant = c.structure->name();
-  if (c.mesh) p.mesh = {c.mesh->name()};
-  return p;
-}
-
-std::vector<std::unique_ptr<coupling::Channel>> list(CouplerChannels c) {
-  std::vector<std::unique_ptr<coupling::Channel>> channels;
-  for (auto* one : {&c.fluid, &c.structure, &c.mesh}) channels.push_back(std::move(*one));
-  return channels;
-}
-
-}  // namespace
-
-Coupler::Coupler(const CouplingParameters& parameters, const app::SimulationParameters& simulation,
-                 CouplerChannels channels, CouplerFolders folders)
-    // Braces fix the order: names are read before the channels are moved.
-    : Coupler{MPI_COMM_SELF, with_roles(parameters, channels), simulation, list(std::move(channels)),
-              std::move(folders)} {}
 
 Coupler::Known::Known(MPI_Comm comm, const Coupler& c)
     : unknown(comm, c.pass_.sides(), c.pass_.links(), c.pass_.group(), c.pass_.schedule().side_by_side),
@@ -182,8 +157,8 @@ void Coupler::finalise(const std::string& problem) {
   }
   if (const std::string where = diagnostics::position_sentence(position()); !where.empty())
     log::info("{}", where);
-  if (problem.empty())
-    log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, diagnostics::verdict(parts)));
+  // The launcher prints the verdict, because the participants still have findings to report.
+  if (problem.empty()) log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, {}));
 }
 
 std::vector<diagnostics::Coordinate> Coupler::position() const {

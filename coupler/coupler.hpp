@@ -14,7 +14,6 @@
 #include "common/app/watch/watch.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "coupler/acceleration/accelerator.hpp"
-#include "coupler/acceleration/fixed_point.hpp"
 #include "coupler/acceleration/unknown.hpp"
 #include "coupler/diagnostics/view.hpp"
 #include "coupler/output/record.hpp"
@@ -30,22 +29,14 @@ struct CouplerFolders {
   std::filesystem::path restart;      ///< checkpoint to continue from; empty for a fresh start
 };
 
-/// Channels by role, for callers without configuration. The roles take the channels' names.
-struct CouplerChannels {
-  std::unique_ptr<coupling::Channel> fluid, structure, mesh;  ///< mesh may be empty
-};
-
 /// Drives any number of participants from start to end. A step is a fixed-point problem x = H(x), where H is
 /// one Pass and x the exchanged data (Unknown): predict, pass, accelerate until convergence, accept. All
 /// ranks of the coupler do the same with their parts of the interfaces.
 class Coupler {
  public:
-  /// `channels`: to all participants of the schedule, in any order.
+  /// `channels`: channels to all participants of the schedule, in any order.
   Coupler(MPI_Comm comm, const CouplingParameters& parameters, const app::SimulationParameters& simulation,
           std::vector<std::unique_ptr<coupling::Channel>> channels, CouplerFolders folders);
-  /// Coupler in one process.
-  Coupler(const CouplingParameters& parameters, const app::SimulationParameters& simulation,
-          CouplerChannels channels, CouplerFolders folders);
   /// Sets a callback for changes of phase, with the time if there is one.
   void on_phase(std::function<void(app::Phase, std::optional<double>)> callback) {
     enter_ = std::move(callback);

@@ -6,15 +6,13 @@
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "coupler/coupler.hpp"
-#include "coupler/parameters/effect_cards.hpp"
+#include "coupler/parameters/parameters.hpp"
 
 namespace {
 
 int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters& read) {
   using namespace couplet;
   const coupler::CouplingParameters parameters = read.in_force();
-  log::info("{}", diagnostics::summary(
-                      diagnostics::effects_of("coupler", coupler::coupling_effect_cards(), parameters)));
   std::vector<std::unique_ptr<coupling::Channel>> channels;
   for (const app::Member& m : job.members)
     if (m.participant != app::coupler_name)
@@ -47,11 +45,6 @@ int main(int argc, char** argv) {
       .description =
           "couples a fluid, a structure and a mesh mover, or participants of any kind, each a separate program",
       .declare = [&](couplet::config::Section& section) { declare(section, parameters); },
-      .effects =
-          [&](const couplet::diagnostics::CaseScene&) {
-            return couplet::diagnostics::effects_of("coupler", couplet::coupler::coupling_effect_cards(),
-                                                    parameters.in_force());
-          },
       .is_coupler = true};
   return couplet::app::run_job(argc, argv, program,
                                [&](const couplet::app::Job& job) { return run(job, parameters); });

@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "coupler/exchange/foreign.hpp"
-#include "coupler/exchange/start_checks.hpp"
+#include "coupler/exchange/partners.hpp"
 #include "coupler/mapping/surface_checks.hpp"
 
 namespace couplet::coupler {

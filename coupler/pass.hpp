@@ -23,7 +23,7 @@ namespace couplet::coupler {
 /// the interfaces.
 class Pass {
  public:
-  /// `channels`: to all participants of the schedule, in any order.
+  /// `channels`: channels to all participants of the schedule, in any order.
   Pass(MPI_Comm comm, const CouplingParameters& parameters,
        std::vector<std::unique_ptr<coupling::Channel>> channels);
 
@@ -34,7 +34,7 @@ class Pass {
   /// Sends one command to all participants.
   void ask_all(const coupling::Command& command);
 
-  /// Performs one pass from `known` to new data. `first`: of the step. Throws SolveFailure if a participant
+  /// Performs one pass from `known` to new data. `first`: true for the first pass of a step. Throws SolveFailure if a participant
   /// fails.
   std::vector<coupling::Exchange> operator()(std::vector<coupling::Exchange> known, bool first,
                                              coupling::Scheme scheme);
@@ -55,7 +55,6 @@ class Pass {
   const std::vector<std::size_t>& group() const { return group_; }  ///< indices of the iterated participants
   const std::vector<Side>& sides() const { return sides_; }
   const Links& links() const { return *links_; }
-  bool has_closed_fluid() const { return volume_level_.has_value(); }
   /// nullptr if there is no closed fluid.
   VolumeLevel* volume_level() { return volume_level_ ? &*volume_level_ : nullptr; }
   /// Data given by each in the last pass of the last solved step.

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
       .effects =
           [&](const diagnostics::CaseScene& scene) {
             return diagnostics::effects_of(
-                "fluid_solver", fluid::fluid_effect_cards(),
+                fluid::fluid_effect_cards(),
                 fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
           },
       .choose =

@@ -94,22 +94,13 @@ class BarrierMotion final : public MotionMethod {
         x.x(), x.y(), x.z());
   }
   linalg::SolveStatistics last() const override { return last_; }
-  void save(io::CheckpointWriter& file) const override {
-    const linalg::PreconditionerMemory memory = solver_->memory();
-    file.write(mesh::Entries::points, "barrier", displacement_);
-    file.write(mesh::Entries::points, "barrier-factors", factored_at_);
-    file.write_scalar("barrier-factors-exact", factored_ == BarrierSystem::Hessian::exact ? 1 : 0);
-    file.write_scalar("barrier-factors-due", memory.is_due || factored_at_.empty() ? 1 : 0);
-    file.write_scalar("barrier-factors-most", memory.most_iterations);
-  }
-  void load(io::CheckpointReader& file) override {
-    file.read(mesh::Entries::points, "barrier", displacement_);
-    factored_at_ = file.read_or_none(mesh::Entries::points, "barrier-factors", std::size_t(dim_));
-    const bool exact = file.read_scalar("barrier-factors-exact") > 0;
-    factored_ = exact ? BarrierSystem::Hessian::exact : BarrierSystem::Hessian::projected;
-    linalg::PreconditionerMemory memory;
-    memory.is_due = file.read_scalar("barrier-factors-due") > 0;
-    memory.most_iterations = int(file.read_scalar("barrier-factors-most"));
+  void visit(io::Archive& archive) override {
+    linalg::PreconditionerMemory memory = solver_->memory();
+    memory.is_due = memory.is_due || factored_at_.empty();
+    archive.field(mesh::Entries::points, "barrier", displacement_, std::size_t(dim_));
+    archive.field(mesh::Entries::points, "barrier-factors", factored_at_, std::size_t(dim_));
+    archive.common("barrier-memory", factored_, memory.is_due, memory.most_iterations);
+    if (!archive.reads()) return;
     if (!memory.is_due)
       system_.assemble(factored_at_, std::vector<double>(displacement_.size(), 0.0), residual_, factored_);
     solver_->restore(memory);

@@ -59,8 +59,6 @@ int main(int argc, char** argv) {
           },
       .environment = linalg::petsc_environment,
       .effects =
-          [&](const diagnostics::CaseScene&) {
-            return diagnostics::effects_of("mesh_mover", effect_cards(), parameters);
-          }};
+          [&](const diagnostics::CaseScene&) { return diagnostics::effects_of(effect_cards(), parameters); }};
   return app::run_program(argc, argv, program);
 }

@@ -25,8 +25,7 @@ class MotionMethod {
   /// Statistics of the last solve.
   virtual linalg::SolveStatistics last() const = 0;
   /// State from which the next solve starts. Collective.
-  virtual void save(io::CheckpointWriter& file) const = 0;
-  virtual void load(io::CheckpointReader& file) = 0;
+  virtual void visit(io::Archive& archive) = 0;
 };
 
 /// Stiffness (V / mean V)^-chi of thesis (4.12) per local cell; V: `volumes`. Collective.
@@ -53,15 +52,11 @@ class Laplacian final : public MotionMethod {
   std::vector<double> solve(std::span<const double> prescribed) override;
   /// Local points on patches with given displacement.
   const std::vector<Index>& interface_points() const { return interface_points_; }
-  /// dim values per local cell: initial guess of the next solve, for checkpoints.
-  std::vector<double>& cell_displacement() { return cell_displacement_; }
+  /// dim values per local cell: initial guess of the next solve.
   const std::vector<double>& cell_displacement() const { return cell_displacement_; }
   linalg::SolveStatistics last() const override { return last_; }
-  void save(io::CheckpointWriter& file) const override {
-    file.write(mesh::Entries::cells, "cell-displacement", cell_displacement_);
-  }
-  void load(io::CheckpointReader& file) override {
-    file.read(mesh::Entries::cells, "cell-displacement", cell_displacement_);
+  void visit(io::Archive& archive) override {
+    archive.field(mesh::Entries::cells, "cell-displacement", cell_displacement_, std::size_t(dim_));
   }
 
  private:

@@ -86,7 +86,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
         "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
         "current interface");
   if (context.mesh_peer != MPI_COMM_NULL)
-    sink_ = coupling::make_mesh_motion_sink(context.mesh_peer, mesh_, geometry_.points);
+    sink_ = std::make_unique<coupling::MeshMotionSink>(context.mesh_peer, mesh_, geometry_.points);
   if (!context.coupled && !context.output_folder.empty())
     base::when_started([this, folder = context.output_folder, restart_time = context.restart_time] {
       fields_ = std::make_unique<io::FieldWriter>(mesh_, geometry_.points, folder, name_, true, restart_time);
@@ -248,7 +248,8 @@ void Mover::save(io::CheckpointWriter& file) const {
   file.write(mesh::Entries::points, "displacement", accepted_);
   file.write_scalar("barrier-in-force", parameters_.method == Method::barrier && !laplacian_ ? 1 : 0);
   // The incremental form has no state between steps.
-  if (!incremental()) (laplacian_ ? laplacian_ : method_)->save(file);
+  io::Archive archive(file);
+  if (!incremental()) (laplacian_ ? laplacian_ : method_)->visit(archive);
 }
 
 void Mover::load(io::CheckpointReader& file) {
@@ -265,10 +266,11 @@ void Mover::load(io::CheckpointReader& file) {
     make_method();
   }
   placed_ = false;
+  io::Archive archive(file);
   if (incremental())
     make_method();
   else if (!begins)
-    method_->load(file);
+    method_->visit(archive);
 }
 
 void Mover::write_monitors(double time) {

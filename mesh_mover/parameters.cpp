@@ -62,24 +62,24 @@ void declare_method(config::Section& s, Parameters& p) {
             {"barrier", Method::barrier},
             {"auto", Method::automatic}})
       .doc(
-          "laplacian: each component separately, cheapest; pseudo-solid: an elastic body, tolerates bending "
-          "and rotation; rotations: rotation and displacement of the surface are propagated into the mesh, "
-          "tolerates the largest rotations; barrier: least distortion of the cells, which grows without "
-          "bound as a cell flattens: cannot fold, costs several linear solves per motion; auto: laplacian, or barrier if the "
+          "laplacian: each component separately, cheapest. pseudo-solid: an elastic body, tolerates bending "
+          "and rotation. rotations: rotation and displacement of the surface are propagated into the mesh, "
+          "tolerates the largest rotations. barrier: least distortion of the cells, which grows without "
+          "bound as a cell flattens: cannot fold, costs several linear solves per motion. auto: laplacian, or barrier if the "
           "prescribed motions would invert a cell, or from the first motion of an interface that does; laplacian "
           "with form: incremental and with periodic patches");
   s.choice("form", p.form,
            {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
       .doc(
           "total: the displacement from the reference mesh is computed, so the mesh depends only on the "
-          "current interface; incremental: the displacement from the last step's mesh, which depends on the "
-          "path; auto: total");
+          "current interface. incremental: the displacement from the last step's mesh, which depends on the "
+          "path. auto: total");
   s.value("stiffening", p.stiffening)
       .range(0, 3)
       .doc("chi: the stiffness of a cell is its volume to the power -chi, so small cells deform less");
   s.choice("stiffening-volumes", p.stiffening_volumes,
            {{"reference", StiffeningVolumes::reference}, {"current", StiffeningVolumes::current}})
-      .doc("reference volumes of the stiffening; current: those of the last step, for form: incremental");
+      .doc("reference volumes of the stiffening. current: those of the last step, for form: incremental");
   s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("Poisson's ratio of the pseudo-solid");
   s.check(
       [&p] {
@@ -123,7 +123,7 @@ void declare(config::Section& section, Parameters& p) {
                   {"cg-multigrid", linalg::LinearMethod::cg_multigrid}})
             .doc(
                 "direct: one factorization for the whole run (best below about 100 000 cells; not available "
-                "for a pseudo-solid in 3-D or with periodic patches); cg-multigrid: conjugate gradients "
+                "for a pseudo-solid in 3-D or with periodic patches). cg-multigrid: conjugate gradients "
                 "with a reused multigrid preconditioner");
         s.value("relative-tolerance", p.linear.relative_tolerance)
             .range(1e-14, 1e-1)

@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
       .effects =
           [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::diagnostics::effects_of(
-                "plate_modal", couplet::plate::plate_effect_cards(),
+                couplet::plate::plate_effect_cards(),
                 couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
           },
       .problems_of_files =

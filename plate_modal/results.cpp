@@ -7,31 +7,13 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/base/point_tree.hpp"
 #include "common/diagnostics/results.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet::plate {
 namespace {
-
-/// The point of a triangle that is nearest to p, as weights of its corners [ericson2005].
-std::array<double, 3> nearest_in_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
-               d6 = ac.dot(cp);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const double sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
-}
 
 /// The whole surface on rank 0 as a mesh for output; other ranks write none of it.
 mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& whole) {
@@ -51,19 +33,6 @@ mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& whole) {
   std::iota(mesh.cell_id.begin(), mesh.cell_id.end(), 0);
   std::iota(mesh.point_id.begin(), mesh.point_id.end(), 0);
   return mesh;
-}
-
-std::vector<std::string> numbered(const std::string& before, int n, const std::string& after) {
-  std::vector<std::string> result;
-  for (int i = 1; i <= n; ++i) result.push_back(fmt::format("{}{}{}", before, i, after));
-  return result;
-}
-
-Vec3 place_in(const modes::ModalModel& model, const SurfacePlace& place) {
-  Vec3 x = Vec3::Zero();
-  for (std::size_t i = 0; i < place.vertices.size(); ++i)
-    x += place.weights[i] * model.vertices[place.vertices[i]];
-  return x;
 }
 
 /// Logs the size, which reveals a mesh in another unit.
@@ -89,13 +58,10 @@ SurfacePlace nearest_place(const modes::ModalModel& model, const Vec3& point) {
     const auto corners = model.faces[f];
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
       const std::array<Index, 3> v{corners[0], corners[i], corners[i + 1]};
-      const auto w =
-          nearest_in_triangle(model.vertices[v[0]], model.vertices[v[1]], model.vertices[v[2]], point);
-      const Vec3 place =
-          w[0] * model.vertices[v[0]] + w[1] * model.vertices[v[1]] + w[2] * model.vertices[v[2]];
-      const double distance = (place - point).norm();
-      if (distance >= best.distance) continue;
-      best = {{v.begin(), v.end()}, {w.begin(), w.end()}, distance};
+      const base::Nearest<3> nearest =
+          base::nearest_on_triangle(model.vertices[v[0]], model.vertices[v[1]], model.vertices[v[2]], point);
+      if (nearest.distance >= best.distance) continue;
+      best = {{v.begin(), v.end()}, {nearest.weights.begin(), nearest.weights.end()}, nearest.distance};
     }
   }
   return best;
@@ -125,9 +91,12 @@ PlateResults::PlateResults(const Structure& structure)
             "most is allowed.",
             structure.context().name, name, x.x(), x.y(), x.z(), distance, allowed);
       if (distance < 1e-6 * size) continue;
-      const Vec3 at = place_in(model, probes_.back());
-      log::info("probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m off the surface; moved to ({:g}, {:g}, {:g}).",
-                name, x.x(), x.y(), x.z(), distance, at.x(), at.y(), at.z());
+      Vec3 at = Vec3::Zero();
+      for (std::size_t i = 0; i < probes_.back().vertices.size(); ++i)
+        at += probes_.back().weights[i] * model.vertices[probes_.back().vertices[i]];
+      log::info(
+          "probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m from the upper or lower face of the structure; moved to ({:g}, {:g}, {:g}).",
+          name, x.x(), x.y(), x.z(), distance, at.x(), at.y(), at.z());
     }
   });
 }
@@ -221,10 +190,9 @@ void PlateResults::write_series(double time) {
   if (!root_) return;
   const std::vector<double>& u = structure_.displacement();
   if (structure_.contact()) write_contact(time);
-  const int n = structure_.surface().n_modes();
   const ModalState& state = structure_.state();
   std::vector<std::string> columns{"time [s]"};
-  for (const std::string& one : numbered("q", n, " [sqrt(kg) m]")) columns.push_back(one);
+  for (std::size_t m = 1; m <= state.q.size(); ++m) columns.push_back(fmt::format("q{} [sqrt(kg) m]", m));
   std::vector<double> row{time};
   row.insert(row.end(), state.q.begin(), state.q.end());
   series(modal_, "modal.csv", columns).row(row);

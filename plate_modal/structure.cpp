@@ -105,14 +105,14 @@ void Structure::make_contact() {
   if (parallel::comm_rank(context_.comm) != 0) return;
   const double steps = shortest / context_.time_step;
   const std::string text = fmt::format(
-      "contact: over all faces it lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
+      "contact over all faces lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
   if (std::isnan(steps))
     log::info("{}.", text);
   else if (steps >= 10)
-    log::info("{}: {:.3g} steps of it.", text, steps);
+    log::info("{}. The time step resolves it with {:.3g} steps.", text, steps);
   else
     log::warn(
-        "{}: {:.2g} steps of it. Twenty resolve the speed after it to 1 %: 'simulation.time-step: {:.2g} s'.",
+        "{}. The time step resolves it with only {:.2g} steps. Twenty give the rebound speed to 1 %: 'simulation.time-step: {:.2g} s'.",
         text, steps, shortest / 20);
 }
 

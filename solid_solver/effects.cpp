@@ -30,15 +30,16 @@ bool varies(const P& p) {
 const std::array cards{
     SolidCard{"inertia", "`analysis: dynamic`",
               [](const P& p) { return when(is_dynamic(p), "analysis: dynamic"); },
-              "velocities, a mass in the matrix", "inertia over load, 0.01"},
+              "velocities, a mass in the matrix", "inertia over load"},
     SolidCard{
         "geometric non-linearity", "`kinematics: finite-strain`",
         [](const P& p) { return when(has_finite_strain(p), "kinematics: finite-strain"); },
         "per face F and the derivatives of the material law, Newton's method; `type: segregated` uses the "
         "updated-Lagrangian method of the thesis instead, at 9 to 17 times the solution time",
-        "estimated change of the displacement, 0.05; where that is not estimated, the largest displacement gradient, 0.02"},
-    SolidCard{"yielding", "not available here", [](const P&) { return std::string(); }, "",
-              "where `yield-strength` is given: equivalent stress over it, 1"},
+        "estimated change of the displacement; unknown where that is not estimated, with a warning from a displacement gradient of 0.02"},
+    SolidCard{
+        "yielding", "not available here", [](const P&) { return std::string(); }, "",
+        "equivalent stress over `yield-strength`; unknown without one, from 0.002 of Young's modulus of a metal"},
     SolidCard{
         "near incompressibility",
         "`solution-method: {face-gradient: symmetric, volume-strain: cells}` (or `shared`)",
@@ -50,7 +51,8 @@ const std::array cards{
               [](const P& p) { return when(is_elastic(p) && has_orthotropic(p), "orthotropic"); },
               "21 constants per face (6 in two dimensions) instead of 2"},
     SolidCard{"gravity", "`gravity`", [](const P& p) { return when(!p.gravity.empty(), "gravity"); },
-              "a load per cell"},
+              "a load per cell",
+              "of a static body: work of its weight on the displacement over that of the loads"},
     SolidCard{"body force", "`body-force`",
               [](const P& p) { return when(!p.body_force.empty(), "body-force"); }, "a load per cell"},
     SolidCard{
@@ -64,10 +66,10 @@ const std::array cards{
               "a temperature, its matrix and solver"},
     SolidCard{"thermal strain", "`thermal-expansion`",
               [](const P& p) { return when(p.expansion.has_value(), "thermal-expansion"); },
-              "a temperature per face", "strain of a free body over the displacement gradient, 0.02"},
+              "a temperature per face", "strain of a free body over the displacement gradient"},
     SolidCard{"thermoelastic coupling", "`thermoelastic-coupling: true`",
               [](const P& p) { return when(p.thermoelastic_coupling, "thermoelastic-coupling"); },
-              "a strain rate per cell", "stiffening by heat of deformation, 0.05"},
+              "a strain rate per cell", "stiffening by heat of deformation"},
     SolidCard{"properties of temperature", "`youngs-modulus-table`, `poissons-ratio-table`",
               [](const P& p) { return when(varies(p), "a table of the material"); },
               "Lame's constants per cell; the matrix is reassembled when they change"},

@@ -8,7 +8,6 @@
 #include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/effects.hpp"
 #include "solid_solver/solid.hpp"
-#include "solid_solver/thermal_solid.hpp"
 
 namespace {
 
@@ -55,8 +54,7 @@ int main(int argc, char** argv) {
       .environment = couplet::linalg::petsc_environment,
       .effects =
           [&](const couplet::diagnostics::CaseScene&) {
-            return couplet::diagnostics::effects_of("solid_solver", couplet::solid::solid_effect_cards(),
-                                                    parameters);
+            return couplet::diagnostics::effects_of(couplet::solid::solid_effect_cards(), parameters);
           },
       .choose =
           [&](const couplet::diagnostics::CaseScene& scene) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "solid_solver/solid.hpp"
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
+#include "solid_solver/output/heat_quantities.hpp"
 #include "solid_solver/output/quantities.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
 
 namespace couplet::solid {
 
@@ -84,17 +87,108 @@ void Solid::write_monitors(double time) {
   output_.write_series(time, fields_.point_displacement());
 }
 
+void Solid::visit(io::Archive archive) {
+  stepper_.visit(archive);
+  if (body_.thermal()) body_.thermal()->visit(archive);
+  if (archive.reads()) body_.place_expansion(stepper_.state().time);
+  stepper_.visit_guesses(archive);
+}
+
 void Solid::save(io::CheckpointWriter& file) const {
-  stepper_.save_state(file);
-  if (body_.thermal()) body_.thermal()->save(file);
-  stepper_.save_guesses(file);
+  file.on(body_.mesh());
+  const_cast<Solid*>(this)->visit(io::Archive(file));  // writing changes nothing
 }
 
 void Solid::load(io::CheckpointReader& file) {
-  stepper_.load_state(file);
-  if (body_.thermal()) body_.thermal()->load(file);
-  body_.place_expansion(stepper_.state().time);
-  stepper_.load_guesses(file);
+  file.on(body_.mesh());
+  visit(io::Archive(file));
+}
+
+ThermalSolid::ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext context)
+    : mesh_(std::move(body.mesh)),
+      geometry_(std::move(body.geometry)),
+      parameters_(std::move(parameters)),
+      context_(std::move(context)),
+      heat_(make_heat(mesh_, geometry_, parameters_)),
+      series_(context_, mesh_.comm) {
+  for (const auto& [name, probe] : parameters_.probes)
+    probes_.emplace_back(mesh_, geometry_.points, name, probe.point);
+  check_heat_quantities(*heat_, parameters_.quantities);
+  if (!parameters_.output.surfaces.empty())
+    surfaces_.emplace(mesh_, geometry_.points, parameters_.output.surfaces, "output.surfaces");
+}
+
+coupling::Interface ThermalSolid::initialise() {
+  coupling::Interface none;
+  none.dim = mesh_.dim;
+  return none;
+}
+
+void ThermalSolid::begin_step(const coupling::Step& step) {
+  if (!(step.dt > 0)) throw Error("The solid received a step of {} s; it must be above 0.", step.dt);
+  step_ = step;
+}
+
+coupling::Exchange ThermalSolid::solve(const coupling::Exchange&) {
+  heat_->solve(step_);
+  return {};
+}
+
+void ThermalSolid::save(io::CheckpointWriter& file) const {
+  file.on(mesh_);
+  io::Archive archive(file);
+  heat_->visit(archive);
+}
+
+void ThermalSolid::load(io::CheckpointReader& file) {
+  file.on(mesh_);
+  io::Archive archive(file);
+  heat_->visit(archive);
+}
+
+void ThermalSolid::write_output(double time, int number) {
+  if (context_.output_folder.empty()) return;
+  const std::vector<double> points = heat_->point_temperature(heat_->accepted());
+  if (surfaces_) write_surfaces(time, points);
+  if (!context_.fields.due(number)) return;
+  if (!fields_)
+    fields_.emplace(mesh_, geometry_.points, context_.output_folder, context_.name, false,
+                    context_.restart_time, context_.fields);
+  fields_->write(time, geometry_.points,
+                 {{"temperature", "K", io::OutputField::Place::points, 1, points},
+                  {"cell-temperature", "K", io::OutputField::Place::cells, 1, heat_->accepted().cells}});
+}
+
+void ThermalSolid::write_surfaces(double time, std::span<const double> points) {
+  if (!surfaces_open_) surfaces_->open(context_.output_folder, false, context_.restart_time);
+  surfaces_open_ = true;
+  const std::vector<double> inflow = heat_->boundary_inflow();
+  for (std::size_t i = 0; i < surfaces_->patches().size(); ++i)
+    surfaces_->write(i, time, geometry_.points,
+                     {{"temperature", "K", io::OutputField::Place::points, 1, points},
+                      {"heat-flux", "W/m^2", io::OutputField::Place::cells, 1, inflow}});
+}
+
+void ThermalSolid::write_monitors(double time) {
+  if (context_.output_folder.empty()) return;
+  if (!probes_.empty()) {
+    const std::vector<double> points = heat_->point_temperature(heat_->accepted());
+    std::vector<std::string> columns{"time [s]"};
+    std::vector<double> row{time};
+    for (const auto& [name, probe] : parameters_.probes) columns.push_back(name + " temperature [K]");
+    for (const io::Probe& probe : probes_)
+      for (const double value : probe.sample(points, 1)) row.push_back(value);
+    series_.add("probes.csv", columns, row);
+  }
+  std::vector<std::string> columns{"time [s]"};
+  std::vector<double> row{time};
+  for (const PatchHeat& h : heat_->patch_heat()) {
+    columns.push_back(h.patch + " [W]");
+    row.push_back(h.heat);
+  }
+  columns.emplace_back("stored [J]");
+  row.push_back(heat_->stored_heat());
+  series_.add("heat.csv", columns, row);
 }
 
 }  // namespace couplet::solid

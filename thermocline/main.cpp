@@ -21,8 +21,7 @@ int main(int argc, char** argv) {
           },
       .effects =
           [&](const couplet::diagnostics::CaseScene&) {
-            return couplet::diagnostics::effects_of("thermocline", couplet::thermocline::effect_cards(),
-                                                    parameters);
+            return couplet::diagnostics::effects_of(couplet::thermocline::effect_cards(), parameters);
           },
       .problems_of_files =
           [&](const std::filesystem::path& folder) {

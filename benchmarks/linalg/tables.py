@@ -55,7 +55,7 @@ def gains(rows, name):
 
 
 def best(rows, name):
-    """Returns the best row on one rank. With two ranks the seconds would include one waiting for the other."""
+    """Returns the best row on one rank. On two ranks the time would include one rank waiting for the other."""
     return min((g for g in gains(rows, name) if g[2]["ranks"] == "1"), key=lambda g: min(g[:2]), default=None)
 
 

@@ -12,7 +12,7 @@ SOLVERS = {"GAMG": "solver GAMG; smoother GaussSeidel; nCellsInCoarsestLevel 20;
 
 
 def write(folder, n, tolerance, solver="GAMG", relative=0.9):
-    """`tolerance`: of the outer iteration; `relative`: of the linear solver within one."""
+    """`tolerance`: tolerance of the outer iteration; `relative`: relative tolerance of the linear solver within one."""
     folder = pathlib.Path(folder)
     for part in ("0", "system", "constant/polyMesh"):
         (folder / part).mkdir(parents=True, exist_ok=True)

@@ -38,7 +38,7 @@ def pick(rows):
 
 
 def seconds(rows, network, ranks, cells, sharing=1):
-    """Returns (work, messages, bytes, collectives) [s] of one step. `cells`: of each rank; `sharing`: ranks that share a node's port.
+    """Returns (work, messages, bytes, collectives) [s] of one step. `cells`: cells of each rank; `sharing`: ranks that share a node's port.
     Halo bytes go with the surface of a part, cells^((d-1)/d); the number of messages with the neighbours, and these are at most those
     counted (more ranks than were counted: as counted there); iterations are those of the scene, flat in ranks."""
     one, most = pick(rows)

@@ -34,7 +34,7 @@ using Blend = std::vector<std::pair<double, const double*>>;
 /// Participant between construction and end. Maps its time windows to events of the Couplet client.
 class Session {
  public:
-  /// `processes`: of this participant; nullptr: those that the job gives it.
+  /// `processes`: communicator of this participant; nullptr selects the one that the job gives it.
   Session(Configuration configuration, int rank, int size, const MPI_Comm* processes);
   ~Session();
   Session(const Session&) = delete;

@@ -14,9 +14,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "common/app/case/case_keys.hpp"
+#include "common/app/case/case_file.hpp"
 #include "common/app/case/command_line.hpp"
-#include "common/app/case/questions.hpp"
 #include "common/app/loop/step_loop.hpp"
 #include "common/app/watch/watch.hpp"
 #include "common/base/error.hpp"
@@ -235,6 +234,7 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
     job.document = &*file.document;
     job.simulation = file.simulation;
     job.choices = file.choices;
+    diagnostics::share_limit() = job.simulation.neglected_share;
     diagnostics::accept(job.simulation.accept);
     diagnostics::accept(command_line.accept);
     prepare(job, command_line, program.is_coupler);

@@ -4,7 +4,7 @@
 #include <sched.h>
 
 #include "common/app/job.hpp"
-#include "common/app/run_participant.hpp"
+#include "common/app/run_report.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/config/load.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/run_participant.hpp"
+#include "common/app/run_report.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,8 +9,6 @@
 #include <utility>
 
 #include "common/app/loop/step_loop.hpp"
-#include "common/app/run_report.hpp"
-#include "common/app/use_of_case.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/coupling/serve.hpp"

@@ -4,9 +4,11 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
+#include "common/app/job.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/effects.hpp"
@@ -58,5 +60,19 @@ class RunReport {
   double since_accepted_ = 0, working_ = 0, time_;
   long count_ = 0, iterations_ = 0;
 };
+
+/// Adds the diagnostics of an initialized participant; empty if it has none.
+using Diagnose = std::function<void(coupling::Participant&, diagnostics::Diagnostics&)>;
+
+/// Runs the participant alone from start to end. Returns the exit code.
+int run_alone(const Job& job, coupling::Participant& participant, const Diagnose& diagnose = {});
+
+/// Runs the participant under a coupler's commands until it is told to finalize.
+int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& participant,
+                const Diagnose& diagnose = {});
+
+/// Judges what the case gives by what it did in the run (fv::uses): loads, inlets, bodies and tables that never
+/// acted, values that no step sees, and those outside a table or the usual range.
+diagnostics::Made use_of_case(MPI_Comm comm);
 
 }  // namespace couplet::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/use_of_case.hpp"
+#include "common/app/run_report.hpp"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,9 @@ namespace {
 
 using fv::Use;
 
-constexpr double least_unseen = 0.5;  // of the largest value that the steps see
-constexpr double margin = 0.01;       // of the range of a table of a material, beyond its ends
+constexpr double least_unseen = 0.5;           // of the largest value that the steps see
+constexpr double coldest_of_expression = 200;  // [K]; one in degC, which takes no unit, would be below
+constexpr double margin = 0.01;                // of the range of a table of a material, beyond its ends
 
 class UseOfCase final : public diagnostics::Diagnostic {
  public:
@@ -25,7 +26,8 @@ class UseOfCase final : public diagnostics::Diagnostic {
   void look(diagnostics::Report& report) override {
     for (const auto& [name, use] : together()) {
       if (use.kind != Use::Kind::effect || !use.key.plausible || !use.is_used()) continue;
-      const auto [least, most] = *use.key.plausible;
+      auto [least, most] = *use.key.plausible;
+      if (use.key.unit == "K") least = std::max(least, coldest_of_expression);
       const bool is_cold = use.key.unit == "K" && use.lowest < least;
       if (is_cold || use.largest() > most)
         report.findings.push_back(
@@ -115,8 +117,8 @@ class UseOfCase final : public diagnostics::Diagnostic {
           find(
               "unseen-between-steps", use.unseen / use.largest(), least_unseen,
               fmt::format(
-                  "{}: {} goes {:.3g} beyond the values at the steps around t = {:g} s, {:.2g} of its largest: the steps do not see it; shorten 'time-step'",
-                  name, use.given, use.unseen, use.unseen_at, use.unseen / use.largest()));
+                  "{}: {} goes {:.3g} beyond its values at the steps around t = {:g} s, the largest of all steps is {:.3g}: the steps miss it; shorten 'time-step'",
+                  name, use.given, use.unseen, use.unseen_at, use.largest()));
         break;
       case Use::Kind::table:
         if (use.highest < use.from || use.lowest > use.to)

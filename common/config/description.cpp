@@ -8,7 +8,6 @@
 #include "common/base/text.hpp"
 #include "common/config/document.hpp"
 #include "common/config/load.hpp"
-#include "common/config/magnitude.hpp"
 #include "common/config/values.hpp"
 
 namespace couplet::config {
@@ -79,7 +78,7 @@ std::string row(const Item& item) {
       type = "mapping";
       break;
     case Declaration::Kind::optional:
-      type = "mapping", fallback = "absent: not used";
+      type = "mapping", fallback = "not used";
       break;
     case Declaration::Kind::map:
       type = fmt::format("mapping by {}", item.what);

@@ -125,7 +125,7 @@ std::string explain(const std::string& message, std::string_view line) {
   if (line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string_view::npos)
     return "tabs cannot be used for indentation; use spaces";
   for (const auto& [theirs, ours] : known)
-    if (message == theirs) return ours;
+    if (message.starts_with(theirs)) return ours;  // yaml-cpp 0.8 appends the name of an anchor
   return message;
 }
 

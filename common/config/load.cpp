@@ -1,13 +1,336 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/load.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/config/document.hpp"
-#include "common/config/reader.hpp"
+#include "common/config/values.hpp"
 
 namespace couplet::config {
 namespace {
+
+/// Fills the members from a mapping and collects all errors.
+class Reader final {
+ public:
+  explicit Reader(const Document::Content& content, CheckExpression check_expression = {})
+      : content_(content), check_expression_(std::move(check_expression)) {}
+
+  /// Reads a mapping. If `node` is undefined, defaults apply, and required keys are missing at `place`.
+  void read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
+                    const Section::Declare& declare);
+  const std::vector<Message>& messages() const { return messages_; }
+  /// Possible but implausible values.
+  const std::vector<Message>& doubts() const { return doubts_; }
+
+ private:
+  /// Mapping that is being read.
+  struct Frame {
+    YAML::Node node;
+    Place place;
+    std::string path;
+    std::vector<std::string> known;
+    std::vector<std::pair<std::string, std::string>> elsewhere;  ///< key and the variant case it belongs to
+    std::size_t messages_before = 0;
+    std::optional<int> dimension;  ///< value of the key `dimension`
+    bool wrong_key = false;        ///< a key of this mapping could not be read
+  };
+  /// Processes one declaration, as visitor of the sections.
+  void on(const Declaration& declaration);
+  void key(const KeyFacts& facts, const Slot& slot);
+  /// Reads the contents of a section, optional, map or list.
+  void below(const Declaration& declaration);
+  void variant(const Declaration& declaration);
+  Entry take(std::string_view name);
+  Message message(const Place& place, const std::string& path, const std::string& text) const;
+  void report(const Place& place, const std::string& path, const std::string& text);
+  void report_key(const Place& place, const std::string& path, const std::string& text);
+  void report_unknown_keys();
+  /// Text " Its keys: a, b." for a value that should be a mapping.
+  std::string keys_of(const Place& place, const std::string& path, const Section::Declare& declare);
+  /// Applies a rule across keys, unless a key that it may depend on is invalid.
+  void apply_rule(const Declaration& declaration);
+  /// Removes the message about a missing key, because a misspelled required key is one mistake.
+  void forget_missing(const std::string& path);
+
+  /// Problem of the expressions of a key. A list of them is a vector with the `dimension` of a surrounding
+  /// mapping.
+  std::string problem_of(const KeyFacts& facts, const Slot& slot) const;
+
+  const Document::Content& content_;
+  CheckExpression check_expression_;
+  const Visitor visitor_ = [this](const Declaration& declaration) { on(declaration); };
+  std::vector<Frame> frames_;
+  std::vector<Message> messages_, doubts_;
+};
+
+constexpr const char* missing_key = "this required key is missing";
+
+std::string one_of(const std::vector<std::string>& words) {
+  return fmt::format("one of: {}", base::join(words));
+}
+
+/// Names of the keys that a declaration adds at its own level, without changing members.
+std::vector<std::string> names_of(const Section::Declare& declare) {
+  std::vector<std::string> names;
+  const Visitor collect = [&](const Declaration& d) {
+    if (d.rule) return;
+    names.push_back(d.facts.name);
+    Section section(collect);
+    for (const auto& [word, keys] : d.cases) keys(section);
+  };
+  Section section(collect);
+  declare(section);
+  return names;
+}
+
+std::string kind_of(const YAML::Node& node) {
+  if (node.IsSequence()) return "a list";
+  if (!node.IsScalar()) return "nothing";
+  // Shortens the text, which may be a whole file.
+  constexpr std::size_t longest = 60;
+  const std::string& text = node.Scalar();
+  if (text.size() <= longest) return "'" + text + "'";
+  return fmt::format("'{}' and {} characters more", text.substr(0, longest), text.size() - longest);
+}
+
+Message Reader::message(const Place& place, const std::string& path, const std::string& text) const {
+  Place where = place;
+  for (const auto& [changed, option] : content_.overrides)
+    if (is_below(path, changed)) where.override_text = option;
+  return {where, path, text};
+}
+
+void Reader::report(const Place& place, const std::string& path, const std::string& text) {
+  messages_.push_back(message(place, path, text));
+}
+
+void Reader::report_key(const Place& place, const std::string& path, const std::string& text) {
+  frames_.back().wrong_key = true;
+  report(place, path, text);
+}
+
+void Reader::forget_missing(const std::string& path) {
+  std::erase_if(messages_,
+                [&](const Message& m) { return m.path == path && m.text.starts_with(missing_key); });
+}
+
+Entry Reader::take(std::string_view name) {
+  Frame& frame = frames_.back();
+  frame.known.emplace_back(name);
+  return find(frame.node, name);
+}
+
+std::string Reader::keys_of(const Place& place, const std::string& path, const Section::Declare& declare) {
+  constexpr std::size_t most = 12;
+  const std::vector<Message> kept = messages_, kept_doubts = doubts_;
+  frames_.push_back({YAML::Node(YAML::NodeType::Map), place, path, {}, {}, messages_.size(), {}, false});
+  Section section(visitor_);
+  declare(section);
+  std::vector<std::string> keys = frames_.back().known;
+  frames_.pop_back();
+  messages_ = kept;
+  doubts_ = kept_doubts;
+  if (keys.empty()) return "";
+  const bool all = keys.size() <= most;
+  keys.resize(std::min(keys.size(), most));
+  return fmt::format(" Its keys: {}{}.", base::join(keys), all ? "" : ", ...");
+}
+
+void Reader::read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
+                          const Section::Declare& declare) {
+  const bool is_empty = !node.IsDefined() || node.IsNull();
+  if (!is_empty && !node.IsMap()) {
+    report(place, path,
+           fmt::format("expected a mapping (keys with values), found {}.{}", kind_of(node),
+                       keys_of(place, path, declare)));
+    return;
+  }
+  frames_.push_back(
+      {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size(), {}, false});
+  Section section(visitor_);
+  declare(section);
+  report_unknown_keys();
+  frames_.pop_back();
+}
+
+void Reader::report_unknown_keys() {
+  const Frame frame = frames_.back();
+  constexpr int most = 20;  // per mapping, because suggestions for more are slow and unread
+  int unknown = 0;
+  for (const auto& item : frame.node) {
+    const std::string& name = item.first.Scalar();
+    if (std::find(frame.known.begin(), frame.known.end(), name) != frame.known.end()) continue;
+    if (++unknown > most) continue;
+    const std::string path = join_path(frame.path, name);
+    std::vector<std::string> owners;
+    for (const auto& [key, owner] : frame.elsewhere)
+      if (key == name) owners.push_back(owner);
+    if (!owners.empty()) {
+      report(place_of(item.first), path,
+             fmt::format("this key is not valid here; it requires {}.", base::join(owners, " or ")));
+      continue;
+    }
+    std::vector<std::string> free;
+    for (const std::string& known : frame.known)
+      if (!find(frame.node, known).found) free.push_back(known);
+    const auto meant = base::closest(name, free);
+    if (meant) forget_missing(join_path(frame.path, *meant));
+    // An existing key cannot be meant, but the message shows which keys are allowed.
+    report(place_of(item.first), path, unknown_key(name, meant ? free : frame.known));
+  }
+  if (unknown > most)
+    report(frame.place, frame.path, fmt::format("{} more unknown keys follow.", unknown - most));
+}
+
+std::string Reader::problem_of(const KeyFacts& facts, const Slot& slot) const {
+  if (!check_expression_) return "";
+  if (const auto* text = std::get_if<ExpressionText*>(&slot)) return check_expression_(**text);
+  if (const auto* text = std::get_if<std::optional<ExpressionText>*>(&slot))
+    return **text ? check_expression_(***text) : "";
+  const auto* texts = std::get_if<std::vector<ExpressionText>*>(&slot);
+  if (texts == nullptr) return "";
+  const auto around =
+      std::find_if(frames_.rbegin(), frames_.rend(), [](const Frame& f) { return bool(f.dimension); });
+  if (around != frames_.rend() && !facts.size && std::ssize(**texts) != *around->dimension)
+    return fmt::format("{} components are given, but the {}-dimensional scene needs {}.", (**texts).size(),
+                       *around->dimension, *around->dimension);
+  for (std::size_t i = 0; i < (**texts).size(); ++i)
+    if (const std::string problem = check_expression_((**texts)[i]); !problem.empty())
+      return fmt::format("entry {} of the list: {}", i + 1, problem);
+  return "";
+}
+
+void Reader::key(const KeyFacts& facts, const Slot& slot) {
+  Frame& frame = frames_.back();
+  const std::string path = join_path(frame.path, facts.name);
+  const Entry entry = take(facts.name);
+  if (!entry.found) {
+    if (!facts.required) return;
+    const Word* word = std::get_if<Word>(&slot);
+    const std::string expected =
+        word != nullptr ? one_of(word->words)
+                        : fmt::format("{}{}{}", facts.doc.empty() ? "" : facts.doc + ": ",
+                                      describe_type(slot), facts.unit.empty() ? "" : " in " + facts.unit);
+    report_key(frame.place, path, fmt::format("{} ({}).", missing_key, expected));
+    return;
+  }
+  try {
+    read_value(entry.node, facts, slot, std::filesystem::absolute(content_.name).parent_path());
+    if (const auto* number = std::get_if<int*>(&slot); number && facts.name == "dimension")
+      frame.dimension = **number;
+    if (const std::string problem = problem_of(facts, slot); !problem.empty()) throw Error("{}", problem);
+    if (const std::string doubt = doubt_of_magnitude(facts, slot); !doubt.empty())
+      doubts_.push_back(message(entry.place, path, doubt));
+  } catch (const Error& error) {
+    report_key(entry.place, path, error.what());
+  }
+}
+
+void Reader::below(const Declaration& d) {
+  using Kind = Declaration::Kind;
+  const Place outside = frames_.back().place;
+  const std::string path = join_path(frames_.back().path, d.facts.name);
+  const Entry entry = take(d.facts.name);
+  const auto read = [&](const YAML::Node& node, const Place& place, const std::string& at,
+                        const std::string& name, std::size_t i) {
+    read_mapping(node, place, at, [&](Section& s) { d.declare(s, name, i); });
+  };
+  if (d.kind == Kind::section || (d.kind == Kind::optional && entry.found))
+    return read(entry.node, entry.found ? entry.place : outside, path, "", 0);
+  if (!entry.found || entry.node.IsNull()) return;
+  if (d.kind == Kind::map) {
+    if (!entry.node.IsMap())
+      return report(entry.place, path,
+                    fmt::format("expected a mapping with one entry for each {}, found {}.", d.what,
+                                kind_of(entry.node)));
+    for (const auto& item : entry.node) {
+      const std::string& name = item.first.Scalar();
+      // Names of the mesh are not the user's to choose.
+      if (d.what != "patch" && d.what != "zone" && name.find_first_of(",\"") != std::string::npos)
+        report(place_of(item.first), join_path(path, name),
+               "a name is that of columns in tables; it must not contain a comma or a double quote.");
+      read(item.second, place_of(item.first), join_path(path, name), name, 0);
+    }
+    return;
+  }
+  if (!entry.node.IsSequence())
+    return report(entry.place, path,
+                  fmt::format("expected a list of mappings, found {}.",
+                              entry.node.IsMap() ? "a mapping" : kind_of(entry.node)));
+  for (std::size_t i = 0; i < entry.node.size(); ++i)
+    read(entry.node[i], place_of(entry.node[i]), fmt::format("{}[{}]", path, i), "", i);
+}
+
+void Reader::variant(const Declaration& d) {
+  const KeyFacts& facts = d.facts;
+  const std::string path = join_path(frames_.back().path, facts.name);
+  const Word& declared = std::get<Word>(d.slot);
+  const Entry entry = take(facts.name);
+  std::string chosen = declared.current;
+  if (entry.found || facts.required) {
+    try {
+      if (!entry.found) throw Error("{} ({}).", missing_key, one_of(declared.words));
+      Word word = declared;
+      word.set = [&](const std::string& text) {
+        chosen = text;
+        declared.set(text);
+      };
+      read_value(entry.node, {}, word);
+    } catch (const Error& error) {
+      report_key(entry.found ? entry.place : frames_.back().place, path, error.what());
+      // The valid keys are unknown now, so all are treated as known, and only the actual mistake is reported.
+      for (const auto& [text, declare] : d.cases)
+        for (const std::string& key : names_of(declare)) frames_.back().known.push_back(key);
+      return;
+    }
+  }
+  Section section(visitor_);
+  for (const auto& [text, declare] : d.cases) {
+    if (text == chosen) {
+      declare(section);
+      continue;
+    }
+    for (const std::string& key : names_of(declare))
+      frames_.back().elsewhere.emplace_back(key, fmt::format("{}: {}", facts.name, text));
+  }
+}
+
+void Reader::apply_rule(const Declaration& d) {
+  const Frame& frame = frames_.back();
+  // The rule may depend on any key of the surrounding mappings.
+  const bool wrong_key =
+      std::any_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.wrong_key; });
+  if (wrong_key || messages_.size() != frame.messages_before) return;
+  std::string text = d.rule();
+  if (text.empty()) return;
+  if (text.back() != '.') text += '.';
+  const std::string& key = d.facts.name;
+  const Entry entry = find(frame.node, key);
+  (d.kind == Declaration::Kind::check ? messages_ : doubts_)
+      .push_back(message(entry.found ? entry.place : frame.place,
+                         key.empty() ? frame.path : join_path(frame.path, key), text));
+}
+
+void Reader::on(const Declaration& d) {
+  switch (d.kind) {
+    case Declaration::Kind::key:
+      return key(d.facts, d.slot);
+    case Declaration::Kind::variant:
+      return variant(d);
+    case Declaration::Kind::check:
+    case Declaration::Kind::doubt:
+      return apply_rule(d);
+    default:
+      return below(d);
+  }
+}
 
 /// Node at a dotted path and the location of its key. If a part is missing, found is false, and the location
 /// is that of the last existing mapping with path `reached`.

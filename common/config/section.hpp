@@ -208,9 +208,8 @@ class Section {
     d.slot = slot;
     visitor_(d);
   }
-  /// Declares a rule across keys, after these keys. It is applied at once, unless this section has errors or
-  /// the sections around it an invalid key. An empty text means success; `key` is the location of the
-  /// message.
+  /// Declares a rule across keys that have been declared before. It is applied at once, unless this section has errors or a
+  /// surrounding section has an invalid key. An empty text means success; `key` is the key that the message names.
   void check(const std::function<std::string()>& rule, std::string_view key);
   /// Declares a rule for implausible values, which gives a warning.
   void doubt(const std::function<std::string()>& rule, std::string_view key);

@@ -27,7 +27,7 @@ void declare(config::Section& s, ContactParameters& c, const char* default_direc
   s.value("where", c.where).doc("the seat exists where this expression of x, y, z is above 0");
   s.value("direction", c.direction)
       .size(3)
-      .doc(fmt::format("direction from the seat to the structure, of any length; absent: {}",
+      .doc(fmt::format("direction from the seat to the structure, of any length; default: {}",
                        default_direction));
   s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
   s.value("stiffness", c.stiffness)

@@ -5,8 +5,6 @@
 #include <map>
 
 #include "common/base/error.hpp"
-#include "common/coupling/serve.hpp"
-#include "common/coupling/step_plan.hpp"
 #include "common/coupling/wait.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -21,12 +19,6 @@ std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs) {
   std::vector<Exchanged> list;
   for (const auto& [other, slice] : by_rank) list.push_back({other, slice});
   return list;
-}
-
-int MpiChannel::ranks() const {
-  int size = 1;
-  MPI_Comm_remote_size(peers_, &size);
-  return size;
 }
 
 void MpiChannel::send(const Command& command) {
@@ -146,17 +138,6 @@ void MpiChannel::receive_values(Exchange& data) {
   for (const auto& [other, slice] : exchanged(mine_, rank, theirs_))
     if (const auto to = places_in(data, list, dim_, slice, name_); !to.empty())
       receive_stretches(peers_, other, output_tag, to, "values of '" + name_ + "'");
-}
-
-LocalChannel::LocalChannel(std::string name, Participant& participant, MPI_Comm comm)
-    : name_(std::move(name)), participant_(std::make_unique<SubStepping>(participant)), comm_(comm) {}
-LocalChannel::~LocalChannel() = default;
-
-void LocalChannel::send(const Command& command) {
-  if (command.op == Op::initialise) participant_->set(command.step.sub_steps);
-  const double begun = processor_seconds();
-  reply_ = carry_out(command, *participant_, name_, comm_);
-  waiting_seconds_ += processor_seconds() - begun;
 }
 
 }  // namespace couplet::coupling

@@ -21,8 +21,6 @@ class Channel {
   virtual Reply receive() = 0;
   /// Offers the arrays of an earlier reply for the next one, to save allocations.
   virtual void reuse(Exchange) {}
-  /// Number of ranks of the participant.
-  virtual int ranks() const { return 1; }
   /// Processor time [s] that this process has spent waiting for replies or inside the participant.
   virtual double waiting_seconds() const { return 0; }
 };
@@ -40,7 +38,6 @@ class MpiChannel final : public Channel {
   void reuse(Exchange old) override {
     if (!old.empty()) spare_ = std::move(old);
   }
-  int ranks() const override;
   double waiting_seconds() const override { return waiting_seconds_; }
 
  private:
@@ -56,25 +53,6 @@ class MpiChannel final : public Channel {
   Exchange spare_;
   double waiting_seconds_ = 0;
   Cut theirs_, mine_;  // the same entities, distributed over the participant's and the coupler's ranks
-};
-
-/// Channel to a participant inside this process, by function calls.
-class LocalChannel final : public Channel {
- public:
-  /// The participant must outlive the channel.
-  LocalChannel(std::string name, Participant& participant, MPI_Comm comm = MPI_COMM_SELF);
-  ~LocalChannel() override;
-  const std::string& name() const override { return name_; }
-  void send(const Command& command) override;
-  Reply receive() override { return std::move(reply_); }
-  double waiting_seconds() const override { return waiting_seconds_; }
-
- private:
-  std::string name_;
-  std::unique_ptr<class SubStepping> participant_;
-  MPI_Comm comm_;
-  Reply reply_;
-  double waiting_seconds_ = 0;
 };
 
 /// Entities, both vertices and faces, that this rank exchanges with a rank of the other side.

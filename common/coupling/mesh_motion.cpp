@@ -187,96 +187,80 @@ class Source final : public MeshMotionSource {
   std::vector<double> velocity_;
 };
 
-class Sink final : public MeshMotionSink {
- public:
-  Sink(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> places) : peers_(peers), dim_(mesh.dim) {
-    meet(peers, fluid_name);
-    exchange_owned_ids(peers, mesh);
-    const auto wanted = exchange_ids(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
-    if (any_of_source(peers, mesh.comm, false, false))
-      throw_other_points(": their points have different numbers");
+}  // namespace
 
-    std::vector<std::pair<GlobalIndex, Index>> owned;
-    for (Index p = 0; p < mesh.points.n_owned(); ++p) owned.emplace_back(mesh.point_id[p], p);
-    std::sort(owned.begin(), owned.end());
-    for (std::size_t r = 0; r < wanted.size(); ++r) {
-      if (wanted[r].empty()) continue;
-      Outgoing& to = to_.emplace_back();
-      to.peer.rank = static_cast<int>(r);
-      for (const GlobalIndex id : wanted[r])
-        to.peer.points.push_back(
-            std::lower_bound(owned.begin(), owned.end(), std::pair(id, Index(0)))->second);
-    }
-    std::vector<double> points;
-    for (const Vec3& x : places) points.insert(points.end(), x.begin(), x.begin() + dim_);
-    send(points, {});
-    if (any_of_source(peers, mesh.comm, false, false))
-      throw_other_points(
-          ": their points have different "
-          "coordinates");
-  }
-
-  ~Sink() override {
-    // If the job ends early, MPI may still read a message that the fluid never received, so it is leaked.
-    for (Outgoing& to : to_) {
-      int done = 1;
-      if (to.request != MPI_REQUEST_NULL) MPI_Test(&to.request, &done, MPI_STATUS_IGNORE);
-      if (done) continue;
-      new std::vector<double>(std::move(to.message));
-      MPI_Request_free(&to.request);
-    }
-  }
-
-  void send(std::span<const double> displacement, std::span<const double> velocity) override {
-    for (Outgoing& to : to_) {
-      start(to, Status::moved);
-      for (const std::span<const double> values : {displacement, velocity})
-        for (std::size_t i = 0; i < to.peer.points.size() && !values.empty(); ++i)
-          for (int c = 0; c < dim_; ++c)
-            to.message.push_back(values[std::size_t(to.peer.points[i]) * dim_ + c]);
-      post(to);
-    }
-  }
-
-  void send_failure() override {
-    for (Outgoing& to : to_) {
-      start(to, Status::failed);
-      post(to);
-    }
-  }
-
- private:
-  struct Outgoing {
-    Peer peer;
-    std::vector<double> message;
-    MPI_Request request = MPI_REQUEST_NULL;
-  };
+struct MeshMotionSink::Outgoing {
+  int rank;
+  std::vector<Index> points;
+  std::vector<double> message{};
+  MPI_Request request = MPI_REQUEST_NULL;
   /// Starts a message after the previous one was sent. Sends do not wait, because the fluid receives them
   /// when the coupler starts its solve.
-  void start(Outgoing& to, Status status) {
-    wait_politely(to.request, fluid_name);
-    to.message.assign(1, double(status));
+  void start(Status status) {
+    wait_politely(request, fluid_name);
+    message.assign(1, double(status));
   }
-  void post(Outgoing& to) {
-    MPI_Isend(to.message.data(), static_cast<int>(to.message.size() * sizeof(double)), MPI_BYTE, to.peer.rank,
-              motion_tag, peers_, &to.request);
+  void post(MPI_Comm peers) {
+    MPI_Isend(message.data(), static_cast<int>(message.size() * sizeof(double)), MPI_BYTE, rank, motion_tag,
+              peers, &request);
   }
-
-  MPI_Comm peers_;
-  int dim_;
-  std::vector<Outgoing> to_;
 };
 
-}  // namespace
+MeshMotionSink::MeshMotionSink(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> places)
+    : peers_(peers), dim_(mesh.dim) {
+  meet(peers, fluid_name);
+  exchange_owned_ids(peers, mesh);
+  const auto wanted = exchange_ids(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
+  if (any_of_source(peers, mesh.comm, false, false))
+    throw_other_points(": their points have different numbers");
+
+  std::vector<std::pair<GlobalIndex, Index>> owned;
+  for (Index p = 0; p < mesh.points.n_owned(); ++p) owned.emplace_back(mesh.point_id[p], p);
+  std::sort(owned.begin(), owned.end());
+  for (std::size_t r = 0; r < wanted.size(); ++r) {
+    if (wanted[r].empty()) continue;
+    Outgoing& to = to_.emplace_back(static_cast<int>(r));
+    for (const GlobalIndex id : wanted[r])
+      to.points.push_back(std::lower_bound(owned.begin(), owned.end(), std::pair(id, Index(0)))->second);
+  }
+  std::vector<double> points;
+  for (const Vec3& x : places) points.insert(points.end(), x.begin(), x.begin() + dim_);
+  send(points, {});
+  if (any_of_source(peers, mesh.comm, false, false))
+    throw_other_points(": their points have different coordinates");
+}
+
+MeshMotionSink::~MeshMotionSink() {
+  // If the job ends early, MPI may still read a message that the fluid never received, so it is leaked.
+  for (Outgoing& to : to_) {
+    int done = 1;
+    if (to.request != MPI_REQUEST_NULL) MPI_Test(&to.request, &done, MPI_STATUS_IGNORE);
+    if (done) continue;
+    new std::vector<double>(std::move(to.message));
+    MPI_Request_free(&to.request);
+  }
+}
+
+void MeshMotionSink::send(std::span<const double> displacement, std::span<const double> velocity) {
+  for (Outgoing& to : to_) {
+    to.start(Status::moved);
+    for (const std::span<const double> values : {displacement, velocity})
+      for (std::size_t i = 0; i < to.points.size() && !values.empty(); ++i)
+        for (int c = 0; c < dim_; ++c) to.message.push_back(values[std::size_t(to.points[i]) * dim_ + c]);
+    to.post(peers_);
+  }
+}
+
+void MeshMotionSink::send_failure() {
+  for (Outgoing& to : to_) {
+    to.start(Status::failed);
+    to.post(peers_);
+  }
+}
 
 std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const mesh::Mesh& mesh,
                                                           std::span<const Vec3> points) {
   return std::make_unique<Source>(peers, mesh, points);
-}
-
-std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const mesh::Mesh& mesh,
-                                                      std::span<const Vec3> points) {
-  return std::make_unique<Sink>(peers, mesh, points);
 }
 
 }  // namespace couplet::coupling

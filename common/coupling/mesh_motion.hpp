@@ -24,23 +24,29 @@ class MeshMotionSource {
   virtual const std::vector<double>& velocity() const = 0;
 };
 
-/// Other end of MeshMotionSource, in the mover.
-class MeshMotionSink {
- public:
-  virtual ~MeshMotionSink() = default;
-  /// Sends dim values for every local point of the mover's mesh, with ghosts up to date. `velocity` is empty
-  /// unless the mover prescribes the motion of a body.
-  virtual void send(std::span<const double> displacement, std::span<const double> velocity = {}) = 0;
-  /// Tells the fluid not to wait, because the mover failed. The mover reports the reason to the coupler.
-  virtual void send_failure() = 0;
-};
-
 /// Rank-to-rank link between a fluid and a mover that read the same mesh, with equal or different partitions.
-/// `peers` is the intercommunicator to the other program. Both constructors are collective over both
+/// `peers` is the intercommunicator to the other program. Both ends are made collectively over both
 /// programs. They throw Error if number or ids of the points differ.
 std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const mesh::Mesh& mesh,
                                                           std::span<const Vec3> points);
-std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const mesh::Mesh& mesh,
-                                                      std::span<const Vec3> points);
+
+/// Other end of MeshMotionSource, in the mover.
+class MeshMotionSink {
+ public:
+  MeshMotionSink(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> points);
+  ~MeshMotionSink();
+  MeshMotionSink(const MeshMotionSink&) = delete;
+  /// Sends dim values for every local point of the mover's mesh, with ghosts up to date. `velocity` is empty
+  /// unless the mover prescribes the motion of a body.
+  void send(std::span<const double> displacement, std::span<const double> velocity = {});
+  /// Tells the fluid not to wait, because the mover failed. The mover reports the reason to the coupler.
+  void send_failure();
+
+ private:
+  struct Outgoing;
+  MPI_Comm peers_;
+  int dim_;
+  std::vector<Outgoing> to_;
+};
 
 }  // namespace couplet::coupling

@@ -82,14 +82,13 @@ void add_model(const std::vector<Finding>& findings, ErrorParts& errors) {
     if (f.saves > 0)
       errors.omittable += fmt::format("{}{} saves about {:.0f} % of the time",
                                       errors.omittable.empty() ? "" : ", ", f.sentence, 100 * f.saves);
-    if (std::isnan(f.share)) continue;
+    if (std::isnan(f.share) || is_accepted(f.id)) continue;
     errors.model = std::isnan(errors.model) ? f.share : errors.model + f.share;
     if (!(f.share > largest)) continue;
     largest = f.share;
-    const bool is_justified = f.severity == Severity::note && f.share < 0.1;
-    errors.model_by = f.effect + (is_justified       ? ", which is justified"
-                                  : f.advice.empty() ? ""
-                                                     : ": " + f.advice);
+    errors.model_by = f.effect + (f.severity == Severity::note ? ", which is justified"
+                                  : f.advice.empty()           ? ""
+                                                               : ": " + f.advice);
   }
 }
 
@@ -102,19 +101,26 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
     else if (!f.id.empty() && f.id.back() != '-')
       f.id += '-';
   }
-  const bool is_sound = e.number <= e.limit || e.is_spare;
-  f.severity = is_sound ? Severity::note : e.number < e.wrong_from ? Severity::warning : Severity::wrong;
   f.effect = fmt::format("{}{}", e.effect, e.left_out ? " neglected" : "");
   f.share = e.share;
+  if (e.left_out && !std::isnan(e.share)) {
+    f.number = e.share, f.limit = share_limit();
+    f.severity = f.number < f.limit ? Severity::note : Severity::warning;
+    f.sentence = fmt::format("{}: {}; share of the result {:.2g} (limit {:.2g}): {}", f.effect, e.what,
+                             f.number, f.limit, f.severity == Severity::note ? "justified" : "matters");
+    return f;
+  }
+  const bool is_sound = e.number <= e.limit || e.is_spare;
+  f.severity = is_sound ? Severity::note : e.number < e.wrong_from ? Severity::warning : Severity::wrong;
   if (e.is_spare && e.number <= e.limit && e.saves > 0) {
     f.saves = e.saves;
     f.sentence = fmt::format("{} ({}; limit {:.2g})", e.effect, e.what, e.limit);
     return f;
   }
-  const char* word = e.is_spare                      ? (e.number <= e.limit ? "could be left out" : "needed")
-                     : is_sound                      ? (e.left_out ? "justified" : "adequate")
+  const char* word = e.left_out                      ? "its share of the result is unknown"
+                     : e.is_spare                    ? (e.number <= e.limit ? "could be left out" : "needed")
+                     : is_sound                      ? "adequate"
                      : f.severity == Severity::wrong ? "wrong"
-                     : e.left_out                    ? "not justified"
                                                      : "questionable";
   f.sentence = fmt::format("{}: {} (limit {:.2g}): {}", f.effect, e.what, e.limit, word);
   return f;

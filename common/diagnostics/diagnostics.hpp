@@ -132,21 +132,23 @@ class Diagnostics {
 /// Finding about an effect that a scene neglects or includes. Not reported if `number` is unknown.
 struct EffectFinding {
   const char* effect = "";  ///< its name; the finding's id is the name in lower case with hyphens
-  double number = 0;        ///< size of the neglected effect; NaN if unknown
-  double limit = 0;         ///< up to which neglecting it is justified
+  double number = 0;        ///< its size; NaN if unknown
+  double limit = 0;         ///< of the number, up to which an included effect is adequate
   std::string what;         ///< the number in words, with its unit: "max |grad u| = 0.29"
   std::string advice{};
   bool left_out = true;  ///< false if the scene includes it
   /// Value from which the result is useless.
   double wrong_from = std::numeric_limits<double>::infinity();
-  double share = std::numeric_limits<double>::quiet_NaN();  ///< see Finding
+  /// Share of the result that a neglected effect changes [1]. It alone decides the verdict, with share_limit(). NaN if unknown:
+  /// then the verdict is "unknown", with a warning above the limit of the number.
+  double share = std::numeric_limits<double>::quiet_NaN();
   /// True if the scene includes the effect, and up to the limit could leave it out.
   bool is_spare = false;
   double saves = 0;  ///< see Finding
 };
 std::optional<Finding> finding_of(const EffectFinding& effect);
 
-/// Adds the model's part of the error: the sum of the known shares, and effects that could be omitted.
+/// Adds the model's part of the error: the sum of the known shares of findings that the case does not accept, and effects that could be omitted.
 void add_model(const std::vector<Finding>& findings, ErrorParts& errors);
 
 }  // namespace couplet::diagnostics

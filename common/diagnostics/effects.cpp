@@ -21,19 +21,6 @@ std::string text(const ExpectedCost& c) {
       c.cells, 1e-6 * c.bytes, long_step ? c.seconds_a_step : 1e3 * c.seconds_a_step, long_step ? "s" : "ms");
 }
 
-namespace {
-
-/// Cost of an effect: its description, then its prices.
-std::string cost_text(const Effect& effect) {
-  std::string text(effect.adds);
-  for (const Price& p : effect.prices)
-    if (const std::string price = price_text(p); !price.empty())
-      text += fmt::format("{}{}", text.empty() ? "" : "; ", price);
-  return text.empty() ? "negligible" : text;
-}
-
-}  // namespace
-
 std::string summary(const std::vector<Effect>& effects) {
   std::string on, off;
   for (const Effect& e : effects) {
@@ -41,7 +28,7 @@ std::string summary(const std::vector<Effect>& effects) {
     list += list.empty() ? "" : ", ";
     list += e.on() ? fmt::format("{} ({})", e.name, e.asked_by) : e.name;
   }
-  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; neglected: ", off);
+  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; off: ", off);
 }
 
 std::string explanation(const std::vector<Effect>& effects) {
@@ -50,28 +37,19 @@ std::string explanation(const std::vector<Effect>& effects) {
     for (const Effect& e : effects)
       if (e.on() == on)
         lines +=
-            on ? fmt::format("  on   {}: enabled by {}; adds {}\n", e.name, e.asked_by, cost_text(e))
+            on ? fmt::format("  on   {}: enabled by {}{}{}\n", e.name, e.asked_by,
+                             e.adds.empty() ? "" : "; adds ", e.adds)
                : fmt::format(
                      "  off  {}: {}{}\n", e.name, e.keys,
                      e.judged_when_on || e.judged_by.empty() ? "" : "; judged by the run: " + e.judged_by);
-  const bool has_prices = std::ranges::any_of(effects, [](const Effect& e) {
-    return e.on() && std::ranges::any_of(e.prices, [](const Price& p) { return !price_text(p).empty(); });
-  });
-  if (has_prices)
-    lines +=
-        "  (prices: from the least to the most in small scenes on one rank; share of a step without the "
-        "effect; docs/effects.md)\n";
   return lines;
 }
 
 std::string markdown(const std::string& program, const std::vector<Effect>& effects) {
   std::string lines = fmt::format(
-      "## {}\n\n| effect | enabled by | adds | memory per cell | time of a step | judged when neglected "
-      "|\n|---|---|---|---|---|---|\n",
-      program);
+      "## {}\n\n| effect | enabled by | adds | judged when neglected |\n|---|---|---|---|\n", program);
   for (const Effect& e : effects)
-    lines += fmt::format("| {} | {} | {} | {} | {} | {} |\n", e.name, e.keys, e.adds,
-                         column(e.prices, memory_text, "B"), column(e.prices, time_text, "%"), e.judged_by);
+    lines += fmt::format("| {} | {} | {} | {} |\n", e.name, e.keys, e.adds, e.judged_by);
   return lines;
 }
 

@@ -9,8 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "common/diagnostics/prices.hpp"
-
 namespace couplet::diagnostics {
 
 /// Effect of a program. `asked_by` returns the key and value in the scene that enable it, or an empty string
@@ -31,7 +29,6 @@ struct Effect {
   std::string name, keys;
   std::string asked_by;  ///< empty if it is off
   std::string_view adds;
-  std::vector<Price> prices;  ///< from price_list()
   std::string judged_by;
   bool judged_when_on = false;
   bool on() const { return !asked_by.empty(); }
@@ -47,12 +44,11 @@ struct CaseScene {
 };
 
 template <class Parameters>
-std::vector<Effect> effects_of(std::string_view program, std::span<const EffectCard<Parameters>> cards,
-                               const Parameters& parameters) {
+std::vector<Effect> effects_of(std::span<const EffectCard<Parameters>> cards, const Parameters& parameters) {
   std::vector<Effect> effects;
   for (const auto& card : cards)
-    effects.push_back({card.name, card.keys, card.asked_by(parameters), card.adds,
-                       prices_of(program, card.name), card.judged_by, card.judged_when_on});
+    effects.push_back(
+        {card.name, card.keys, card.asked_by(parameters), card.adds, card.judged_by, card.judged_when_on});
   return effects;
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/diagnostics/results.hpp"
 
 namespace couplet::diagnostics {
@@ -51,7 +52,7 @@ std::string cure(const Part& part) {
     return fmt::format("half the time step would leave about {:.2g}, for twice the steps",
                        part.value / std::exp2(part.of->parts.step_order));
   if (part.is(&ErrorParts::linear))
-    return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, for some more iterations",
+    return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, for a few more iterations",
                        part.value / 10);
   if (part.is(&ErrorParts::coupling))
     return fmt::format(
@@ -85,6 +86,19 @@ std::vector<Part> largest_parts(const std::vector<NamedErrors>& participants) {
     if (largest) parts.push_back({&k, largest->parts.*k.value, largest});
   }
   return parts;
+}
+
+bool misses_mesh(const NamedErrors& n) {
+  return std::isnan(n.parts.mesh) && !(std::isnan(n.parts.step) && std::isnan(n.parts.linear));
+}
+
+/// "the mesh", with the names of the participants that know other parts of their error but not that one. Empty if there are none.
+std::string unknown_part(const std::vector<NamedErrors>& participants) {
+  std::vector<std::string> names;
+  for (const NamedErrors& n : participants)
+    if (misses_mesh(n)) names.push_back(n.name);
+  if (names.empty()) return "";
+  return participants.size() > 1 ? fmt::format("the mesh of '{}'", base::join(names, "', '")) : "the mesh";
 }
 
 }  // namespace
@@ -138,6 +152,10 @@ ErrorParts largest(const std::vector<NamedErrors>& participants) {
   for (const Part& p : largest_parts(participants)) {
     parts.*(p.kind->value) = p.value;
     if (p.is(&ErrorParts::model)) parts.model_by = p.of->parts.model_by;
+    if (p.is(&ErrorParts::step)) parts.step_order = p.of->parts.step_order;
+    if (!p.is(&ErrorParts::mesh)) continue;
+    parts.dimension = p.of->parts.dimension;
+    parts.mesh_order = p.of->parts.mesh_order;
   }
   for (const NamedErrors& n : participants)
     if (!n.parts.omittable.empty())
@@ -167,13 +185,19 @@ std::optional<Part> worst_part(const std::vector<NamedErrors>& participants) {
 
 std::string error_summary(const std::vector<NamedErrors>& participants) {
   const auto worst = worst_part(participants);
-  if (!worst) return "the error is not estimated";
-  return fmt::format("estimated numerical error {:.2g} %, mostly {}", 100 * total_error(participants),
-                     worst->kind->words);
+  const std::string unknown = unknown_part(participants);
+  if (!worst && unknown.empty()) return "the error is not estimated";
+  const double total = 100 * total_error(participants);
+  if (!unknown.empty())
+    return fmt::format("the error due to {} is unknown, the rest is {:.2g} %", unknown, total);
+  return fmt::format("estimated numerical error {:.2g} %, mostly {}", total, worst->kind->words);
 }
 
 std::string best_change(const std::vector<NamedErrors>& participants) {
   const auto worst = worst_part(participants);
+  // Else the known part is large enough to begin with.
+  if (std::ranges::any_of(participants, misses_mesh) && !(total_error(participants) >= questionable_error))
+    return "compare with a run at half the cell size, which shows its error";
   return worst ? cure(*worst) : "";
 }
 
@@ -194,6 +218,7 @@ std::optional<Finding> worthless(const std::vector<NamedErrors>& participants) {
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
   std::vector<Part> parts = largest_parts(participants);
   const bool several = participants.size() > 1;
+  const std::string unknown = unknown_part(participants);
   std::vector<std::string> sentences;
   if (!parts.empty()) {
     std::ranges::stable_sort(parts, std::greater<>{}, &Part::value);
@@ -204,13 +229,16 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
                           several ? " (" + p.of->name + ")" : "");
       total += p.value;
     }
-    // The mesh often has the largest contribution, so an estimate without it must say so.
-    const bool knows_mesh = std::ranges::any_of(parts, [](const Part& p) { return p.is(&ErrorParts::mesh); });
-    sentences.push_back(fmt::format(
-        "estimated error {:.2g} of the solution: {}{}.", total, list,
-        knows_mesh ? "" : "; the error due to the mesh (or truncated modes) is unknown and not included"));
+    sentences.push_back(
+        unknown.empty()
+            ? fmt::format("estimated error {:.2g} of the solution: {}.", total, list)
+            : fmt::format(
+                  "estimated error: the part due to {} is unknown; the rest is {:.2g} of the solution: {}.",
+                  unknown, total, list));
   }
-  if (parts.size() > 1 && parts.front().value > 0) {
+  // Nothing dominates an estimate without the mesh, which often has the largest contribution.
+  if (parts.size() > 1 && parts.front().value > 0 &&
+      (unknown.empty() || parts.front().value >= questionable_error)) {
     const Part& worst = parts.front();
     const std::string idle = idle_words(parts, worst.value);
     sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,

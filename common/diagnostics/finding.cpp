@@ -90,6 +90,11 @@ void accept(std::span<const std::string> ids) {
   accepted_ids().insert(accepted_ids().end(), ids.begin(), ids.end());
 }
 
+double& share_limit() {
+  static double limit = 0.05;
+  return limit;
+}
+
 bool is_accepted(const std::string& id) { return std::ranges::count(accepted_ids(), id) > 0; }
 
 int count(base::Severity least, bool with_neglected) {
@@ -106,10 +111,10 @@ std::string findings_as_json() {
   for (const Finding& f : kept())
     out += fmt::format(
         "{}\n    {{\"id\": {}, \"severity\": \"{}\", \"number\": {}, \"limit\": {}, \"sentence\": {}, \"advice\": {}, "
-        "\"neglected-effect\": {}, \"accepted\": {}}}",
+        "\"neglected-effect\": {}, \"share\": {}, \"accepted\": {}}}",
         out.empty() ? "" : ",", quoted(f.id), base::name(f.severity), number_text(f.number),
         number_text(f.limit), quoted(f.sentence), quoted(f.advice),
-        finding_id(f.id).about == FindingId::About::neglected, is_accepted(f.id));
+        finding_id(f.id).about == FindingId::About::neglected, number_text(f.share), is_accepted(f.id));
   return "[" + out + (out.empty() ? "]" : "\n  ]");
 }
 

@@ -44,13 +44,16 @@ void resume_findings(int rank, const std::vector<Finding>& earlier);
 void accept(std::span<const std::string> ids);
 bool is_accepted(const std::string& id);
 
+/// Share of the result from which a neglected effect matters [1]; `simulation.neglected-share`.
+double& share_limit();
+
 /// Number of findings about the result that are not accepted and have at least this severity.
 /// `with_neglected` includes neglected effects.
 int count(base::Severity least, bool with_neglected);
 /// Number of warnings and worse, including neglected effects.
 int doubts();
 
-/// JSON list of objects with id, severity, number, limit, sentence, advice, neglected-effect and accepted.
+/// JSON list of objects with id, severity, number, limit, sentence, advice, neglected-effect and accepted, share.
 std::string findings_as_json();
 
 /// Existing ids and their meaning, as listed in docs/findings.md. Ids about neglected effects are opinions,

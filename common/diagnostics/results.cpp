@@ -119,6 +119,10 @@ std::vector<Result> results() {
   for (std::size_t rank = 0; rank < tables.size(); ++rank)
     for (const Table& table : known_tables())
       if (table.rank == rank) add(table, rows);
+  // Such as the outlet temperature of a tank at rest.
+  std::erase_if(rows, [](const Result& r) {
+    return std::ranges::none_of(r.values, [](double v) { return std::isfinite(v); });
+  });
   return rows;
 }
 

@@ -2,19 +2,12 @@
 #include "common/elasticity/anisotropic.hpp"
 
 namespace couplet::elastic {
-namespace {
-
-// Tensor indices of each entry.
-constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
-
-}  // namespace
-
 ElasticMatrix orthotropic_matrix(const OrthotropicConstants& c) {
   ElasticMatrix compliance = ElasticMatrix::Zero();
   for (int a = 0; a < 3; ++a) {
     compliance(a, a) = 1 / c.youngs_modulus[a];
     compliance(3 + a, 3 + a) = 1 / c.shear_modulus[a];  // 12, 23, 13 correspond to xy, yz, xz
-    const int i = first[3 + a], j = second[3 + a];
+    const int i = first_index[3 + a], j = second_index[3 + a];
     compliance(i, j) = compliance(j, i) = -c.poissons_ratio[a] / c.youngs_modulus[i];
   }
   return compliance.inverse();
@@ -39,7 +32,7 @@ ElasticMatrix turned(const ElasticMatrix& matrix, const Tensor3& axes) {
   ElasticMatrix m;
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 6; ++c) {
-      const int i = first[r], j = second[r], a = first[c], b = second[c];
+      const int i = first_index[r], j = second_index[r], a = first_index[c], b = second_index[c];
       m(r, c) = axes(i, a) * axes(j, b) + (a == b ? 0 : axes(i, b) * axes(j, a));
     }
   return m * matrix * m.transpose();
@@ -70,14 +63,16 @@ LameConstants isotropic_mean(const ElasticMatrix& c) {
 
 StrainVector strain_vector(const Tensor3& g) {
   StrainVector e;
-  for (int k = 0; k < 6; ++k) e[k] = k < 3 ? g(k, k) : g(first[k], second[k]) + g(second[k], first[k]);
+  for (int k = 0; k < 6; ++k)
+    e[k] = k < 3 ? g(k, k) : g(first_index[k], second_index[k]) + g(second_index[k], first_index[k]);
   return e;
 }
 
 Tensor3 stress_of(const ElasticMatrix& matrix, const Tensor3& gradient) {
   const StrainVector s = matrix * strain_vector(gradient);
   Tensor3 stress;
-  for (int k = 0; k < 6; ++k) stress(first[k], second[k]) = stress(second[k], first[k]) = s[k];
+  for (int k = 0; k < 6; ++k)
+    stress(first_index[k], second_index[k]) = stress(second_index[k], first_index[k]) = s[k];
   return stress;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::elastic {
@@ -56,5 +57,58 @@ class ElasticBoundary {
 
 /// Boundary with one row per patch.
 ElasticBoundary boundary_of_patches(const mesh::Mesh& mesh, std::span<const BoundaryRow> of_patches);
+
+/// Known displacements at the vertices from the conditions of the surrounding faces:
+///   u_V = F_V sum_i w_i u_i + g_V,   F_V = I - Q_V,   g_V = sum_j G_j g_j(x_V)
+/// Q_V is the projector on the known directions. g_j is the known vector of boundary face j, evaluated at the
+/// vertex, so that g_V = Q_V g_V. The rules apply in this order:
+/// - A vertex of a fixed face is known in all directions, from the first fixed face (by patch, then by face).
+/// - Supports: each patch, in order, fixes the directions that its faces at the vertex share: eigenvalues of
+///   their mean P above 3/4. A curved patch thus keeps its mean normal, and a support of part of a patch ends
+///   at the last face of the part. Later patches only add free directions, including oblique ones.
+/// - Symmetry planes: no displacement across them.
+class VertexConstraints {
+ public:
+  struct Source {
+    Index face;     ///< entry of mesh.boundary
+    Tensor3 share;  ///< G_j
+  };
+
+  /// Face whose condition knows directions of a point that others have already made known.
+  struct Repeated {
+    Index point;
+    Index face;     ///< entry of mesh.boundary
+    Tensor3 along;  ///< projector on these directions
+  };
+
+  VertexConstraints(const mesh::Mesh& mesh, const ElasticBoundary& boundary,
+                    const fv::VertexInterpolation& vertices);
+
+  /// F_V: I if nothing is known, 0 if everything is.
+  const Tensor3& free_part(Index point) const { return free_parts_[free_of_[point]]; }
+  bool is_constrained(Index point) const { return free_of_[point] != 0; }
+  bool is_fixed(Index point) const { return free_of_[point] == 1; }
+  /// Points with a known value g_V (not those only on symmetry planes), ascending. Entry i is column i.
+  const std::vector<Index>& points() const { return points_; }
+  Index column(Index point) const { return column_[point]; }  ///< -1 if there is no value
+  const std::vector<Repeated>& repeated() const { return repeated_; }
+  std::span<const Source> sources(Index column) const {
+    return {sources_.data() + offset_[column], std::size_t(offset_[column + 1] - offset_[column])};
+  }
+
+ private:
+  class Known;
+  void constrain(Index point, std::span<const Index> faces, const mesh::Mesh& mesh,
+                 const ElasticBoundary& boundary, std::span<const Index> patch_of_face,
+                 const Tensor3& symmetry);
+  void store(Index point, const Known& known);
+
+  std::vector<Index> free_of_;  // per point, index into free_parts_
+  std::vector<Tensor3> free_parts_{Tensor3::Identity(), Tensor3::Zero()};
+  std::vector<Index> points_, column_;
+  std::vector<Index> offset_{0};
+  std::vector<Source> sources_;
+  std::vector<Repeated> repeated_;
+};
 
 }  // namespace couplet::elastic

@@ -30,12 +30,12 @@ SymmetricSpace& ElasticKernel::cleared() const {
 void ElasticKernel::apply(std::span<const double> unknowns, std::span<const double> known,
                           std::span<double> result) const {
   symmetric_ ? apply_with_mass(unknowns, known, 0, true, result)
-             : least_squares_->apply(unknowns, known, result);
+             : least_squares_.apply(unknowns, known, result);
 }
 
 void ElasticKernel::face_gradients(std::span<const double> unknowns, std::span<const double> known,
                                    const TakeGradient& take, Index first, Index end) const {
-  if (!symmetric_) return least_squares_->face_gradients(unknowns, known, take, first, end);
+  if (!symmetric_) return least_squares_.face_gradients(unknowns, known, take, first, end);
   filled(unknowns, known);
   symmetric_->face_gradients(take, first, end);
 }
@@ -43,7 +43,7 @@ void ElasticKernel::face_gradients(std::span<const double> unknowns, std::span<c
 void ElasticKernel::point_values(std::span<const double> unknowns, std::span<const double> known,
                                  std::span<double> points) const {
   symmetric_ ? filled(unknowns, known).point_values(points)
-             : least_squares_->point_values(unknowns, known, points);
+             : least_squares_.point_values(unknowns, known, points);
 }
 
 void ElasticKernel::face_means(std::span<const Index> faces, std::span<const double> unknowns,

@@ -8,7 +8,6 @@
 
 #include "common/base/types.hpp"
 #include "common/elasticity/elasticity.hpp"
-#include "common/elasticity/wrench.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet::elastic {
@@ -109,16 +108,12 @@ class ElasticKernel {
   void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
                    std::span<double> result, std::span<double> defect) const;
 
-  /// Kernel with the published gradient or its corrections.
-  class LeastSquares {
-   public:
-    virtual ~LeastSquares() = default;
-    virtual void apply(std::span<const double> unknowns, std::span<const double> known,
-                       std::span<double> result) = 0;
-    virtual void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                const TakeGradient& take, Index first, Index end) = 0;
-    virtual void point_values(std::span<const double> unknowns, std::span<const double> known,
-                              std::span<double> points) = 0;
+  /// These functions with the published gradient or its corrections.
+  struct LeastSquares {
+    using Values = std::span<const double>;
+    std::function<void(Values unknowns, Values known, std::span<double> result)> apply, point_values;
+    std::function<void(Values unknowns, Values known, const TakeGradient&, Index first, Index end)>
+        face_gradients;
   };
 
  private:
@@ -128,11 +123,10 @@ class ElasticKernel {
   const ElasticOperator* rows_;
   FaceGradientScheme scheme_;
   std::unique_ptr<SymmetricKernel> symmetric_;  // one of these two is set
-  std::unique_ptr<LeastSquares> least_squares_;
+  LeastSquares least_squares_;
 };
 
-std::unique_ptr<ElasticKernel::LeastSquares> make_least_squares_kernel(const mesh::Mesh& mesh,
-                                                                       const ElasticOperator& rows,
-                                                                       bool is_corrected);
+ElasticKernel::LeastSquares make_least_squares_kernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                                      bool is_corrected);
 
 }  // namespace couplet::elastic

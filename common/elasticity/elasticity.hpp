@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -9,8 +10,6 @@
 #include "common/base/types.hpp"
 #include "common/elasticity/anisotropic.hpp"
 #include "common/elasticity/elastic_boundary.hpp"
-#include "common/elasticity/lame.hpp"
-#include "common/elasticity/vertex_constraints.hpp"
 #include "common/fv/gradients.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/linalg/matrix.hpp"
@@ -159,6 +158,16 @@ class ElasticOperator {
     std::vector<double> known_block;
   };
   mutable Assembled assembled_;
+};
+
+/// Force [N] with its moment about the origin [N m].
+struct Wrench {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  void add(const Vec3& part, const Vec3& place) {
+    force += part;
+    moment += place.cross(part);
+  }
+  Vec3 moment_about(const Vec3& centre) const { return moment - centre.cross(force); }
 };
 
 }  // namespace couplet::elastic

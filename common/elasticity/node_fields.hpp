@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
+#include "common/mesh/entries.hpp"
 
 namespace couplet::elastic {
 
@@ -53,26 +55,35 @@ inline std::vector<double> unknowns_of_fields(const mesh::Mesh& mesh, const Elas
   return unknowns;
 }
 
-inline NodeFields fields_of_known(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                  std::span<const double> known) {
-  NodeFields fields = detail::empty_fields(mesh, mesh.points.n_local());
-  std::size_t column = 0;
-  for (const Index v : rows.constraints().points())
-    detail::copy_entry(mesh, known, column++, fields.inner, std::size_t(v));
-  for (const Index f : rows.known_faces())
-    detail::copy_entry(mesh, known, column++, fields.faces, std::size_t(f - mesh.n_interior));
-  return fields;
+/// Saves or loads unknowns as fields `name` and `name`-faces. Collective.
+template <class Archive>
+void visit_unknowns(Archive& archive, const std::string& name, const mesh::Mesh& mesh,
+                    const ElasticOperator& rows, std::vector<double>& unknowns) {
+  NodeFields fields = fields_of_unknowns(mesh, rows, unknowns);
+  archive.field(mesh::Entries::owned_cells, name, fields.inner, std::size_t(mesh.dim));
+  archive.field(mesh::Entries::owned_boundary, name + "-faces", fields.faces, std::size_t(mesh.dim));
+  if (archive.reads()) unknowns = unknowns_of_fields(mesh, rows, fields);
 }
 
-inline std::vector<double> known_of_fields(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                           const NodeFields& fields) {
-  std::vector<double> known(rows.n_known() * std::size_t(mesh.dim));
-  std::size_t column = 0;
-  for (const Index v : rows.constraints().points())
-    detail::copy_entry(mesh, fields.inner, std::size_t(v), known, column++);
-  for (const Index f : rows.known_faces())
-    detail::copy_entry(mesh, fields.faces, std::size_t(f - mesh.n_interior), known, column++);
-  return known;
+/// Saves or loads values of the known columns in the same way. Collective.
+template <class Archive>
+void visit_known(Archive& archive, const std::string& name, const mesh::Mesh& mesh,
+                 const ElasticOperator& rows, std::vector<double>& known) {
+  NodeFields fields = detail::empty_fields(mesh, mesh.points.n_local());
+  const auto each = [&](const auto& copy) {
+    std::size_t column = 0;
+    for (const Index v : rows.constraints().points()) copy(column++, fields.inner, std::size_t(v));
+    for (const Index f : rows.known_faces()) copy(column++, fields.faces, std::size_t(f - mesh.n_interior));
+  };
+  each([&](std::size_t column, std::vector<double>& field, std::size_t at) {
+    detail::copy_entry(mesh, known, column, field, at);
+  });
+  archive.field(mesh::Entries::points, name, fields.inner, std::size_t(mesh.dim));
+  archive.field(mesh::Entries::owned_boundary, name + "-faces", fields.faces, std::size_t(mesh.dim));
+  if (archive.reads())
+    each([&](std::size_t column, const std::vector<double>& field, std::size_t at) {
+      detail::copy_entry(mesh, field, at, known, column);
+    });
 }
 
 }  // namespace couplet::elastic

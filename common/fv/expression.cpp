@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -78,6 +79,9 @@ struct Expression::State {
   // In the run: null while the text is only checked.
   Use* use = nullptr;
   std::vector<double> instants;  // at which it may jump
+  // The two times before the latest one [s]; NaN if unknown.
+  double earlier = std::numeric_limits<double>::quiet_NaN(), since = earlier;
+  bool acts = false;  // it had a value other than 0 before `since`, so that its place is known
 
   State() = default;
   State(const config::ExpressionText& source, std::string place)
@@ -118,13 +122,25 @@ struct Expression::State {
     }
   }
 
-  /// Looks for values between the latest time and `t` that no step sees: a pulse, or a period near the step. They
-  /// are looked for at the place of the largest value.
-  void look_between(double t) {
-    const double before = std::exchange(use->last_time, t);
-    if (std::isnan(before)) return;
+  /// Looks for values between the latest time and `t` that no step sees: a pulse, or a period near the step. A value that
+  /// turns around from each step to the next, by more than its largest, is not seen either. Both are looked for at the
+  /// place of the largest value, and at all places until one is known.
+  void look_between(const Vec3& x, double t) {
+    const double last = std::isnan(use->last_time) ? 0 : use->last_time;  // a run starts at 0
+    if (t > last) {
+      earlier = std::exchange(since, last);
+      use->last_time = t;
+      acts = use->largest() > 0;
+    } else if (acts || t < last || !(t > since)) {
+      return;
+    }
+    const Vec3& place = acts ? use->place : x;
+    const double before = since;
+    // A look is no use of a table.
+    std::vector<Use> noted;
+    for (const auto& table : tables_in_use) noted.push_back(*table.use);
     const auto value_at = [&](double time) {
-      xyzt = {use->place[0], use->place[1], use->place[2], time};
+      xyzt = {place[0], place[1], place[2], time};
       return parser.Eval();
     };
     constexpr int n = 7;
@@ -134,12 +150,21 @@ struct Expression::State {
       if (instant > before && instant < t) times.push_back(instant);
     times.push_back(t);
     std::ranges::sort(times);
-    const auto [low, high] = std::minmax({value_at(before), value_at(t)});
+    const double second = value_at(before), third = value_at(t),
+                 first = std::isnan(earlier) ? second : value_at(earlier);
+    const auto [low, high] = std::minmax(second, third);
+    if ((second - first) * (third - second) < 0) {
+      const double turn = std::min(std::abs(second - first), std::abs(third - second)) -
+                          std::max({std::abs(first), std::abs(second), std::abs(third)});
+      if (turn > use->unseen) use->unseen = turn, use->unseen_at = before;
+    }
     for (std::size_t i = 1; i < times.size(); ++i) {
       const double middle = 0.5 * (times[i - 1] + times[i]), value = value_at(middle),
                    unseen = std::max(value - high, low - value);
       if (unseen > use->unseen) use->unseen = unseen, use->unseen_at = middle;
     }
+    for (std::size_t i = 0; i < noted.size(); ++i)
+      tables_in_use[i].use->lowest = noted[i].lowest, tables_in_use[i].use->highest = noted[i].highest;
   }
 
   std::size_t column_of(const mu::Parser::exception_type& e) const {
@@ -175,7 +200,7 @@ struct Expression::State {
   }
 
   double at(const Vec3& x, double t) {
-    if (use && uses_time && !(t <= use->last_time)) look_between(t);
+    if (use && uses_time) look_between(x, t);
     xyzt = {x[0], x[1], x[2], t};
     const double value = parser.Eval();
     require_possible(value);

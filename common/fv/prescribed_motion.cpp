@@ -25,7 +25,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   s.value("translation", m.translation)
       .unit("m")
       .plausible(1e-9, 1e4)
-      .doc("one expression of t [s] per component; absent: none");
+      .doc("one expression of t [s] per component; default: none");
   s.value("angle", m.angle)
       .unit("rad")
       .plausible(1e-9, 1e4)
@@ -52,7 +52,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
         .plausible(1e-9, 1e4)
         .positive()
         .doc(
-            "beyond it the mesh is at rest; between the radii the motion decays smoothly; absent: the "
+            "beyond it the mesh is at rest; between the radii the motion decays smoothly; default: the "
             "whole mesh moves");
   }
   s.check(

@@ -29,8 +29,8 @@ struct CheckpointWriter::State {
     require_new(array_path(name), name);
     const hdf5::Rows rows = hdf5::distribute_rows(comm, values.size(), 1);
     hdf5::write_table(id, array_path(name), rows, values.data());
-    const std::int64_t layout[2] = {static_cast<std::int64_t>(values.size()), checksum(values)};
-    hdf5::write_table(id, layout_path(name), hdf5::distribute_rows(comm, 1, 2), layout);
+    const auto count = static_cast<std::int64_t>(values.size());
+    hdf5::write_table(id, layout_path(name), hdf5::distribute_rows(comm, 1, 1), &count);
   }
 
   /// Stores entries of this rank that the file would not restore.
@@ -60,11 +60,9 @@ struct CheckpointWriter::State {
         id, field_path(name),
         {rows == 0 ? 0 : first, rows == 0 ? 0 : order.count(), rows, std::max<std::size_t>(width, 1)},
         block.data());
-    std::uint64_t sum = part_of_checksum(block, first * width);
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm);
-    const std::int64_t check[3] = {std::int64_t(rows), std::int64_t(width), std::bit_cast<std::int64_t>(sum)};
+    const std::int64_t check[2] = {std::int64_t(rows), std::int64_t(width)};
     const bool root = parallel::comm_rank(comm) == 0;
-    hdf5::write_table(id, check_path(name), hdf5::distribute_rows(comm, root ? 1 : 0, 3), check);
+    hdf5::write_table(id, check_path(name), hdf5::distribute_rows(comm, root ? 1 : 0, 2), check);
     if (parallel::comm_size(comm) > 1 && width > 0) write_copies(order, name, values, block, width);
   }
 };

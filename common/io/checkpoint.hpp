@@ -68,7 +68,7 @@ class CheckpointWriter {
   /// Writes values of this rank. They can only be read by the same number of ranks.
   void write(const std::string& name, std::span<const double> values);
   void close();
-  /// Communicator of the writing ranks. In memory each rank is on its own.
+  /// Communicator of the writing ranks. A checkpoint in memory belongs to one rank, whose communicator is MPI_COMM_SELF.
   MPI_Comm comm() const;
 
  private:
@@ -92,7 +92,7 @@ class CheckpointReader {
 
   /// Sets the mesh on which the following fields were written. It must outlive the reader.
   void on(const mesh::Mesh& mesh);
-  /// Communicator of the reading ranks. In memory each rank is on its own.
+  /// Communicator of the reading ranks. A checkpoint in memory belongs to one rank, whose communicator is MPI_COMM_SELF.
   MPI_Comm comm() const;
   /// Returns true if as many ranks wrote the file as read it, each with the same part of the mesh.
   bool on_same_ranks() const;

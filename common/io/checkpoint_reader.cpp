@@ -21,22 +21,22 @@ constexpr std::int64_t most_wide = 1 << 20;  // values per entry
 
 hdf5::Reader open_checkpoint(const std::filesystem::path& file) { return {file, what, advice}; }
 
-/// Values that each rank wrote and their checksums, from rank 0 on.
+/// Number of values that each rank wrote, from rank 0 on.
 std::vector<std::int64_t> layout_of_array(const hdf5::Reader& in, const std::string& name, int ranks) {
   const auto n = std::uint64_t(ranks);
-  if (const std::uint64_t rows = in.rows(layout_path(name), 2); rows != n)
+  if (const std::uint64_t rows = in.rows(layout_path(name), 1); rows != n)
     in.refuse(fmt::format("the layout of '{}' is for {} ranks; expected {}", name, rows, n));
-  std::vector<std::int64_t> layout(2 * n);
-  in.read(layout_path(name), {0, n, n, 2}, layout.data());
+  std::vector<std::int64_t> layout(n);
+  in.read(layout_path(name), {0, n, n, 1}, layout.data());
   const std::uint64_t total = in.rows(array_path(name), 1);
   std::uint64_t left = total;
   for (std::size_t r = 0; r < n; ++r) {
-    if (layout[2 * r] < 0 || std::uint64_t(layout[2 * r]) > left)
+    if (layout[r] < 0 || std::uint64_t(layout[r]) > left)
       in.refuse(
           fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
                       "remaining",
-                      name, total, r, layout[2 * r], left));
-    left -= std::uint64_t(layout[2 * r]);
+                      name, total, r, layout[r], left));
+    left -= std::uint64_t(layout[r]);
   }
   if (left != 0)
     in.refuse(fmt::format("the array '{}' has {} values; its layout assigns {} of them to no rank", name,
@@ -47,18 +47,17 @@ std::vector<std::int64_t> layout_of_array(const hdf5::Reader& in, const std::str
 struct FieldCheck {
   std::uint64_t rows = 0;
   std::size_t width = 0;
-  std::int64_t checksum = 0;
 };
 FieldCheck check_of_field(const hdf5::Reader& in, const std::string& name) {
-  std::array<std::int64_t, 3> check{};
-  in.read(check_path(name), {0, 1, 1, 3}, check.data());
-  const auto [rows, width, sum] = check;
+  std::array<std::int64_t, 2> check{};
+  in.read(check_path(name), {0, 1, 1, 2}, check.data());
+  const auto [rows, width] = check;
   if (rows < 0 || width < 0 || width > most_wide || (rows == 0) != (width == 0))
     in.refuse(fmt::format("the field '{}' claims {} rows of {} values", name, rows, width));
   const std::uint64_t found = in.rows(field_path(name), std::uint64_t(std::max<std::int64_t>(width, 1)));
   if (found != std::uint64_t(rows))
     in.refuse(fmt::format("the field '{}' has {} rows; expected {}", name, found, rows));
-  return {std::uint64_t(rows), std::size_t(width), sum};
+  return {std::uint64_t(rows), std::size_t(width)};
 }
 
 double scalar_on_file(const hdf5::Reader& in, const std::string& name) {
@@ -130,13 +129,6 @@ struct CheckpointReader::State {
                 in.file().string(), name);
   }
 
-  [[noreturn]] void corrupted(const std::string& name, const std::string& where) const {
-    throw Error(
-        "The checkpoint '{}' is corrupted: wrong checksum of the array '{}'{}. Use an earlier "
-        "checkpoint.",
-        in.file().string(), name, where);
-  }
-
   /// Reads the array of rank `from` on this rank.
   std::vector<double> array_of(const std::string& name, int from) const {
     return parallel::on_all(comm, [&] {
@@ -144,13 +136,12 @@ struct CheckpointReader::State {
       const std::vector<std::int64_t> layout = layout_of_array(in, name, ranks);
       hdf5::Rows rows;
       for (int r = 0; r < ranks; ++r) {
-        if (r < from) rows.first += std::uint64_t(layout[2 * r]);
-        rows.total += std::uint64_t(layout[2 * r]);
+        if (r < from) rows.first += std::uint64_t(layout[r]);
+        rows.total += std::uint64_t(layout[r]);
       }
-      rows.count = std::uint64_t(layout[2 * from]);
+      rows.count = std::uint64_t(layout[from]);
       std::vector<double> values(rows.count);
       in.read(array_path(name), rows, values.data());
-      if (checksum(values) != layout[2 * from + 1]) corrupted(name, fmt::format(" on rank {}", from));
       return values;
     });
   }
@@ -196,9 +187,6 @@ struct CheckpointReader::State {
         in.read(field_path(name), {first, order.count(), check.rows, check.width}, rows.data());
       return rows;
     });
-    std::uint64_t sum = part_of_checksum(block, first * check.width);
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm);
-    if (std::bit_cast<std::int64_t>(sum) != check.checksum) corrupted(name, "");
     std::vector<double> values = order.from_block(block, check.width);
     put_copies(name, values);
     return values;

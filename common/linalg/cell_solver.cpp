@@ -47,17 +47,17 @@ Cycle::Rows rows_of(const CellGraph& graph, std::span<const double> diagonal, st
 
 }  // namespace
 
-CellSolver::CellSolver(std::string what, const CellGraph& graph, const Beside& beside, Preconditioner kind)
+CellSolver::CellSolver(std::string what, const CellGraph& graph, Preconditioner kind)
     : graph_(graph),
-      matrix_(make_matrix(beside)),
+      matrix_(make_matrix()),
       solver_(std::move(what), matrix_,
               {.method =
                    kind == Preconditioner::factors ? LinearMethod::cg_direct : LinearMethod::cg_multigrid}) {
   if (kind == Preconditioner::multigrid) solver_.set_preconditioner([this] { return make_cycle(); });
 }
 
-// Triplets: the diagonal of each owned cell, then the neighbors by face, then further couplings.
-SparseMatrix CellSolver::make_matrix(const Beside& beside) {
+// Triplets: the diagonal of each owned cell, then the neighbors by face.
+SparseMatrix CellSolver::make_matrix() {
   const parallel::IndexMap& cells = graph_.cells;
   const Index owned = cells.n_owned();
   std::vector<GlobalIndex> row(owned), column;
@@ -72,14 +72,11 @@ SparseMatrix CellSolver::make_matrix(const Beside& beside) {
     add(graph_.owner[f], graph_.neighbour[f]);
     add(graph_.neighbour[f], graph_.owner[f]);
   }
-  for (const Index cell : beside.row) row.push_back(cells.global(cell));
-  column.insert(column.end(), beside.column.begin(), beside.column.end());
   values_.resize(row.size());
   return SparseMatrix(graph_.comm, owned, std::move(row), std::move(column));
 }
 
-void CellSolver::fill(std::span<const double> diagonal, std::span<const double> faces,
-                      std::span<const double> beside) {
+void CellSolver::fill(std::span<const double> diagonal, std::span<const double> faces) {
   diagonal_.assign(diagonal.begin(), diagonal.end());
   faces_.assign(faces.begin(), faces.end());
   auto next = std::ranges::copy(diagonal, values_.begin()).out;
@@ -87,7 +84,6 @@ void CellSolver::fill(std::span<const double> diagonal, std::span<const double> 
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const Index cell : {graph_.owner[f], graph_.neighbour[f]})
       if (cell < owned) *next++ = faces[f];
-  std::ranges::copy(beside, next);
   matrix_.fill(values_);
   solver_.matrix_changed();
 }

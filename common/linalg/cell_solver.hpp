@@ -17,31 +17,23 @@ struct CellGraph {
   std::span<const Index> owner, neighbour;
 };
 
-/// Matrix entries beside those of the mesh, in rows of owned cells. Symmetric as a whole.
-struct Beside {
-  std::span<const Index> row;
-  std::span<const GlobalIndex> column;
-};
-
 /// Conjugate gradients for a symmetric positive (semi-)definite system with one unknown per cell and a fixed
 /// sparsity pattern.
 class CellSolver {
  public:
   enum class Preconditioner {
-    factors,    ///< Cholesky factors
-    multigrid,  ///< AggregationMultigrid of the mesh's entries
-    ml          ///< PETSc's multigrid of all entries
+    factors,   ///< Cholesky factors
+    multigrid  ///< AggregationMultigrid
   };
   /// `what` names the unknown in messages. Collective.
-  CellSolver(std::string what, const CellGraph& graph, const Beside& beside, Preconditioner kind);
-  /// Sets the values: `diagonal` per owned cell, `faces` the entry of each two neighbors, `beside` one per entry of Beside.
-  /// Collective.
-  void fill(std::span<const double> diagonal, std::span<const double> faces, std::span<const double> beside);
+  CellSolver(std::string what, const CellGraph& graph, Preconditioner kind);
+  /// Sets the values: `diagonal` per owned cell, `faces` the entry of each two neighbors. Collective.
+  void fill(std::span<const double> diagonal, std::span<const double> faces);
   /// Solver of the system, which refreshes, saves and restores its preconditioner.
   LinearSolver& solver() { return solver_; }
 
  private:
-  SparseMatrix make_matrix(const Beside& beside);
+  SparseMatrix make_matrix();
   LinearMap make_cycle() const;
   CellGraph graph_;
   std::vector<double> diagonal_, faces_, values_;  // values_: the matrix's triplets

@@ -54,17 +54,21 @@ void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
   choose_petsc_factors(factors, symmetric);
 }
 
-// ML's smoothed aggregation with one symmetric SOR sweep, the best packaged preconditioner for FV Laplacians.
-// The matrix norm bounds the spectral radius in its prolongation smoother. ML's other estimate uses random
-// vectors that continue from setup to setup, so a restarted run would not be reproducible (2 % more
-// iterations on the thin plate's fluid).
-void choose_ml(PC pc) {
+// Smoothed aggregation with one symmetric SOR sweep, the best packaged preconditioner for FV Laplacians: ML or, in
+// builds of PETSc without it (Debian 13), GAMG. The matrix norm bounds the spectral radius in ML's prolongation
+// smoother. ML's other estimate uses random vectors that continue from setup to setup, so a restarted run would
+// not be reproducible (2 % more iterations on the thin plate's fluid).
+void choose_aggregation(PC pc) {
+#ifdef PETSC_HAVE_ML
   petsc_check(PCSetType(pc, PCML));
-  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_ksp_type", "richardson"));
-  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_ksp_max_it", "1"));
-  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_pc_type", "sor"));
-  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_pc_ml_SpectralNormScheme_Anorm", "true"));
-  petsc_check(PCSetOptionsPrefix(pc, "couplet_ml_"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_pc_ml_SpectralNormScheme_Anorm", "true"));
+#else
+  petsc_check(PCSetType(pc, PCGAMG));
+#endif
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_mg_levels_ksp_type", "richardson"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_mg_levels_ksp_max_it", "1"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_mg_levels_pc_type", "sor"));
+  petsc_check(PCSetOptionsPrefix(pc, "couplet_sa_"));
   petsc_check(PCSetFromOptions(pc));
 }
 
@@ -95,7 +99,7 @@ void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod meth
     case LinearMethod::cg_multigrid:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
-      return choose_ml(pc);
+      return choose_aggregation(pc);
     case LinearMethod::gmres_multigrid:
       petsc_check(KSPSetType(ksp, KSPGMRES));
       petsc_check(KSPSetPCSide(ksp, PC_RIGHT));

@@ -18,7 +18,7 @@ enum class LinearMethod {
   direct_symmetric,  ///< Cholesky, likewise
   direct_planar,     ///< Cholesky of a positive definite 2-D matrix, on one rank by CHOLMOD
   cg_direct,         ///< CG with reused Cholesky factors, on one rank PETSc's own: 2-D, positive definite
-  cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
+  cg_multigrid,      ///< CG with smoothed aggregation, symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG
   bicgstab_ilu,      ///< KrylovSolver's BiCGStab and GMRES with ILU(0), block Jacobi over the ranks
   cg_icc,            ///< CG with incomplete Cholesky factors, block Jacobi over the ranks

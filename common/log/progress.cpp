@@ -111,7 +111,7 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
     }
     if (text.starts_with("t=")) return renew(text);
     if (!steps_ && told_++ < (is_shared_ ? most_of_several : most_at_start))
-      print(shortened(text.substr(0, text.find("; neglected: "))));
+      print(shortened(text.substr(0, text.find("; off: "))));
   }
   void flush_() override { std::fflush(stdout); }
 

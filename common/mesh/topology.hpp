@@ -21,7 +21,7 @@ namespace couplet::mesh {
 /// cells.
 struct CellShape {
   int dim, n_points, n_faces;
-  std::array<std::array<std::int8_t, 4>, 6> faces;  ///< -1: no such point
+  std::array<std::array<std::int8_t, 4>, 6> faces;  ///< -1 means no such point
   std::array<std::int8_t, 8> mirrored;              ///< point order that inverts an inverted cell
   int face_size(int face) const {
     if (dim == 2) return 2;

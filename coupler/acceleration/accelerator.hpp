@@ -4,17 +4,14 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/parallel/index_map.hpp"
 #include "coupler/parameters/parameters.hpp"
-
-namespace couplet::io {
-class CheckpointReader;
-class CheckpointWriter;
-}  // namespace couplet::io
 
 namespace couplet::coupler {
 
@@ -23,6 +20,15 @@ namespace couplet::coupler {
 struct Iterate {
   std::vector<double> unknown;  ///< any unit
   std::vector<double> rider;    ///< any unit, any length; may be empty
+};
+
+/// Residual of one datum. Those of several data have units of their own: only `relative` ones compare.
+struct Residual {
+  double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
+  double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
+  double size = 0;      ///< the same of H(x)
+  /// Scale of the datum, for later residuals: its size, or, while it has none, its first residual.
+  double scale() const { return size > 0 ? size : absolute; }
 };
 
 /// Order of its values in a file, independent of the number of ranks.
@@ -143,5 +149,35 @@ class AitkenRelaxation final : public Accelerator {
 /// Aitken's factor from the values of this rank.
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
                      MPI_Comm comm = MPI_COMM_SELF);
+
+bool converged(const Residual& residual, const ConvergenceParameters& parameters);
+/// Suffix for a sentence with the relative residual; empty if only that one decides.
+std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters);
+/// Returns the residual of the datum with the largest relative one.
+Residual worst(const std::vector<Residual>& residuals);
+/// Returns the largest absolute residual over the `scale` of its datum. Data without a scale yet (0) are
+/// omitted.
+double largest(const std::vector<Residual>& residuals, const std::vector<double>& scales);
+
+/// One pass through all participants, from x to H(x). Throws SolveFailure if one of them fails.
+using FixedPointMap = std::function<Iterate(const Iterate&)>;
+/// Residuals of H(x) - x, one for each unknown.
+using ResidualMeasure = std::function<std::vector<Residual>(const Iterate& x, const Iterate& image)>;
+/// After each pass: its number from 1, its residuals, and the share of the residual before that led to its x.
+using IterationObserver = std::function<void(int, const std::vector<Residual>&, double)>;
+
+struct FixedPointResult {
+  Iterate x, image;  ///< x and H(x) of the last pass
+  Residual residual;
+  int iterations = 0;
+  bool converged = true;  ///< false: accepted without convergence
+};
+
+/// Solves x = H(x) by accelerated passes from the guess x, until the residual of every unknown is below its
+/// bound. Throws SolveFailure if it does not converge within the allowed iterations or a residual is not
+/// finite.
+FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const ResidualMeasure& measure,
+                                   const ConvergenceParameters& parameters, Accelerator& accelerator,
+                                   const IterationObserver& observer);
 
 }  // namespace couplet::coupler

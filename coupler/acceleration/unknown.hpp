@@ -13,15 +13,6 @@
 
 namespace couplet::coupler {
 
-/// Residual of one datum. Those of several data have units of their own: only `relative` ones compare.
-struct Residual {
-  double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
-  double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
-  double size = 0;      ///< the same of H(x)
-  /// Scale of the datum, for later residuals: its size, or, while it has none, its first residual.
-  double scale() const { return size > 0 ? size : absolute; }
-};
-
 /// Unknowns of a group's iteration: data that a participant takes before they are given in the same pass, and
 /// data that a participant gives to itself. In serial order (Gauss-Seidel) these are the data given to
 /// earlier members, in parallel order (Jacobi) all data of the group. A velocity beside a displacement of the

@@ -164,41 +164,12 @@ void OscillationGuard::visit_fields(io::Archive& archive, const parallel::Global
   }
 }
 
-std::optional<std::string> WorkGuard::suspects(coupling::Scheme scheme) const {
-  if (scheme != coupling::Scheme::explicit_ || steps_ < 4 ||
-      !(std::abs(fluid_ - structure_) > 0.5 * exchanged_))
-    return {};
-  return fmt::format(
-      "interface work: the fluid gave {:.3g} J and the structure took {:.3g} J, more than half of all work "
-      "apart: added-mass instability of the explicit scheme. `scheme: semi-implicit` or `implicit` iterates "
-      "it.",
-      fluid_, structure_);
-}
-
-double WorkGuard::Window::apart() const { return std::abs(given - taken); }
-
-std::optional<std::string> WorkGuard::accepted(double fluid, double structure, coupling::Scheme scheme) {
-  const double larger = std::max(std::abs(fluid), std::abs(structure));
+void WorkGuard::accepted(double fluid, double structure) {
   fluid_ += fluid;
   structure_ += structure;
-  exchanged_ += larger;
+  exchanged_ += std::max(std::abs(fluid), std::abs(structure));
   stored_ = std::max(stored_, std::abs(structure_));
   ++steps_;
-  if (windows_.empty() || windows_.back().steps == window) {
-    if (windows_.size() == 3) windows_.erase(windows_.begin());
-    windows_.emplace_back();
-  }
-  Window& last = windows_.back();
-  last.given += fluid, last.taken += structure, last.size += larger, ++last.steps;
-  if (windows_.size() < 3 || last.steps < window) return {};
-  // The scheme creates more than half of the exchanged work, which is no small part of the whole run and
-  // grows. A jittering guess also separates the works, but without growth.
-  const bool grows = last.apart() > 2 * windows_[1].apart() && windows_[1].apart() > 2 * windows_[0].apart();
-  if (!grows || !(last.apart() > 0.5 * last.size) || !(last.apart() > 0.1 * exchanged_)) return {};
-  return fmt::format(
-      "interface work: over the last {} steps the fluid gave {:.4g} J and the structure took {:.4g} J, "
-      "increasingly apart: the scheme itself adds or removes energy.{}",
-      window, last.given, last.taken, cure_of(scheme));
 }
 
 WorkGuard::Verdict WorkGuard::verdict(bool by_nearest, bool lagging) const {

@@ -46,12 +46,12 @@ class IterationGuard {
 /// Detects the two-step oscillation of loosely coupled schemes in the accepted motion. The velocity jumps d_n
 /// = (x^{n+1} - x^n)/dt_n - (x^n - x^{n-1})/dt_{n-1} then alternate, grow, and are as large as the velocity.
 /// Variable steps do not hide it. Explicit added mass has the factor -r per step (r: added mass over the
-/// structure's) for any step size. Growth is told from two frequencies that beat: it lasts at least three periods, does not slow
+/// structure's) for any step size. Growth is distinguished from two frequencies that beat: it lasts at least three periods, does not slow
 /// down, and exceeds all swings before it.
 class OscillationGuard {
  public:
-  /// `comm`: over whose ranks the motion is cut. `tolerance`: of the coupling, over the largest motion of the run; swings below
-  /// it or below `floor` are no part of the answer.
+  /// `comm`: communicator over whose ranks the motion is distributed. `tolerance`: tolerance of the coupling, relative to the
+  /// largest motion of the run. Swings below it or below `floor` are not part of the answer.
   explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF, double tolerance = 0)
       : comm_(comm), tolerance_(tolerance) {}
   /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
@@ -86,14 +86,11 @@ class OscillationGuard {
   double before_ = 0, dt_ = 0;  // largest pair of sizes in the oscillations before; last step
 };
 
-/// Compares the work on both sides of the interface. It differs only by the coupling error, so a growing
-/// difference is produced by the scheme.
+/// Compares the work on both sides of the interface, which differs only by the coupling error.
 class WorkGuard {
  public:
-  /// accepted() adds the work of a step on both sides [J] and returns a reason if they diverge. suspects()
-  /// returns a reason if a step fails and the work so far shows that the explicit scheme made the motion.
-  std::optional<std::string> suspects(coupling::Scheme scheme) const;
-  std::optional<std::string> accepted(double fluid, double structure, coupling::Scheme scheme);
+  /// Adds the work of a step on both sides [J].
+  void accepted(double fluid, double structure);
   /// Result at the end of the run: a sentence with numbers, and whether the balance is sound.
   struct Verdict {
     bool sound = true;
@@ -105,7 +102,7 @@ class WorkGuard {
   /// larger, because work that is returned hides nothing. `by_nearest`: nearest mapping of motion and load.
   /// `lagging`: one pass per step. The fluid then sees an extrapolated wall whose velocity jitters, so loads
   /// alternate and the works differ even if the motion is accurate to parts in a thousand. Such a result is
-  /// not called useless; accepted() checks growth.
+  /// not called useless.
   Verdict verdict(bool by_nearest = false, bool lagging = false) const;
   /// Adds the structures' energy after a step [J]; NaN if unknown. Until then the largest net work taken is
   /// used.
@@ -114,7 +111,7 @@ class WorkGuard {
   /// Data for checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(fluid_, structure_, exchanged_, steps_, energy_, stored_, windows_);
+    numbers(fluid_, structure_, exchanged_, steps_, energy_, stored_);
   }
 
   /// Limits of the difference: sound below the first, relative to net work or energy; useless above the
@@ -122,22 +119,11 @@ class WorkGuard {
   /// motion differ more.
   static constexpr double sound_part = 0.05, useless_part = 0.5;
   static constexpr long judged_steps = 20;
-  static constexpr int window = 12;  ///< steps; it reports after three of them at the earliest
 
  private:
   double fluid_ = 0, structure_ = 0, exchanged_ = 0;  // sums over the run; exchanged: of the larger |work|
   double energy_ = 0, stored_ = 0;  // largest energy of the structures; largest net work taken
   long steps_ = 0;
-  struct Window {
-    double given = 0, taken = 0, size = 0;
-    int steps = 0;
-    double apart() const;
-    template <class Numbers>
-    void visit(Numbers& numbers) {
-      numbers(given, taken, size, steps);
-    }
-  };
-  std::vector<Window> windows_;  // the last three
 };
 
 }  // namespace couplet::coupler

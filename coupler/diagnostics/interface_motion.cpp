@@ -60,24 +60,16 @@ std::shared_ptr<CouplingDiagnostic> interface_oscillation(const CouplingView& vi
 
 namespace {
 
-using OnDivergence = CouplingParameters::OnDivergence;
-
 /// Compares the work given and taken at the interface (see WorkGuard).
 class InterfaceWork final : public CouplingDiagnostic {
  public:
   explicit InterfaceWork(const CouplingView& view) : view_(view) {}
-  void observe(diagnostics::Report& report) override {
+  void observe(diagnostics::Report&) override {
     double given = 0, taken = 0;
     if (view_.record.balances().empty()) return;
     for (const SideBalance& side : view_.record.balances()) (side.gives ? given : taken) += side.balance.work;
     guard_.energy(energy_of_structures());
-    const auto parted = guard_.accepted(given, taken, view_.scheme.now());
-    if (!parted) return;
-    if (stops())
-      stop_ = *parted;
-    else
-      report.findings.push_back(
-          {.id = "interface-work-grows", .severity = base::Severity::wrong, .sentence = *parted});
+    guard_.accepted(given, taken);
   }
   void conclude(diagnostics::Report& report) override {
     const WorkGuard::Verdict v = guard_.verdict(
@@ -92,16 +84,9 @@ class InterfaceWork final : public CouplingDiagnostic {
                                  .limit = WorkGuard::sound_part,
                                  .sentence = v.text});
   }
-  std::optional<app::StepFailure> suspects() const override {
-    if (const auto parted = guard_.suspects(view_.scheme.now()); parted && stops())
-      return app::StepFailure(*parted, false);
-    return {};
-  }
-  std::string stop() const override { return stop_; }
   void visit(io::Archive& archive) override { archive.common("work", guard_); }
 
  private:
-  bool stops() const { return view_.parameters.on_divergence == OnDivergence::stop; }
   /// Energy in the accepted state of all participants that take forces [J]; NaN if one does not report it.
   double energy_of_structures() const {
     double total = 0;
@@ -115,7 +100,6 @@ class InterfaceWork final : public CouplingDiagnostic {
 
   const CouplingView& view_;
   WorkGuard guard_;
-  std::string stop_;
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "common/app/loop/step_loop.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "coupler/acceleration/fixed_point.hpp"
+#include "coupler/acceleration/accelerator.hpp"
 #include "coupler/output/record.hpp"
 #include "coupler/parameters/schedule.hpp"
 #include "coupler/pass.hpp"

@@ -50,10 +50,9 @@ class ForeignStructure final : public coupling::Channel {
   const std::string& name() const override { return channel_->name(); }
   void send(const coupling::Command& command) override;
   coupling::Reply receive() override;
-  int ranks() const override { return channel_->ranks(); }
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
 
-  /// Displacements for the velocity, between steps; nothing if the structure gives its velocity.
+  /// Earlier displacements, from which the velocity is computed; empty if the structure gives its velocity.
   void save(io::CheckpointWriter& file) const;
   void load(io::CheckpointReader& file);
 
@@ -86,7 +85,6 @@ class ForeignFluid final : public coupling::Channel {
   const std::string& name() const override { return channel_->name(); }
   void send(const coupling::Command& command) override;
   coupling::Reply receive() override;
-  int ranks() const override { return channel_->ranks(); }
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
 
  private:

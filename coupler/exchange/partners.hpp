@@ -7,6 +7,8 @@
 
 #include "common/coupling/channel.hpp"
 #include "common/diagnostics/error_parts.hpp"
+#include "coupler/exchange/side.hpp"
+#include "coupler/parameters/parameters.hpp"
 
 namespace couplet::coupler {
 
@@ -39,12 +41,25 @@ struct Partner {
 void ask_all(const std::vector<Partner*>& partners, const coupling::Command& command);
 /// Returns the interface of each, in order; stores initial values in the partners.
 std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners);
-/// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
-/// end; empty: it did not. `last`: for each what the others gave last, which no further step would bring.
+/// Ends the participants one after the other, so that their logs do not mix. Returns their estimated errors. `problem`: why
+/// the run stopped early; empty if it reached its end. `last`: latest data of the others for each participant.
 std::vector<diagnostics::NamedErrors> finalise_all(const std::vector<Partner*>& partners,
                                                    const std::string& problem,
                                                    std::vector<coupling::Exchange> last);
 /// Smallest step that a participant recommends [s].
 double advised_dt(const std::vector<Partner*>& partners);
+
+/// Checks the configurations of programs with a preCICE adapter, which declare the digest of theirs and their
+/// schemes (docs/protocol.md, initialise). Throws Error if they differ from each other or from the
+/// configuration of the case (coupling.exchange.digest), or if the scheme or order has changed.
+void check_introductions(const CouplingParameters& parameters, const std::vector<Partner>& partners);
+
+/// Why these participants cannot continue from a checkpoint; empty if they can. Throws Error if checkpoints
+/// are requested nevertheless (`checkpoint_interval` [s] above 0).
+std::string without_state(double checkpoint_interval, const std::vector<Partner>& partners);
+
+/// Checks that `coupling.fluid`, `structure` and `mesh` declare the data of their role (see
+/// common/coupling/roles.hpp), and that fluid and structure have the same dimension. Throws Error.
+void check_roles(const CouplingParameters& parameters, const std::vector<Side>& sides);
 
 }  // namespace couplet::coupler

@@ -189,7 +189,7 @@ class RowSums {
 /// Rows of a map at some places: those of this rank, and copies from other ranks.
 class MapRows {
  public:
-  /// `own`: by owner, in order. `needed`: positions on other ranks, ascending.
+  /// `own`: this rank's entries by owner, in order. `needed`: positions on other ranks, ascending.
   MapRows(MPI_Comm comm, const coupling::Starts& starts, const Entries& own,
           const std::vector<GlobalIndex>& needed)
       : first_(starts[std::size_t(parallel::comm_rank(comm))]),

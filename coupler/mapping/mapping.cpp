@@ -10,7 +10,6 @@
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surface_rows.hpp"
 #include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {

@@ -74,7 +74,7 @@ std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<con
   b[n] = 1;
   b.tail(at.cols()) = at.row(n).transpose();
   Eigen::VectorXd w = a.partialPivLu().solve(b);
-  // For coincident or too few sources for the polynomial: the smallest weights that fit.
+  // The smallest weights that fit, for coincident sources or too few of them for the polynomial.
   if (!w.allFinite() || (a * w - b).norm() > 1e-11 * b.norm())
     w = a.completeOrthogonalDecomposition().solve(b);
   return {w.data(), w.data() + n};

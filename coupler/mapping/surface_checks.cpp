@@ -309,13 +309,6 @@ SurfaceFacts surface_facts(MPI_Comm comm, const std::vector<const Side*>& sides)
   facts.face = sums[4] / std::max(1., double(facts.faces));
   if (facts.area == 0) return facts;
   facts.centroid = Vec3(sums[1], sums[2], sums[3]) / facts.area;
-  Vec3 spread = Vec3::Zero();
-  for (const Side* side : sides)
-    for (std::size_t f = 0; f < side->interface.face_centres.size(); ++f)
-      spread += side->interface.face_areas[f].norm() *
-                (side->interface.face_centres[f] - facts.centroid).cwiseAbs();
-  add_up(comm, spread.data(), 3);
-  facts.spread = spread / facts.area;
   return facts;
 }
 
@@ -323,16 +316,6 @@ double faceting(const SurfaceFacts& a, const SurfaceFacts& b) {
   const double extent = std::min(a.extent(), b.extent());
   const double share = extent > 0 ? std::max(a.face, b.face) / extent : 1;
   return 0.01 + share * share;
-}
-
-/// Largest difference of the mean distances from the centroid [m]. Directions in which a surface is only a
-/// few faces wide are left to the box, because the centers of one row of faces are collinear.
-double spread_apart(const SurfaceFacts& a, const SurfaceFacts& b) {
-  const Vec3 width = (a.high - a.low).cwiseMin(b.high - b.low);
-  double apart = 0;
-  for (int c = 0; c < 3; ++c)
-    if (width[c] > 3 * std::max(a.face, b.face)) apart = std::max(apart, std::abs(a.spread[c] - b.spread[c]));
-  return apart;
 }
 
 std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double limit) {
@@ -348,7 +331,6 @@ std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double l
        {of("area", std::abs(a.area - b.area) / area, fmt::format("{:.4g} m^2", a.area),
            fmt::format("{:.4g} m^2", b.area)),
         of("centroid", (a.centroid - b.centroid).norm() / size, text(a.centroid), text(b.centroid)),
-        of("mean distance from the centroid", spread_apart(a, b) / size, text(a.spread), text(b.spread)),
         of("bounding box", box / size, text(a.low) + " to " + text(a.high),
            text(b.low) + " to " + text(b.high))})
     if (!found.empty()) return found;

@@ -38,10 +38,9 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
 struct SurfaceFacts {
   std::string names;
   GlobalIndex faces = 0;
-  double area = 0;               ///< [m^2]; 2-D: length [m]
-  double face = 0;               ///< mean extent of the faces [m]
-  Vec3 centroid = Vec3::Zero();  ///< [m]
-  Vec3 spread = Vec3::Zero();    ///< first moments: means of |x - x_c|, |y - y_c|, |z - z_c| [m]
+  double area = 0;                               ///< [m^2]; 2-D: length [m]
+  double face = 0;                               ///< mean extent of the faces [m]
+  Vec3 centroid = Vec3::Zero();                  ///< [m]
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the vertices [m]
   double extent() const { return (high - low).norm(); }
 };
@@ -53,8 +52,8 @@ SurfaceFacts surface_facts(MPI_Comm comm, const std::vector<const Side*>& sides)
 /// 1.6/n^2.)
 double faceting(const SurfaceFacts& a, const SurfaceFacts& b);
 
-/// First quantity that differs by more than `limit` relative to the size: area, centroid, first moments,
-/// bounding box. Empty if the surfaces are the same.
+/// First quantity that differs by more than `limit` relative to the size: area, centroid, bounding
+/// box. Empty if the surfaces are the same.
 std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double limit);
 
 /// Checks before the first step: reports differences between surfaces that move together. Throws Error if a

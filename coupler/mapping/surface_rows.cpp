@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/mapping/surface_rows.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

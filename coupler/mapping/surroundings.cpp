@@ -285,7 +285,7 @@ std::vector<GlobalIndex> Surroundings::faces_around(const std::vector<GlobalInde
   struct Touch {
     GlobalIndex vertex, face;
   };
-  // A face may be on another rank than its vertices: each vertex's owner is told of its faces.
+  // A face may be on another rank than its vertices: so the owner of each vertex receives its faces.
   const auto rank = std::size_t(parallel::comm_rank(comm_));
   std::vector<std::vector<Touch>> tell(std::size_t(parallel::comm_size(comm_)));
   for (std::size_t f = 0; f < part_.face_centres.size(); ++f)

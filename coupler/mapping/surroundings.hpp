@@ -36,7 +36,7 @@ class Surroundings {
   PointSet vertices() const;                         ///< this rank's
   PointSet faces() const;
   double widest() const;  ///< largest reach of a face on any rank [m]
-  /// These faces (positions, ascending) with their vertices.
+  /// Returns the mesh of the faces at `faces` (positions, ascending) with their vertices.
   SurfacePart with(const std::vector<GlobalIndex>& faces) const;
   /// Positions of faces that have one of these vertices (positions, ascending) as a corner, ascending.
   std::vector<GlobalIndex> faces_around(const std::vector<GlobalIndex>& vertices) const;

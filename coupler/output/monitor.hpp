@@ -12,7 +12,7 @@
 
 #include "common/coupling/participant.hpp"
 #include "common/io/series.hpp"
-#include "coupler/acceleration/fixed_point.hpp"
+#include "coupler/acceleration/accelerator.hpp"
 #include "coupler/exchange/partners.hpp"
 #include "coupler/parameters/schedule.hpp"
 
@@ -24,7 +24,7 @@ namespace couplet::coupler {
 /// step and the closing summary.
 class Monitor {
  public:
-  /// `names`: of all participants. `restart_time`: NaN for a fresh start.
+  /// `names`: names of all participants. `restart_time`: NaN for a fresh start.
   Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names, double end_time,
           double restart_time);
   /// Starts the clock of the first step; earlier work is not counted.
@@ -41,7 +41,7 @@ class Monitor {
   std::vector<double> iterations_per_step() const {
     return {double(iterations_) / double(std::max(1L, steps_)), double(most_iterations_)};
   }
-  /// Waiting times, and a better division of ranks; may be empty.
+  /// See waiting_sentence().
   std::string waiting(const std::vector<Partner>& partners, const Schedule& schedule) const;
 
  private:
@@ -59,20 +59,9 @@ class Monitor {
   double own_ = 0, own_before_ = 0;  // CPU seconds of the coupler: total, and up to this step
 };
 
-/// Working time of a participant in a run.
-struct Worker {
-  std::string name;
-  int ranks = 1;
-  double seconds = 0;  ///< wall time at work, on these ranks
-};
-
-/// Divides `total` ranks, at least one each, assuming that work scales with ranks. In sequence (Gauss-Seidel)
-/// it minimizes the sum of work / ranks over integers; in parallel the largest of them.
-std::vector<int> divide_ranks(const std::vector<Worker>& workers, int total, bool side_by_side);
-
-/// Summary at the end of a run: waiting times, and a division of the same ranks that saves at least a tenth
-/// of the time. With one rank each, it names the participant for the next rank. Empty for one participant or
-/// without timings.
-std::string waiting_sentence(const std::vector<Worker>& workers, bool side_by_side);
+/// Names the participant for which the others wait, from their times at work [s]. Empty for one participant or
+/// a short run. `couplet run -n TOTAL` divides the ranks by the work of the last run.
+std::string waiting_sentence(const std::vector<std::string>& names, const std::vector<double>& seconds,
+                             bool side_by_side);
 
 }  // namespace couplet::coupler

@@ -29,12 +29,12 @@ void declare(config::Section& section, CouplingParameters::Exchange& p) {
       .doc("their names under `participants`, in the order of a step");
   section.choice("order", p.order, {{"serial", Order::serial}, {"parallel", Order::parallel}})
       .doc(
-          "serial: one after the other, each with the data of the preceding ones from this step; parallel: "
+          "serial: one after the other, each with the data of the preceding ones from this step. parallel: "
           "all at the same time with the data of the last step");
   section.value("digest", p.digest)
       .doc(
-          "of the precice-config.xml that the case was made of, as `couplet import` writes it: programs that "
-          "read another one, or a scheme or order that is not its, are refused; absent: not looked at");
+          "digest of the precice-config.xml from which `couplet import` wrote the case: programs that "
+          "read another configuration, or a scheme or order other than its own, are refused; default: not checked");
 }
 
 /// Either fluid and structure, or an exchange.
@@ -81,7 +81,7 @@ void declare(config::Section& section, WatchParameters& p, const std::vector<std
   section.value("data", p.data)
       .required()
       .doc("name of a datum it gives or takes, such as pressure-force, velocity or heat");
-  section.value("part", p.part).doc("patch of the interface; absent: the whole interface");
+  section.value("part", p.part).doc("patch of the interface; default: the whole interface");
   section.check(
       [partners, &p] {
         return std::ranges::find(partners, p.participant) != partners.end()
@@ -139,12 +139,12 @@ void declare_participants(config::Section& section, CouplingParameters& p) {
                 "name of its displacement (m, or without a unit) at vertices in its program; a missing velocity is computed by second-order differences");
         s.value("load", r.load)
             .doc(
-                "name of its load (N) in its program, the sum of all forces; absent: each force by its own name");
+                "name of its load (N) in its program, the sum of all forces; default: each force by its own name");
       },
       "participant that receives the load and gives the interface motion; absent with `mesh`: bodies move as the "
       "mesh mover's boundaries prescribe (type: moving), nothing is iterated");
   declare_role(section, "mesh", p.mesh,
-               "participant that moves the mesh of the fluid; absent: the mesh is "
+               "participant that moves the mesh of the fluid; default: the mesh is "
                "at rest");
   section.optional_section<CouplingParameters::Exchange>(
       "exchange", p.exchange, [](config::Section& s, CouplingParameters::Exchange& e) { declare(s, e); },
@@ -159,7 +159,7 @@ void declare_predictor(config::Section& section, CouplingParameters& p) {
         s.value("order", p.predictor_order)
             .range(0, 2)
             .doc(
-                "initial guess of a step: 0 the last displacement; 1 with the last velocity; 2 with the "
+                "initial guess of a step: 0 takes the last displacement; 1 adds the last velocity; 2 uses the "
                 "last two, which keeps the semi-implicit scheme second order; data without a velocity by a "
                 "polynomial of this order. Default 2, but 1 in explicit coupling and 0 in an explicit exchange");
         s.check(
@@ -179,7 +179,7 @@ void declare_sub_steps(config::Section& section, CouplingParameters& p) {
   section.choice("waveform", p.waveform, {{"linear", Waveform::linear}, {"constant", Waveform::constant}})
       .doc(
           "data seen by sub-steps: linear: interpolated in time between the last and the new values (second "
-          "order); constant: the new values");
+          "order). constant: the new values");
   section.check([&p] { return problem_of_sub_steps(p); }, "sub-steps");
 }
 
@@ -191,8 +191,8 @@ void declare_scheme(config::Section& section, CouplingParameters& p) {
                {"semi-implicit", coupling::Scheme::semi_implicit},
                {"implicit", coupling::Scheme::implicit}})
       .doc(
-          "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, pressure and "
-          "structure iterated; implicit: everything iterated; auto: starts semi-implicit and switches to implicit when the friction of the fluid drags too much of the moving mass");
+          "explicit: one pass per step. semi-implicit: mesh motion and momentum predictor once per step, pressure and "
+          "structure iterated. implicit: everything iterated. auto: starts semi-implicit and switches to implicit when the friction of the fluid drags too much of the moving mass");
 }
 
 }  // namespace
@@ -223,7 +223,7 @@ void declare(config::Section& section, CouplingParameters& p) {
                {"structure-first", Order::structure_first}})
       .doc(
           "order of fluid and structure: serial: the structure with the load of the same pass "
-          "(Gauss-Seidel); parallel: both at the same time (Jacobi); structure-first: the fluid with the "
+          "(Gauss-Seidel). parallel: both at the same time (Jacobi). structure-first: the fluid with the "
           "motion of the same pass, and the load is iterated, as required by a fluid with `surface-density` "
           "at its interface (Robin)");
   section.value("mesh-on-guess", p.mesh_on_guess)
@@ -246,7 +246,7 @@ void declare(config::Section& section, CouplingParameters& p) {
       .choice("on-divergence", p.on_divergence, {{"stop", OnDivergence::stop}, {"warn", OnDivergence::warn}})
       .doc(
           "when the motion oscillates with growing amplitude, or the work on the two sides diverges: stop: "
-          "the run ends with the reason; warn: it is reported once");
+          "the run ends with the reason. warn: it is reported once");
   section.check([&] { return problem_of_roles(p); }, p.exchange ? "exchange" : "structure");
 }
 
@@ -256,8 +256,8 @@ void declare(config::Section& section, AccelerationParameters& p) {
       .choice("type", p.type,
               {{"constant", Type::constant}, {"aitken", Type::aitken}, {"iqn-ils", Type::iqn_ils}})
       .doc(
-          "constant: always the initial relaxation; aitken: adapted in each iteration from the last two "
-          "residuals; iqn-ils: quasi-Newton from the differences of this and earlier steps by least "
+          "constant: always the initial relaxation. aitken: adapted in each iteration from the last two "
+          "residuals. iqn-ils: quasi-Newton from the differences of this and earlier steps by least "
           "squares");
   section.value("initial-relaxation", p.initial_relaxation)
       .range(1e-6, 2)
@@ -290,9 +290,9 @@ void declare(config::Section& section, ConvergenceParameters& p) {
       .unit("m")
       .plausible(1e-18, 0.1)
       .not_negative()
-      .doc("or when the root mean square of r over the interface vertices is below this; 0: not used");
+      .doc("or when the root mean square of r over the interface vertices is below this; 0 turns this off");
   section.value("both", p.both)
-      .doc("true: not one of both limits is enough, `relative` and `absolute` have to be met");
+      .doc("true: a step has converged only if both limits, `relative` and `absolute`, are met");
   section.check([&p] { return !p.both || p.absolute > 0 ? "" : "it needs `absolute`"; }, "both");
   section.value("max-iterations", p.max_iterations)
       .range(1, 10000)
@@ -307,7 +307,7 @@ void declare(config::Section& section, ConvergenceParameters& p) {
   section
       .choice("at-max-iterations", p.at_maximum, {{"fail", AtMaximum::fail}, {"accept", AtMaximum::accept}})
       .doc(
-          "after `max-iterations` without convergence: fail: the step is halved; accept: the step is accepted, with "
+          "after `max-iterations` without convergence: fail: the step is halved. accept: the step is accepted, with "
           "the finding `unconverged-step`");
 }
 
@@ -320,9 +320,9 @@ void declare(config::Section& section, MappingParameters& p) {
                {"projection", Type::projection},
                {"rbf", Type::rbf}})
       .doc(
-          "matched: every vertex and face must match one on the other side; nearest: displacements from the "
+          "matched: every vertex and face must match one on the other side. nearest: displacements from the "
           "nearest vertex, forces to the nearest face with their sum conserved, for faces that match or "
-          "nest; projection, rbf: for any faces: loads use the transpose of the motion's map, so work, "
+          "nest. projection, rbf: for any faces: loads use the transpose of the motion's map, so work, "
           "force and moment are conserved; surface slopes from neighboring faces (projection) or from a "
           "local interpolant by compact radial functions through more faces (rbf)");
   section.value("tolerance", p.tolerance)

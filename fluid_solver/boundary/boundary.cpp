@@ -300,7 +300,6 @@ void Boundary<D>::add_interface(const mesh::Patch& patch, const FaceRange& faces
     yields_ = true;
     wall_mass_.resize(interface_.size(), 0.);
     std::fill_n(wall_mass_.begin() + faces.first, faces.count, b.surface_density.value_or(0.));
-    for (Index i = 0; b.sides != Sides::apart && i < faces.count; ++i) two_sided_.push_back(faces.first + i);
   }
   if (b.impedance == Impedance::structure) {
     asks_for_mass_ = true;

@@ -11,7 +11,7 @@
 #include "common/app/program.hpp"
 #include "common/fv/expression.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
-#include "fluid_solver/state/placement.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 
@@ -139,11 +139,6 @@ class Boundary {
   /// area of each boundary face [kg/m^2], 0 if none.
   bool yields() const { return yields_; }
   const std::vector<double>& wall_mass() const { return wall_mass_; }
-  /// Boundary faces whose mass may be that of two sides. Empty in a closed domain: two sides that move as one
-  /// do not determine the pressure level, but each by itself does.
-  std::span<const Index> faces_with_two_sides() const {
-    return closed_ ? std::span<const Index>{} : std::span<const Index>(two_sided_);
-  }
   /// True if the structure provides the masses of some interface faces (`impedance: structure`).
   bool asks_for_mass() const { return asks_for_mass_; }
   /// Sets the structure's masses of boundary faces [kg/m^2] where they are asked for. Returns true if one of
@@ -204,7 +199,6 @@ class Boundary {
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;
   std::vector<double> wall_mass_, wall_load_;
-  std::vector<Index> two_sided_;
   std::vector<char> asked_;  // per boundary face: the structure provides its mass
 };
 

@@ -12,8 +12,8 @@ namespace couplet::fluid {
 
 // Judges effects of turbulence and compressibility by results of a run.
 
-/// Layers that the mesh does not resolve. `peclet`: largest cell Reynolds number. `yplus`: largest of the
-/// walls, 0 without walls. `reynolds`: from the largest speed and the hydraulic diameter.
+/// Layers that the mesh does not resolve. `peclet`: largest cell Reynolds number. `yplus`: largest y+ at
+/// the walls, 0 without walls. `reynolds`: Reynolds number of the largest speed and the hydraulic diameter.
 diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds);
 /// Eddy viscosity of a turbulence model relative to the molecular one.
 diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity);

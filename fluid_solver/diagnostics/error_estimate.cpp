@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <mpi.h>
 #include <Eigen/Dense>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,15 +10,93 @@
 
 #include "common/base/processor_clones.hpp"
 #include "common/diagnostics/error_parts.hpp"
+#include "common/fv/expression.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
-#include "fluid_solver/diagnostics/driving.hpp"
 #include "fluid_solver/diagnostics/phase_drift.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
-#include "fluid_solver/pressure/term.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
+#include "fluid_solver/pressure/pressure.hpp"
 
 namespace couplet::fluid {
+
+/// Time-dependent expressions that drive a flow: body force, motion of the mesh, velocities and pressures at boundaries. A
+/// flow that responds linearly to such an expression does not drift from it, because errors cancel over half
+/// a period. A flow coupled to a structure or with vortices may oscillate and never counts as driven.
+class Driving {
+ public:
+  explicit Driving(const FluidParameters& parameters);
+  /// True if some expression depends on time, or a mesh mover moves walls as the case says.
+  bool is_possible() const { return by_mover_ || !timed_.empty(); }
+  /// True if walls, bodies or the mesh move. These expressions then do not describe the driving completely.
+  bool moves() const { return moves_; }
+  /// True if an expression still changes over the last steps of `dt` before `time` [s] at one of the `places`
+  /// [m] of this rank, or if the mesh mover has moved the mesh in the last step. Collective over `comm`.
+  bool acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt,
+            std::span<const double> mesh_flux) const;
+
+ private:
+  std::vector<fv::Expression> timed_;
+  bool moves_ = false, by_mover_ = false;
+};
+
+namespace {
+
+constexpr int places_looked_at = 16, steps_looked_at = 16;
+constexpr double still = 1e-6;  // of the largest value: a gust that has passed, a ramp that has ended
+
+}  // namespace
+
+Driving::Driving(const FluidParameters& parameters) {
+  const auto add = [this](const config::ExpressionText& text) {
+    if (fv::Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
+  };
+  moves_ = parameters.motion || !parameters.gaps.empty();
+  for (const auto& [name, body] : parameters.bodies) moves_ = moves_ || !body.velocity.empty();
+  for (const auto& [patch, b] : parameters.boundaries) {
+    const GivenBy by = condition_of(b).velocity;
+    moves_ = moves_ || by == GivenBy::structure || by == GivenBy::motion;
+  }
+  for (const auto& [patch, b] : parameters.boundaries)
+    if (condition_of(b).velocity == GivenBy::structure) return;
+  for (const auto& [patch, b] : parameters.boundaries)
+    by_mover_ = by_mover_ || (condition_of(b).velocity == GivenBy::motion && !parameters.motion);
+  for (const auto& text : parameters.body_force) add(text);
+  if (const auto& motion = parameters.motion) {
+    for (const auto* texts : {&motion->translation, &motion->displacement})
+      for (const auto& text : *texts) add(text);
+    add(motion->angle);
+  }
+  for (const auto& [patch, b] : parameters.boundaries) {
+    for (const auto& text : b.velocity) add(text);
+    add(b.pressure);
+  }
+}
+
+bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt,
+                   std::span<const double> mesh_flux) const {
+  const auto moves = [](double flux) { return flux != 0; };
+  if (by_mover_ && parallel::any(comm, std::ranges::any_of(mesh_flux, moves))) return true;
+  double change = 0;  // largest of the expressions, each over its own largest value
+  const std::size_t stride = 1 + places.size() / places_looked_at;
+  for (const fv::Expression& e : timed_) {
+    double largest = 0, apart = 0;
+    for (std::size_t i = 0; i < places.size(); i += stride) {
+      const double now = e(places[i], time);
+      largest = std::max(largest, std::abs(now));
+      for (int k = 1; k <= steps_looked_at; ++k) {
+        const double before = e(places[i], std::max(0., time - k * dt));
+        largest = std::max(largest, std::abs(before));
+        apart = std::max(apart, std::abs(now - before));
+      }
+    }
+    largest = parallel::max(comm, largest), apart = parallel::max(comm, apart);
+    if (largest > 0) change = std::max(change, apart / largest);
+  }
+  return change > still;
+}
+
 namespace {
 
 constexpr double adams_bashforth_error = 5. / 12;
@@ -43,22 +123,16 @@ struct Fit {
   Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
 };
 
-/// Weights of the differences of the change of the rate, and of the change itself: local errors of a step, and of one that
-/// a clock drives.
-struct Weights {
-  double local = 0, of_third = 0, of_second = 0;
-};
-
 /// Divided differences of u in time: rate and its change become those of this step, u is kept, `left` gets the local errors.
 template <int D>
 struct Differences {
   std::span<const double> volume;
   const Vec<D>* now;
   Vec<D>*u, *rate, *change;
-  double per_step, per_apart;  ///< 0: there is none yet
-  Vec<D>* left;                ///< nullptr: nothing drives, or there is no third difference yet
-  const Vec<D>* carried;       ///< rates by convection, times the volume; nullptr: of other schemes
-  Weights weights;
+  double per_step, per_apart;  ///< 0 if there is none yet
+  Vec<D>* left;                ///< nullptr if nothing drives the flow, or there is no third difference yet
+  double of_third, of_second;  ///< weights in the local error of a step that a clock drives
+  const Vec<D>* carried;       ///< rates by convection, times the volume; nullptr for other schemes
 };
 /// Sums over the volume of the squares of u, its rate, the change of that and the change of that, the volume, and the squares of
 /// what is left; outflow is added later; of what is carried.
@@ -70,7 +144,7 @@ COUPLET_PROCESSOR_CLONES std::array<double, 8> renew(const Differences<D>& d) {
     const Vec<D> rate = (d.now[c] - d.u[c]) * d.per_step, change = (rate - d.rate[c]) * d.per_apart;
     const Vec<D> third = change - d.change[c];
     if (d.left) {
-      d.left[c] += d.weights.of_third * third + d.weights.of_second * change;
+      d.left[c] += d.of_third * third + d.of_second * change;
       sums[5] += volume * d.left[c].squaredNorm();
       sums[7] += d.carried ? d.carried[c].squaredNorm() / volume : volume * rate.squaredNorm();
     }
@@ -83,6 +157,39 @@ COUPLET_PROCESSOR_CLONES std::array<double, 8> renew(const Differences<D>& d) {
   }
   return sums;
 }
+
+/// Recent means of a flow's energy, and the friction that follows from them.
+class EnergyMeans {
+ public:
+  void add(double dt, const EnergyLedger& ledger) {
+    time_ += dt;
+    const double share = std::min(1., dt / (window * time_));
+    power_ += share * ((ledger.work - work_) / dt - power_);
+    const double held = std::max(0., ledger.energy);
+    gain_ += share * ((held - held_) / dt - gain_);
+    energy_ += share * (held - energy_);
+    work_ = ledger.work, held_ = held;
+  }
+  /// Time of the steps added [s].
+  double time() const { return time_; }
+  /// Dissipation rate of the work [1/s], without the flow's own decay, which reduces errors and solution
+  /// alike.
+  double friction() const {
+    // A flow that gains energy does not lose errors. In a decaying flow, the work alone would exceed the
+    // solution's decay.
+    const double taken = std::max(0., std::min(power_, power_ - gain_));
+    return energy_ > 0 ? taken / (2 * energy_) : 0;
+  }
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(time_, power_, gain_, energy_, work_, held_);
+  }
+
+ private:
+  double time_ = 0;
+  double power_ = 0, gain_ = 0, energy_ = 0;  // means: work and gain of energy [W], energy [J]
+  double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
+};
 
 /// Shares of the error in the velocity over its size, as norms over the volume. Collective.
 ///   mesh    difference of u from a linear fit through the neighbors of each cell, h^2/4 times the Laplacian
@@ -98,13 +205,12 @@ COUPLET_PROCESSOR_CLONES std::array<double, 8> renew(const Differences<D>& d) {
 template <int D>
 class FluidErrorEstimate final : public diagnostics::Diagnostic {
  public:
-  explicit FluidErrorEstimate(const FluidView<D>& view)
-      : view_(view), fluid_(view.fluid), driving_(view.parameters()) {}
+  explicit FluidErrorEstimate(const FluidView<D>& view) : view_(view), driving_(view.parameters()) {}
   void observe(diagnostics::Report&) override { accepted(view_.step.dt); }
   void conclude(diagnostics::Report& report) override { report.errors = parts(); }
   void visit(io::Archive& archive) override {
-    archive.common("numbers", seen_, judged_, dt_old_, time_, power_, gain_, energy_, work_, held_,
-                   left_of_late_, carried_, changed_, largest_, steps_, drift_);
+    archive.common("numbers", seen_, dt_old_, energy_, left_of_late_, carried_, changed_, largest_, steps_,
+                   drift_);
     for (const auto& [name, vectors] :
          {std::pair{"left", &left_}, {"rate", &rate_}, {"rate-change", &rate_change_}}) {
       const std::span<const double> numbers = flat<D>(*vectors);
@@ -115,45 +221,47 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       for (std::size_t i = 0; i < values.size(); i += D) vectors->emplace_back(values.data() + i);
     }
     if (!archive.reads() || seen_ == 0) return;
-    const Vectors<D>& u = fluid_.state().u;
-    u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
+    const Vectors<D>& u = view_.fluid.state().u;
+    u_.assign(u.begin(), u.begin() + view_.mesh.cells.n_owned());
   }
 
  private:
   // Divided differences of u at the ends of the last four steps, which have nearly equal lengths: rate, and
   // its first and second changes. Uses one loop and one reduction, so that a cheap step costs little more.
   void accepted(double dt) {
-    const auto n = std::size_t(fluid_.mesh().cells.n_owned());
+    const auto n = std::size_t(view_.mesh.cells.n_owned());
     const double apart = 0.5 * (dt + dt_old_);
     const bool knows_third = seen_ > 2;
     for (Vectors<D>* v : {&u_, &rate_, &rate_change_}) v->resize(n, Vec<D>::Zero());
     if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
-    const Weights weights = this->weights(dt, apart);
-    const State<D>& state = fluid_.state();
+    const State<D>& state = view_.fluid.state();
+    const double sub_step = dt / std::max(1, view_.fluid.statistics().sub_steps),
+                 step = dt * sub_step * sub_step;
+    const double held = energy_.friction(), less = state.implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
     const Vectors<D>& carried = state.rates_old.rate;
-    std::array<double, 8> squares = renew(
-        Differences<D>{std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
-                       rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
-                       knows_third && !left_.empty() ? left_.data() : nullptr,
-                       carried.empty() ? nullptr : carried.data(), weights});
+    std::array<double, 8> squares = renew(Differences<D>{
+        std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
+        rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
+        knows_third && !left_.empty() ? left_.data() : nullptr, less * driven_error * step / apart,
+        less * (state.implicit ? held_error : held_explicitly) * held * step,
+        carried.empty() ? nullptr : carried.data()});
     if (knows_third) {
-      for (Index f = fluid_.mesh().n_interior; f < fluid_.mesh().n_flux_faces(); ++f)
-        squares[6] += std::max(0., fluid_.state().phi[f]);
-      MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM,
-                    fluid_.mesh().comm);
+      for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
+        squares[6] += std::max(0., view_.fluid.state().phi[f]);
+      MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
       largest_ = std::max(largest_, mean(0));
-      see_energy(dt);
-      const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps);
-      drift_.add(dt, held_, mean(1), mean(2), adams_bashforth_error * sub_step * sub_step);
+      energy_.add(dt, state.ledger);
+      drift_.add(dt, std::max(0., state.ledger.energy), mean(1), mean(2),
+                 adams_bashforth_error * sub_step * sub_step);
       // Errors leave with the outflow, and are dissipated by friction.
-      const double forgotten = friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
+      const double forgotten = energy_.friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
       for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
-      const double faded = std::exp(-dt / (window * time_));
+      const double faded = std::exp(-dt / (window * energy_.time()));
       left_of_late_ = std::max(mean(5), left_of_late_ * faded);
       carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
-      steps_.add({.error = weights.local * mean(3),
+      steps_.add({.error = adams_bashforth_error * step / apart * mean(3),
                   .rate = mean(1),
                   .size = mean(0),
                   .dt = dt,
@@ -161,8 +269,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
                   .below = mean(2),
                   .highest = highest,
                   .forgotten = forgotten},
-                 judged_ ? 1 : 3);
-      judged_ = true;
+                 seen_ == 3 ? 3 : 1);
     }
     dt_old_ = dt;
     ++seen_;
@@ -170,72 +277,47 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   diagnostics::ErrorParts parts() const {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
-    const double speed = size(fluid_.state().u);
+    const double speed = size(view_.fluid.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;
-    const double falls = std::sqrt(pressure_range(view_).value_or(0) / fluid_.parameters().density);
-    const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
+    const double falls = std::sqrt(pressure_range(view_).value_or(0) / view_.parameters().density);
+    const double across = std::pow(double(view_.mesh.cells.n_global()), 1. / D);
     // A fluid at rest is so within the tolerance of its pressure.
-    const double left = fluid_.parameters().pressure_tolerance * std::sqrt(across) * falls;
+    const double left = view_.parameters().pressure_tolerance * std::sqrt(across) * falls;
     const double scale = diagnostics::scale_of(std::max({speed, largest_, left}), falls);
     parts.mesh = recovered_difference() / scale;
     parts.step = step_part() * steps_.size() / scale;
     // The trapezoidal rule also knows the divergence before.
-    const auto& known = fluid_.parameters().compressibility;
+    const auto& known = view_.parameters().compressibility;
     const bool open = known && known->scheme == WaveScheme::trapezoidal;
     parts.linear =
-        speed / scale * (open ? fluid_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
+        speed / scale * (open ? view_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
     return parts;
   }
   /// Root mean square over the volume; per local cell.
   double size(const Vectors<D>& values) const {
-    const std::vector<double>& volume = fluid_.state().placement->volume;
+    const std::vector<double>& volume = view_.fluid.state().placement->volume;
     double squares = 0, whole = 0;
-    for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
+    for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c) {
       squares += volume[c] * values[c].squaredNorm();
       whole += volume[c];
     }
-    squares = parallel::sum(fluid_.mesh().comm, squares), whole = parallel::sum(fluid_.mesh().comm, whole);
+    squares = parallel::sum(view_.mesh.comm, squares), whole = parallel::sum(view_.mesh.comm, whole);
     return whole > 0 ? std::sqrt(squares / whole) : 0;
-  }
-  Weights weights(double dt, double apart) const {
-    const double sub_step = dt / std::max(1, fluid_.statistics().sub_steps), held = friction();
-    const bool implicit = fluid_.state().implicit;
-    const double less = implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
-    return {.local = adams_bashforth_error * dt * sub_step * sub_step / apart,
-            .of_third = less * driven_error * dt * sub_step * sub_step / apart,
-            .of_second = less * (implicit ? held_error : held_explicitly) * held * dt * sub_step * sub_step};
-  }
-  void see_energy(double dt) {
-    const EnergyLedger& ledger = fluid_.state().ledger;
-    time_ += dt;
-    const double share = std::min(1., dt / (window * time_));
-    power_ += share * ((ledger.work - work_) / dt - power_);
-    const double held = std::max(0., ledger.energy);
-    gain_ += share * ((held - held_) / dt - gain_);
-    energy_ += share * (held - energy_);
-    work_ = ledger.work, held_ = held;
-  }
-  /// Dissipation rate of the work [1/s], without the flow's own decay, which reduces errors and solution
-  /// alike.
-  double friction() const {
-    // A flow that gains energy does not lose errors. In a decaying flow, the work alone would exceed the
-    // solution's decay.
-    const double taken = std::max(0., std::min(power_, power_ - gain_));
-    return energy_ > 0 ? taken / (2 * energy_) : 0;
   }
   double step_part() const {
     const double sum = steps_.over_size();
     if (!(steps_.size() > 0)) return sum;
     std::vector<Vec3> places;
-    for (const Vec3& x : fluid_.state().placement->boundary_centre) places.push_back(x);
-    const bool acts = driving_.is_possible() && driving_.acts(fluid_.mesh().comm, places, fluid_.state().time,
-                                                              dt_old_, fluid_.state().mesh_flux);
+    for (const Vec3& x : view_.fluid.state().placement->boundary_centre) places.push_back(x);
+    const bool acts =
+        driving_.is_possible() && driving_.acts(view_.mesh.comm, places, view_.fluid.state().time, dt_old_,
+                                                view_.fluid.state().mesh_flux);
     if (acts) return carried_ <= hardly * changed_ ? std::min(sum, left_of_late_ / steps_.size()) : sum;
     return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
   }
   double recovered_difference() const {
-    const State<D>& s = fluid_.state();
-    const mesh::Mesh& mesh = fluid_.mesh();
+    const State<D>& s = view_.fluid.state();
+    const mesh::Mesh& mesh = view_.mesh;
     const Placement<D>& at = *s.placement;
     std::vector<Fit<D>> fits(mesh.cells.n_local());
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
@@ -255,15 +337,15 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     return size(gap);
   }
   double net_outflow() const {
-    const State<D>& s = fluid_.state();
-    const mesh::Mesh& mesh = fluid_.mesh();
+    const State<D>& s = view_.fluid.state();
+    const mesh::Mesh& mesh = view_.mesh;
     std::vector<double> net(mesh.cells.n_local()), through(mesh.cells.n_local());
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
       net[mesh.owner[f]] += s.phi[f], through[mesh.owner[f]] += 0.5 * std::abs(s.phi[f]);
       if (f >= mesh.n_interior) continue;
       net[mesh.neighbour[f]] -= s.phi[f], through[mesh.neighbour[f]] += 0.5 * std::abs(s.phi[f]);
     }
-    if (fluid_.parameters().is_compressible()) add_compression(net);
+    if (view_.parameters().is_compressible()) add_compression(net);
     double left = 0, all = 0;
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) left += net[c] * net[c], all += through[c] * through[c];
     left = parallel::sum(mesh.comm, left), all = parallel::sum(mesh.comm, all);
@@ -271,14 +353,13 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   }
   /// Mass taken up by compression is not outflow.
   void add_compression(std::vector<double>& net) const {
-    const State<D>& s = fluid_.state();
+    const State<D>& s = view_.fluid.state();
     if (!s.pressure[1]) return;
     std::vector<double> times{s.pressure[1]->time};
     if (s.pressure[2]) times.push_back(s.pressure[2]->time);
     const WaveRule rule = three_level_rule(s.pressure[0]->time, s.time, times);
-    const double sound = fluid_.parameters().sound_speed(),
-                 bulk = fluid_.parameters().density * sound * sound;
-    for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
+    const double sound = view_.parameters().sound_speed(), bulk = view_.parameters().density * sound * sound;
+    for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c) {
       double rate = rule.rate * s.pressure[0]->p[c];
       for (std::size_t k = 0; k < times.size(); ++k) rate += rule.past[k] * s.pressure[k + 1]->p[c];
       net[c] += s.placement->volume[c] * rate / bulk;
@@ -286,18 +367,14 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   }
 
   FluidView<D> view_;
-  const Fluid<D>& fluid_;
   Vectors<D> u_, rate_, rate_change_;  // u of the last accepted step, first and second differences in time
   int seen_ = 0;                       // steps that these hold
-  bool judged_ = false;                // a step has been judged
   double dt_old_ = 0;
   time::StepErrors steps_;
   PhaseDrift drift_;
-  double time_ = 0;                           // judged so far [s]
-  double power_ = 0, gain_ = 0, energy_ = 0;  // recent means: work and gain of energy [W], energy [J]
-  double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
+  EnergyMeans energy_;
   Driving driving_;
-  Vectors<D> left_;          // sum of local errors; empty: nothing drives
+  Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
   double left_of_late_ = 0;  // norm, the largest of late
   double largest_ = 0;       // mean speed of the run [m/s]
   double carried_ = 0,
@@ -313,5 +390,66 @@ diagnostics::Made flow_error(const FluidView<D>& view) {
 
 template diagnostics::Made flow_error(const FluidView<2>&);
 template diagnostics::Made flow_error(const FluidView<3>&);
+
+namespace {
+
+constexpr double recent = 0.25;             // recent means cover about this part of the elapsed time
+constexpr double stands_out = 0.1;          // of the swing: what a maximum stands out by
+constexpr double same_maxima = 0.05;        // of the swing and of the distance: maxima that are the same
+constexpr double no_swing = 1e-9;           // of the value: no swing
+constexpr std::size_t most_maxima = 3;      // maxima in a cycle
+constexpr std::size_t compared_cycles = 3;  // that are compared
+
+}  // namespace
+
+void Repetition::add(double dt, double value) {
+  if (!std::isfinite(value)) return;
+  if (time_ == 0 && dt_ == 0) upper_ = lower_ = value, extreme_ = {0, value};
+  time_ += dt, dt_ = std::max(dt, dt_);
+  const double faded = std::min(1.0, dt / (recent * time_));
+  upper_ = std::max(value, upper_ + faded * (value - upper_));
+  lower_ = std::min(value, lower_ + faded * (value - lower_));
+  const double beyond = rises_ ? value - extreme_.height : extreme_.height - value;
+  if (beyond >= 0) {
+    extreme_ = {time_, value};
+  } else if (-beyond > stands_out * (upper_ - lower_)) {
+    if (rises_) peaks_.push_back(extreme_);
+    if (peaks_.size() > compared_cycles * most_maxima + 1) peaks_.pop_front();
+    extreme_ = {time_, value}, rises_ = !rises_;
+  }
+}
+
+bool Repetition::repeats_after(std::size_t peaks) const {
+  const std::size_t n = peaks_.size(), used = compared_cycles * peaks + 1;
+  if (n < used) return false;
+  const double swing = upper_ - lower_,
+               cycle = (peaks_[n - 1].time - peaks_[n - used].time) / compared_cycles;
+  for (std::size_t k = n - used; k + peaks < n; ++k) {
+    const Peak &now = peaks_[k], &next = peaks_[k + peaks];
+    if (std::abs(next.height - now.height) > same_maxima * swing) return false;
+    if (std::abs(next.time - now.time - cycle) > std::max(same_maxima * cycle, dt_)) return false;
+  }
+  return swing > no_swing * std::max(std::abs(upper_), std::abs(lower_));
+}
+
+bool Repetition::repeats() const {
+  for (std::size_t peaks = 1; peaks <= most_maxima; ++peaks)
+    if (repeats_after(peaks)) return true;
+  return false;
+}
+
+void PhaseDrift::add(double dt, double energy, double rate, double change, double weight) {
+  repetition_.add(dt, energy);
+  time_ += dt;
+  const double share = std::min(1.0, dt / (recent * time_));
+  rate_ += share * (rate * rate - rate_), change_ += share * (change * change - change_);
+  weighted_ += share * (weight * change * change - weighted_);
+}
+
+double PhaseDrift::error() const {
+  if (!(rate_ > 0) || !(change_ > 0) || !repetition_.repeats()) return 0;
+  const double lag = time_ * weighted_ / rate_;
+  return std::min(lag * std::sqrt(rate_), 2 * rate_ / std::sqrt(change_));
+}
 
 }  // namespace couplet::fluid

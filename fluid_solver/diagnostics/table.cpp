@@ -1,12 +1,254 @@
 // SPDX-License-Identifier: Apache-2.0
+// The table of diagnostics, and those without memory.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
+#include "fluid_solver/output/derived.hpp"
 
 namespace couplet::fluid {
+
+namespace {
+
+// Ducts become turbulent at 2300 based on the mean speed; the maximum of plane laminar flow is 3/2 of it.
+constexpr double laminar_below = 3450;
+
+/// Largest y+ at walls; 0 without walls.
+template <int D>
+double largest_yplus(const FluidView<D>& view) {
+  double largest = 0;
+  for (const mesh::Patch& patch : view.mesh.patches)
+    if (is_wall(view.parameters().boundaries.at(patch.name)))
+      largest = std::max(largest, summarise_wall(view.fluid, patch).largest_yplus);
+  return largest;
+}
+
+/// 4 times volume over wall area [m]; NaN without walls. Collective.
+template <int D>
+double hydraulic_diameter(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const Placement<D>& at = *fluid.state().placement;
+  std::array<double, 2> sums{};
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) sums[0] += at.volume[c];
+  for (const mesh::Patch& patch : mesh.patches)
+    if (is_wall(fluid.parameters().boundaries.at(patch.name)))
+      for (Index f = patch.first; f < patch.first + patch.count; ++f) sums[1] += at.area[f].norm();
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// True if the flow has no third dimension in which vortices stretch: most cells reach from one boundary to the
+/// opposite one, or across periodic patches to themselves. Collective.
+template <int D>
+bool is_plane(const FluidView<D>& view) {
+  if (D == 2) return true;
+  constexpr double opposite = -0.9;  // cosine of two outward normals
+  const mesh::Mesh& mesh = view.mesh;
+  const Index owned = mesh.cells.n_owned();
+  std::vector<char> spans(owned, 0);
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    if (mesh.owner[f] < owned && mesh.cell_id[mesh.owner[f]] == mesh.cell_id[mesh.neighbour[f]])
+      spans[mesh.owner[f]] = 1;
+  std::vector<std::pair<Index, Index>> faces;  // by cell
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) faces.emplace_back(mesh.owner[f], f);
+  std::ranges::sort(faces);
+  const Vectors<D>& area = view.fluid.state().placement->area;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t j = i + 1; j < faces.size() && faces[j].first == faces[i].first; ++j) {
+      const Vec<D>&a = area[faces[i].second], &b = area[faces[j].second];
+      if (a.dot(b) < opposite * a.norm() * b.norm()) spans[faces[i].first] = 1;
+    }
+  const auto deep = parallel::sum(mesh.comm, double(std::ranges::count(spans, char(1))));
+  return 2 * deep > double(mesh.cells.n_global());
+}
+
+/// Largest eddy viscosity over the molecular one.
+template <int D>
+double eddy_viscosity(const FluidView<D>& view) {
+  double largest = 0;
+  for (const double eddy : view.fluid.state().eddy) largest = std::max(largest, eddy);
+  return parallel::max(view.mesh.comm, largest) * view.parameters().density / view.parameters().viscosity;
+}
+
+}  // namespace
+
+// Free layers are as thin as at their origin. A mesh that resolves the wall layers (y+ up to 1) also resolves
+// those shed from them, and the cell Reynolds number outside says little. Flow that remains laminar near
+// walls needs no turbulence model; other mesh errors are in the estimated error.
+diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds) {
+  const double limit = yplus > 0 && yplus <= 1 ? 250 : 50;
+  diagnostics::EffectFinding e{
+      .effect = "turbulence model",
+      .number = peclet,
+      .limit = limit,
+      .what = fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", peclet, yplus),
+      .advice =
+          dimension == 2
+              ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence', "
+                "'dimension: 3' and many cells in each direction"
+              : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is "
+                "turbulent"};
+  if (peclet > limit && reynolds < laminar_below) {
+    e.number = reynolds, e.limit = laminar_below, e.share = 0;
+    e.what = fmt::format("Reynolds number (max speed, hydraulic diameter) = {:.3g}: laminar; {}", reynolds,
+                         e.what);
+  } else {
+    // The thickness of the layer scales with the inverse root of the number, which gives the share that a coarse mesh misses.
+    e.share = peclet > limit ? 1 - std::sqrt(limit / peclet) : 0;
+  }
+  return e;
+}
+
+// Energy passes to smaller eddies by vortex stretching, which is absent in 2-D and on a mesh one cell deep. There the models only add
+// friction, and layers thicken with the square root of the viscosity.
+diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
+  diagnostics::EffectFinding e{
+      .effect = dimension == 3 ? "turbulence model" : "eddy viscosity in two dimensions",
+      .number = eddy_viscosity,
+      .limit = 0.01,
+      .what = fmt::format("max eddy viscosity = {:.2g} of the molecular", eddy_viscosity),
+      .left_out = false};
+  if (dimension == 3 || eddy_viscosity <= e.limit) {
+    e.is_spare = true;
+    e.saves = 0.3;  // of a step, at least (32 x 32 squares to 8 x 8 x 8 cubes)
+    return e;
+  }
+  e.advice =
+      "vortices in two dimensions do not stretch, so it models no turbulence: omit 'turbulence', or use 'dimension: 3' "
+      "and many cells in each direction";
+  e.share = 1 - 1 / std::sqrt(1 + eddy_viscosity);
+  return e;
+}
+
+diagnostics::EffectFinding unresolved_walls(double yplus, double peclet) {
+  return {.effect = "resolved walls",
+          .number = yplus,
+          .limit = 2,
+          .what = fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}", yplus, peclet),
+          .advice = "there is no wall function: refine at the walls to y+ of about 1",
+          .left_out = false};
+}
+
+// A 2-D model does not resolve what is missing without it.
+template <int D>
+std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
+  const FluidParameters& p = view.parameters();
+  const int dimension = is_plane(view) ? 2 : 3;
+  if (p.turbulence && dimension == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
+  const double reynolds = p.density * largest_speed(view) * hydraulic_diameter(view.fluid) / p.viscosity;
+  return diagnostics::finding_of(unresolved_layers(dimension, view.sizes.largest_peclet(view.fluid.state()),
+                                                   largest_yplus(view), reynolds));
+}
+
+template <int D>
+std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<D>& view) {
+  if (!view.parameters().turbulence || !is_plane(view)) return {};
+  return diagnostics::finding_of(eddies(2, eddy_viscosity(view)));
+}
+
+template <int D>
+std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view) {
+  if (!view.parameters().turbulence) return {};
+  return diagnostics::finding_of(
+      unresolved_walls(largest_yplus(view), view.sizes.largest_peclet(view.fluid.state())));
+}
+
+// Walls that move on a mesh at rest, and gaps that block the flow.
+
+namespace {
+
+/// Largest sum |w . S| / sum |w| |S| of the moving walls of a fixed mesh; NaN without motion. Collective.
+template <int D>
+double through_moving_walls(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  double worst = std::numeric_limits<double>::quiet_NaN();
+  for (const mesh::Patch& patch : mesh.patches) {
+    if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
+    double through = 0, size = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec<D>& w = s.w[f - mesh.n_interior];
+      through += std::abs(w.dot(s.placement->area[f]));
+      size += w.norm() * s.placement->area[f].norm();
+    }
+    through = parallel::sum(mesh.comm, through), size = parallel::sum(mesh.comm, size);
+    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
+  }
+  return worst;
+}
+
+}  // namespace
+
+template <int D>
+std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {
+  if (view.fluid.moving() || !view.stands_still()) return {};
+  // A wall that moves by d changes the resistance of a channel of height H by 3 d/H; half of it with six cells over H.
+  return diagnostics::finding_of(
+      {.effect = "mesh motion",
+       .number = view.wall_displacement,
+       .limit = 0.1,
+       .what =
+           fmt::format("max interface displacement / adjacent cell height = {:.2g}", view.wall_displacement),
+       .advice = "add a mesh mover: 'coupling: {mesh: {participant: ...}}'",
+       .share = std::min(1., 0.5 * view.wall_displacement)});
+}
+
+// A wall with normal motion on a mesh at rest acts as an inlet.
+template <int D>
+std::optional<diagnostics::Finding> walls_along_themselves(const FluidView<D>& view) {
+  bool has_moving_wall = false;
+  for (const auto& [name, b] : view.parameters().boundaries) has_moving_wall |= is_moving_wall(b);
+  if (view.fluid.moving() || !has_moving_wall) return {};
+  const double through = through_moving_walls(view.fluid);
+  return diagnostics::finding_of(
+      {.effect = "walls that move along themselves",
+       .number = through,
+       .limit = 0.1,
+       .what = fmt::format("a moving wall has a normal velocity of {:.2g} times its speed", through),
+       .advice =
+           "its mesh is at rest, so fluid crosses the wall: use a tangential velocity, make it an inlet, "
+           "or move it with 'motion'",
+       .left_out = false});
+}
+
+template <int D>
+std::optional<diagnostics::Finding> blocked_cells(const FluidView<D>& view) {
+  if (!view.fluid.gaps()) return {};
+  double blocked = 0;
+  for (const auto& gap : view.fluid.gaps()->facts()) blocked += gap.cells;
+  blocked /= double(view.mesh.cells.n_global());
+  return diagnostics::finding_of({.effect = "gaps that close",
+                                  .number = blocked,
+                                  .limit = 0.5,
+                                  .what = fmt::format("blocked by gaps: {:.2g} of all cells", blocked),
+                                  .advice = "is 'opening' in meters, and smaller than the channel?",
+                                  .left_out = false});
+}
+
+// The guard stops fast growth; this reports slow growth.
+template <int D>
+std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
+  const EnergyLedger& ledger = view.fluid.state().ledger;
+  if (!ledger.is_judged()) return {};
+  const double excess = ledger.excess / ledger.reference;
+  return diagnostics::finding_of(
+      {.effect = "balance of the kinetic energy",
+       .number = excess,
+       .limit = 0.1,
+       .what =
+           fmt::format("kinetic energy without work of boundaries or forces = {:.2g} of the total", excess),
+       .advice = "the time scheme generates it: remove 'time-step' or reduce it",
+       .left_out = false,
+       .wrong_from = 0.5});
+}
 
 #define FINDING(about, id, meaning)
 #define LOOK(name, function) \

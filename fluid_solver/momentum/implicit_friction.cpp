@@ -1,12 +1,208 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/momentum/implicit_friction.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/processor_clones.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
+
+namespace {
+
+/// `Width`: entries per row if known at compile time; 0 means a.width.
+template <int D, int Width>
+[[gnu::always_inline]] inline double multiply_rows(const ViscousRows& a, const Vectors<D>& x, Vectors<D>& y) {
+  const Index width = Width > 0 ? Width : a.width;
+  const Index* column = a.column.data();
+  const double* value = a.value.data();
+  double sum = 0;
+  for (Index c = 0, end = a.size(); c < end; ++c, column += width, value += width) {
+    Vec<D> row = a.diagonal[c] * x[c];
+    for (Index e = 0; e < width; ++e) row += value[e] * x[column[e]];
+    y[c] = row;
+    sum += row.dot(x[c]);
+  }
+  return sum;
+}
+
+/// y = A x; returns x.y over the owned cells. `x`: vector per local cell, with ghosts current.
+template <int D>
+COUPLET_PROCESSOR_CLONES double multiply(const ViscousRows& a, const Vectors<D>& x, Vectors<D>& y) {
+  switch (a.width) {
+    case 3:
+      return multiply_rows<D, 3>(a, x, y);
+    case 4:
+      return multiply_rows<D, 4>(a, x, y);
+    case 6:
+      return multiply_rows<D, 6>(a, x, y);
+    default:
+      return multiply_rows<D, 0>(a, x, y);
+  }
+}
+
+/// A step of CG: u += alpha s, r -= alpha q; returns r.r.
+COUPLET_PROCESSOR_CLONES double go_along(double alpha, std::span<const double> s, std::span<const double> q,
+                                         std::span<double> u, std::span<double> r) {
+  std::array<double, 4> sums{};  // side by side, for one register
+  std::size_t i = 0;
+  for (; i + 4 <= s.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) {
+      u[i + k] += alpha * s[i + k];
+      r[i + k] -= alpha * q[i + k];
+      sums[k] += r[i + k] * r[i + k];
+    }
+  for (; i < s.size(); ++i) {
+    u[i] += alpha * s[i];
+    r[i] -= alpha * q[i];
+    sums[0] += r[i] * r[i];
+  }
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+/// The next search direction: s = r + gamma s.
+COUPLET_PROCESSOR_CLONES void turn_search(double gamma, std::span<const double> r, std::span<double> s) {
+  for (std::size_t i = 0; i < s.size(); ++i) s[i] = r[i] + gamma * s[i];
+}
+
+constexpr int most_iterations = 2000;
+
+}  // namespace
+
+ViscousRows::ViscousRows(const mesh::Mesh& mesh) : diagonal(mesh.cells.n_owned()) {
+  const Index owned = mesh.cells.n_owned();
+  std::vector<Index> count(owned, 0);
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    for (const Index c : {mesh.owner[f], mesh.neighbour[f]})
+      if (c < owned) width = std::max(width, ++count[c]);
+  const std::size_t entries = static_cast<std::size_t>(owned) * width;
+  column.resize(entries), face.assign(entries, -1), value.assign(entries, 0.0);
+  for (std::size_t e = 0; e < entries; ++e) column[e] = static_cast<Index>(e / width);
+  count.assign(owned, 0);
+  const auto add = [&](Index from, Index to, Index f) {
+    if (from >= owned) return;
+    const std::size_t e = static_cast<std::size_t>(from) * width + count[from]++;
+    column[e] = to, face[e] = f;
+  };
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    add(mesh.owner[f], mesh.neighbour[f], f);
+    add(mesh.neighbour[f], mesh.owner[f], f);
+  }
+}
+
+/// a_->diagonal excludes the boundary, inverse_diagonal_ includes it.
+template <int D>
+void ViscousSolver<D>::set_diagonal(const EddyShare& eddies) {
+  const Placement<D>& at = *at_;
+  std::copy_n(at.volume.begin(), a_->size(), a_->diagonal.begin());
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double entry = (beta_ + eddies.at(p, n)) * at.conductance[f];
+    for (const Index c : {p, n})
+      if (c < a_->size()) a_->diagonal[c] += entry;
+  }
+  inverse_diagonal_ = a_->diagonal;
+  boundary_rows_.clear();
+  const FaceRows& given = boundary_.rows();
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const Index b = f - mesh_.n_interior;
+    const double a = beta_ * at.conductance[f], t = given.friction(at, b, f);
+    inverse_diagonal_[mesh_.owner[f]] += a;
+    boundary_rows_.push_back(
+        {mesh_.owner[f], a * t, a * (1 - given.pressure[b] - t), at.area[f].normalized()});
+  }
+  for (double& value : inverse_diagonal_) value = 1 / value;
+}
+
+template <int D>
+void ViscousSolver<D>::set_entries(const EddyShare& eddies) {
+  scale_.resize(mesh_.cells.n_local());
+  for (Index c = 0; c < a_->size(); ++c) {
+    scale_[c] = std::sqrt(inverse_diagonal_[c]);
+    a_->diagonal[c] *= inverse_diagonal_[c];
+  }
+  mesh_.cells.update_ghosts(scale_);
+  std::size_t e = 0;
+  for (Index c = 0; c < a_->size(); ++c)
+    for (const std::size_t end = e + a_->width; e < end; ++e)
+      if (const Index f = a_->face[e]; f >= 0)
+        a_->value[e] =
+            -(beta_ + eddies.at(c, a_->column[e])) * at_->conductance[f] * scale_[c] * scale_[a_->column[e]];
+}
+
+template <int D>
+void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies) {
+  // Equal on all ranks, because each step of a moving mesh has its own placement.
+  if (at == at_ && beta == beta_ && !eddies.eddy && !with_eddies_) return;
+  at_ = std::move(at);
+  beta_ = beta;
+  with_eddies_ = eddies.eddy;
+  if (!a_) a_ = std::make_unique<ViscousRows>(mesh_);
+  set_diagonal(eddies);
+  set_entries(eddies);
+}
+
+/// Returns x.y of this rank.
+template <int D>
+double ViscousSolver<D>::apply(Vectors<D>& x, Vectors<D>& y) const {
+  mesh_.cells.update_ghosts(flat<D>(x), D);
+  double sum = multiply(*a_, x, y);
+  for (const BoundaryRow& row : boundary_rows_) {
+    const Vec<D> part = inverse_diagonal_[row.cell] * row.times(x[row.cell]);
+    y[row.cell] += part;
+    sum += part.dot(x[row.cell]);
+  }
+  return sum;
+}
+
+template <int D>
+int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u) {
+  const Index owned = mesh_.cells.n_owned();
+  for (Vectors<D>* each : {&x_, &r_, &q_, &search_}) each->resize(u.size());
+  for (std::size_t face = 0; face < boundary_rows_.size(); ++face)
+    b[boundary_rows_[face].cell] += boundary_rows_[face].times(w[face]);
+  for (Index c = 0; c < owned; ++c) x_[c] = u[c] / scale_[c];
+  apply(x_, q_);
+  double sums[2] = {};  // b.D^-1 b, r.D^-1 r
+  for (Index c = 0; c < owned; ++c) {
+    const Vec<D> scaled = scale_[c] * b[c];
+    search_[c] = r_[c] = scaled - q_[c];
+    sums[0] += scaled.squaredNorm();
+    sums[1] += r_[c].squaredNorm();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const double goal = tolerance * tolerance * sums[0];
+  const std::size_t n = static_cast<std::size_t>(owned) * D;
+  double rr = sums[1];
+  int iterations = 0;
+  while (rr > goal && iterations < most_iterations) {
+    ++iterations;
+    const double curvature = parallel::sum(mesh_.comm, apply(search_, q_));
+    if (!(curvature > 0)) break;
+    const double next =
+        parallel::sum(mesh_.comm, go_along(rr / curvature, flat<D>(search_).first(n), flat<D>(q_).first(n),
+                                           flat<D>(x_).first(n), flat<D>(r_).first(n)));
+    turn_search(next / std::exchange(rr, next), flat<D>(r_).first(n), flat<D>(search_).first(n));
+  }
+  // The tolerance cannot be below the round-off of b; slightly above counts as solved.
+  if (!(rr <= std::max(goal, 1e-26 * sums[0])))
+    throw SolveFailure(
+        "The implicit viscous solve did not converge: residual {:.3e} of {:.3e} after {} iterations. {}",
+        std::sqrt(rr), std::sqrt(sums[0]), iterations,
+        largest_entry(find_largest(mesh_, *at_, [&](Index c) { return b[c].norm(); })));
+  for (Index c = 0; c < owned; ++c) u[c] = scale_[c] * x_[c];
+  mesh_.cells.update_ghosts(flat<D>(u), D);
+  return iterations;
+}
+
+template class ViscousSolver<2>;
+template class ViscousSolver<3>;
+
 namespace {
 
 constexpr int most_passes = 60, passes_alone = 4;

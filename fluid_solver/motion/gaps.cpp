@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/motion/gaps.hpp"
+#include "fluid_solver/motion/obstacles.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -36,12 +36,9 @@ class RunningStatistics {
   /// <u'v'> in 2-D; <u'v'>, <u'w'>, <v'w'> in 3-D, per cell [m^2/s^2].
   std::vector<double> reynolds_shear() const;
 
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  void visit(io::Archive archive);
 
  private:
-  template <class Self, class Use>
-  static void visit(Self& self, const Use& use);
   void add(std::size_t entry, const Vec<D>& velocity, double dt);
   void add_pressure(std::size_t entry, double pressure, double dt);
 

@@ -9,10 +9,12 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/io/probes/place_search.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/output/derived.hpp"
 
 namespace couplet::fluid {
+
 namespace {
 
 std::vector<std::string> columns_of(const std::vector<Quantity>& quantities) {
@@ -159,5 +161,151 @@ void FluidOutput<D>::write_samples(double time, const RunningStatistics<D>* stat
 
 template class FluidOutput<2>;
 template class FluidOutput<3>;
+
+template <int D>
+PointValues<D>::PointValues(const Fluid<D>& fluid, const mesh::Geometry& geometry)
+    : fluid_(fluid),
+      interpolation_(fluid.mesh(), geometry,
+                     std::vector<fv::PatchStencil>(fluid.mesh().patches.size(), fv::PatchStencil::open)) {}
+
+template <int D>
+void PointValues<D>::follow() {
+  const State<D>& s = fluid_.state();
+  if (fluid_.moving()) interpolation_.update(mesh::compute_geometry(fluid_.mesh(), s.points));
+}
+
+template <int D>
+void PointValues<D>::fill(const Quantities<D>& quantities, std::span<const io::Probe> probes,
+                          std::span<double> values) const {
+  const mesh::Mesh& mesh = fluid_.mesh();
+  const int width = quantities.width();
+  int first = 0;
+  for (const Quantity& q : quantities.all()) {
+    std::vector<double> boundary(q.boundary.begin(), q.boundary.end());
+    boundary.resize(std::size_t(mesh.boundary.n_local()) * q.components, 0.0);
+    mesh.boundary.update_ghosts(boundary, q.components);
+    for (const io::Probe& probe : probes)
+      for (const Index point : probe.points()) {
+        double* at = values.data() + std::size_t(point) * width + first;
+        if (q.components == D) {
+          const Vec<D> value = interpolation_.template scalar_at<D>(point, q.cells, boundary);
+          std::copy_n(value.data(), D, at);
+        } else {
+          *at = interpolation_.template scalar_at<1>(point, q.cells, boundary)[0];
+        }
+      }
+    first += q.components;
+  }
+}
+
+Sample::Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
+               const SampleParameters& p)
+    : name_(std::move(name)) {
+  const int rows = p.type == SampleParameters::Type::plane ? p.rows : 1;
+  const io::PlaceSearch search(mesh, places);
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < p.points; ++i) {
+      const double s = double(i) / (p.points - 1), r = rows > 1 ? double(j) / (rows - 1) : 0.0;
+      auto probe = io::Probe::in(search, p.from + s * (p.to - p.from) + r * (p.up - p.from));
+      if (!probe) continue;  // on all ranks
+      probes_.push_back(*std::move(probe));
+      along_.push_back({s, r});
+    }
+  if (probes_.empty()) try {
+      io::Probe(mesh, places, name_, p.from);
+    } catch (const Error& outside) {
+      throw Error("output.samples.{}: none of its points is in the mesh. {}", name_, outside.what());
+    }
+  const auto asked = std::size_t(p.points) * std::size_t(rows);
+  if (probes_.size() < asked && parallel::comm_rank(mesh.comm) == 0)
+    log::info("output.samples.{}: {} of {} points are outside the mesh and are omitted", name_,
+              asked - probes_.size(), asked);
+}
+
+std::vector<double> Sample::gather(MPI_Comm comm, std::span<const double> at_points, int components) const {
+  std::vector<double> values(probes_.size() * components, 0.0);
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    const io::Probe& probe = probes_[k];
+    for (std::size_t i = 0; i < probe.points().size(); ++i)
+      for (int c = 0; c < components; ++c)
+        values[k * components + c] +=
+            probe.weights()[i] * at_points[std::size_t(probe.points()[i]) * components + c];
+  }
+  const bool root = parallel::comm_rank(comm) == 0;  // all ranks but one bring zeros
+  MPI_Reduce(root ? MPI_IN_PLACE : values.data(), values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
+             MPI_SUM, 0, comm);
+  if (!root) values.clear();
+  return values;
+}
+
+template class PointValues<2>;
+template class PointValues<3>;
+
+/// Per owned boundary face; vectors of D values each.
+template <int D>
+struct FluidSurfaces<D>::Faces {
+  std::vector<double> traction, shear, yplus;
+};
+
+template <int D>
+FluidSurfaces<D>::FluidSurfaces(const Fluid<D>& fluid)
+    : fluid_(fluid),
+      series_(fluid.mesh(), fluid.points_at_rest(), fluid.parameters().output.surfaces, "output.surfaces") {}
+
+// Forces equal those of forces.csv, and so does their sum.
+template <int D>
+typename FluidSurfaces<D>::Faces FluidSurfaces<D>::faces() const {
+  const mesh::Mesh& mesh = fluid_.mesh();
+  const std::size_t n = mesh.boundary.n_owned();
+  const auto units = wall_units(fluid_);
+  Faces faces{std::vector<double>(n * D), std::vector<double>(n * D), std::vector<double>(n)};
+  for (std::size_t b = 0; b < n; ++b) {
+    const Vec<D>& area = fluid_.state().placement->area[mesh.n_interior + static_cast<Index>(b)];
+    const double size = area.norm();
+    const Vec<D> normal = area / size, &friction = fluid_.viscous_force()[b];
+    Eigen::Map<Vec<D>>(faces.traction.data() + b * D) = (fluid_.pressure_force()[b] + friction) / size;
+    Eigen::Map<Vec<D>>(faces.shear.data() + b * D) = (friction - friction.dot(normal) * normal) / size;
+    faces.yplus[b] = units[b][1];
+  }
+  return faces;
+}
+
+/// Per boundary face; empty if no coefficients use this patch, else those of the first by name.
+template <int D>
+std::vector<double> FluidSurfaces<D>::pressure_coefficient(const mesh::Patch& patch,
+                                                           std::span<const double> pressure) const {
+  for (const auto& [name, c] : fluid_.parameters().output.coefficients) {
+    if (std::ranges::find(c.patches, patch.name) == c.patches.end()) continue;
+    const double q = 0.5 * fluid_.parameters().density * c.speed * c.speed;
+    std::vector<double> result(pressure.begin(), pressure.end());
+    for (double& value : result) value = (value - c.pressure) / q;
+    return result;
+  }
+  return {};
+}
+
+template <int D>
+void FluidSurfaces<D>::write(double time, const FluidContext& context) {
+  const auto pressure = fluid_.pressure();
+  if (!pressure || fluid_.pressure_force().empty()) return;
+  if (!is_open_) series_.open(context.output_folder, fluid_.moving(), context.restart_time);
+  is_open_ = true;
+  const Faces all = faces();
+  using Place = io::OutputField::Place;
+  for (std::size_t i = 0; i < series_.patches().size(); ++i) {
+    const mesh::Patch& patch = *series_.patches()[i];
+    std::vector<io::OutputField> fields{{"pressure", "Pa", Place::cells, 1, pressure->boundary},
+                                        {"traction", "Pa", Place::cells, D, all.traction},
+                                        {"wall-shear", "Pa", Place::cells, D, all.shear}};
+    if (is_wall(fluid_.parameters().boundaries.at(patch.name)))
+      fields.push_back({"y-plus", "-", Place::cells, 1, all.yplus});
+    const std::vector<double> cp = pressure_coefficient(patch, pressure->boundary);
+    if (!cp.empty()) fields.push_back({"pressure-coefficient", "-", Place::cells, 1, cp});
+    series_.write(i, time, fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest(), fields);
+  }
+}
+
+template class FluidSurfaces<2>;
+template class FluidSurfaces<3>;
 
 }  // namespace couplet::fluid

@@ -13,7 +13,7 @@
 #include "common/base/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/state/placement.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 

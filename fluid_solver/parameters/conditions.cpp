@@ -35,7 +35,7 @@ void declare_ramp(config::Section& s, BoundaryParameters& b) {
       .unit("s")
       .plausible(1e-12, 1e10)
       .positive()
-      .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
+      .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; default: no ramp");
 }
 
 void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
@@ -54,7 +54,7 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
       "velocity from a file, instead of 'velocity'");
   s.optional_section<RotationParameters>(
       "rotation", b.rotation, declare_rotation,
-      "omega x (r - centre) added to the other velocity: a rotating inlet or wall; absent: none");
+      "omega x (r - centre) added to the other velocity: a rotating inlet or wall; default: none");
 }
 
 void declare_absorbing(config::Section& s, BoundaryParameters& b) {
@@ -71,7 +71,7 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
       .plausible(1e-9, 1e4)
       .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
-      .doc("for mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disk in 3-D");
+      .doc("for mean-speed. parabolic: zero at the rim of the patch, a straight line in 2-D, a disk in 3-D");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   declare_absorbing(s, b);
@@ -132,26 +132,13 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
           "mass per area of the structure behind the wall: the pressure equation then anticipates "
           "its response (Robin condition), with `coupling.order: structure-first`; the density of a "
           "solid times its thickness, or less: too small costs passes, too large may diverge; "
-          "absent: the wall moves as the coupling prescribes");
+          "default: the wall moves as the coupling prescribes");
   s.choice("impedance", b.impedance, {{"given", Impedance::given}, {"structure", Impedance::structure}})
       .doc(
-          "source of the surface density: given: `surface-density`, if present; structure: the "
+          "source of the surface density: given: `surface-density`, if present. structure: the "
           "structure itself, for each face (solid_solver with `interface: {surface-density: true}`, "
           "plate_modal with `surface-density: true`, or any program that gives 'surface-density' "
           "[kg/m^2] at its faces)");
-  s.choice("sides", b.sides,
-           {{"auto", Sides::automatic}, {"together", Sides::together}, {"apart", Sides::apart}})
-      .doc(
-          "Robin condition of faces that lie opposite each other, on two wet sides of one body no thicker than a "
-          "quarter of the interface's extent: together: one motion, driven by the difference of their pressures, with "
-          "the mass of both, refused where there are none, and in a fluid without an outlet; apart: each for itself, for a body that a pressure wave needs more than a step to cross; auto: together where that is possible");
-  s.check(
-      [&b] {
-        return b.sides != Sides::automatic && !b.foresees()
-                   ? "there is no Robin condition here: set 'surface-density' or 'impedance: structure', or remove the key"
-                   : "";
-      },
-      "sides");
   s.check(
       [&b] {
         return b.surface_density && b.impedance == Impedance::structure

@@ -44,13 +44,13 @@ const std::array cards{
     FluidCard{"balance of the kinetic energy", "always", [](const S&) { return std::string("always"); },
               "a loop over the boundary", "kinetic energy without work, of the total, 0.1", true},
     FluidCard{"compressibility", "not available here", [](const S&) { return std::string(); }, "",
-              "max speed over the speed of sound (`compressibility`, or by density and viscosity), 0.3"},
+              "max speed over the speed of sound (`compressibility`, or by density and viscosity)"},
     FluidCard{
         "waves of pressure", "`compressibility`",
         [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); },
         "three pressures per cell in the right side of the pressure equation, whose matrix changes with the step",
-        "density change by the pressure range, 0.05; for moving walls: compressed over displaced volume, "
-        "0.1, and travel time of sound across the fluid over 1/omega of walls and of what is prescribed, 0.3"},
+        "density change by the pressure range; for moving walls: compressed over displaced volume, "
+        "and travel time of sound across the fluid over 1/omega of walls and of what is prescribed"},
     FluidCard{"small changes of density", "`compressibility`",
               [](const S& s) { return when(s.parameters.is_compressible(), "compressibility"); }, "",
               "with `compressibility`: density change by the pressure range, 0.05", true},
@@ -58,7 +58,7 @@ const std::array cards{
         "mesh motion", "a mesh mover in `coupling.mesh`, or `motion`",
         [](const S& s) { return when(s.moving_mesh, s.parameters.motion ? "motion" : "coupling.mesh"); },
         "points, swept volumes, geometry of each step; without `motion` the process mesh_mover",
-        "for an interface: max displacement over the cell height, 0.1"},
+        "for an interface: max displacement over the cell height"},
     FluidCard{"moving frame", "`motion` with only a `translation`",
               [](const S& s) {
                 return when(s.parameters.motion && s.parameters.motion->translates(), "motion.translation");

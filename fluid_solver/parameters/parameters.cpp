@@ -2,6 +2,7 @@
 #include "fluid_solver/parameters/parameters.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,130 @@
 #include "common/mesh/periodic_points.hpp"
 
 namespace couplet::fluid {
+
+namespace {
+
+constexpr GradientField fields[] = {
+    {"vorticity", "1/s", "field of the curl of the velocity [1/s]", true,
+     [](const Tensor3& g) { return Vec3(g(2, 1) - g(1, 2), g(0, 2) - g(2, 0), g(1, 0) - g(0, 1)); }},
+    // -g:g^T/2 for a field free of divergence
+    {"q-criterion", "1/s^2", "field of Q = (|W|^2 - |S|^2)/2 [1/s^2]: positive in vortices", false,
+     [](const Tensor3& g) { return Vec3(-0.5 * (g * g).trace(), 0, 0); }},
+    {"shear-rate", "1/s",
+     "field of the shear rate (2 S:S)^(1/2), S the strain rate [1/s]: |du/dy| in a shear flow", false,
+     [](const Tensor3& g) { return Vec3((g + g.transpose()).norm() / std::sqrt(2.0), 0, 0); }}};
+
+}  // namespace
+
+std::span<const GradientField> gradient_fields() { return fields; }
+
+// Keys of the section `output`.
+
+namespace {
+
+void declare_coefficients(config::Section& s, CoefficientParameters& c) {
+  s.value("patches", c.patches).required().doc("walls whose forces are summed");
+  s.value("speed", c.speed)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .positive()
+      .required()
+      .doc("U of the dynamic pressure q = rho U^2 / 2");
+  s.value("area", c.area)
+      .unit("m^2")
+      .plausible(1e-14, 1e7)
+      .positive()
+      .required()
+      .doc("A: force over q A; in 2-D a length times 1 m");
+  s.value("length", c.length).unit("m").plausible(1e-9, 1e4).positive().doc("L: moment over q A L");
+  s.value("pressure", c.pressure)
+      .unit("Pa")
+      .plausible(1e-9, 1e9)
+      .doc("p_ref of Cp = (p - p_ref) / q at these walls, written where 'surfaces' names them");
+  s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
+  s.value("lift", c.lift).doc("direction of the second coefficient");
+  s.value("centre", c.centre).unit("m").plausible(1e-9, 1e4).doc("fixed reference point of the moment");
+  s.value("axis", c.axis).size(3).doc("axis of the moment; in 2-D z");
+  const auto needs_direction = [&s](const char* key, const auto& value) {
+    s.check([&value] { return value.norm() > 0 ? "" : "a direction must not be zero"; }, key);
+  };
+  needs_direction("drag", c.drag);
+  needs_direction("lift", c.lift);
+  needs_direction("axis", c.axis);
+  s.check(
+      [&c] {
+        return c.drag.normalized().cross(c.lift.normalized()).norm() > 1e-6
+                   ? ""
+                   : "it is along 'drag'; both coefficients would be of the same force";
+      },
+      "lift");
+}
+
+void declare_sample(config::Section& s, SampleParameters& p) {
+  using Type = SampleParameters::Type;
+  const auto line = [&p](config::Section& v) {
+    v.value("from", p.from)
+        .unit("m")
+        .plausible(1e-9, 1e4)
+        .required()
+        .doc("first end, in the reference configuration");
+    v.value("to", p.to).unit("m").plausible(1e-9, 1e4).required().doc("other end");
+    v.value("points", p.points).range(2, 100000).doc("number of points, ends included");
+    v.check([&p] { return p.from == p.to ? "'from' and 'to' coincide" : ""; }, "to");
+  };
+  const auto plane = [&p, line](config::Section& v) {
+    line(v);
+    v.value("up", p.up)
+        .unit("m")
+        .plausible(1e-9, 1e4)
+        .required()
+        .doc("third corner: the plane is from-to by from-up");
+    v.value("rows", p.rows).range(2, 10000).doc("number of points along from-up");
+    v.check(
+        [&p] { return (p.to - p.from).cross(p.up - p.from).norm() > 0 ? "" : "the corners lie on one line"; },
+        "up");
+  };
+  s.variant("type", p.type, {{"line", Type::line, line}, {"plane", Type::plane, plane}},
+            "line: points from one end to the other; plane: a grid of points", true);
+}
+
+}  // namespace
+
+void declare_output(config::Section& s, FluidOutputParameters& p) {
+  for (const GradientField& field : gradient_fields())
+    s.value(field.name, p.gradient_fields[field.name]).doc(field.meaning);
+  s.value("walls", p.walls)
+      .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
+  s.value("fluxes", p.fluxes)
+      .doc(
+          "fluxes.csv: volume and momentum that pass through each patch out of the fluid (a load is a flux of momentum), mean "
+          "pressure");
+  s.value("surfaces", p.surfaces)
+      .doc(
+          "patches, or [all]: surface-<patch>.xdmf with pressure, traction, wall shear, y+ at walls, and Cp at walls that "
+          "'coefficients' names, at each output");
+  s.map<CoefficientParameters>(
+      "coefficients", p.coefficients, declare_coefficients, "name",
+      "coefficients.csv: force and moment coefficients of some walls, means over the step");
+  s.map<FlowAreaParameters>(
+      "flow-areas", p.flow_areas,
+      [](config::Section& area, FlowAreaParameters& a) {
+        area.value("from", a.from).required().doc("patch where the flow enters");
+        area.value("to", a.to).required().doc("patch where it leaves");
+        area.check([&a] { return a.from == a.to ? "'from' and 'to' are the same patch" : ""; }, "to");
+      },
+      "name",
+      "flow-areas.csv: effective flow area between two patches, m/sqrt(2 rho (p_from - p_to)) with the mass flow m and mean "
+      "pressures");
+  s.map<SampleParameters>(
+      "samples", p.samples, declare_sample, "name",
+      "sample-<name>.csv: velocity and pressure (with 'statistics' their means and rms) on a line or plane "
+      "at each output; the points move with the mesh, and points outside it are omitted");
+  s.value("energy-budget", p.energy_budget)
+      .doc(
+          "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "
+          "it");
+}
 
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
   std::map<std::string, std::string> partner_of;
@@ -36,8 +161,8 @@ void declare_gap(config::Section& s, GapParameters& gap) {
       .plausible(1e-9, 1e4)
       .doc(
           "height of the seat, the second wall, along 'direction', of x, y, z at rest: the mesh is refused if its wall is "
-          "elsewhere, and the 'contact' of a structure may name the gap; absent: where the mesh has it");
-  s.value("direction", gap.direction).doc("direction from the seat to the valve; absent: z, in 2-D y");
+          "elsewhere, and the 'contact' of a structure may name the gap; default: read from the mesh");
+  s.value("direction", gap.direction).doc("direction from the seat to the valve; default: z (y in 2-D)");
   s.check(
       [&gap] {
         const auto& d = gap.direction;
@@ -122,14 +247,14 @@ void declare_steps(config::Section& s, FluidParameters& p) {
             {"explicit", ViscousTreatment::explicit_},
             {"implicit", ViscousTreatment::implicit}})
       .doc(
-          "time scheme of the viscous term; auto: implicit where its explicit stability limit would require "
+          "time scheme of the viscous term. auto: implicit where its explicit stability limit would require "
           "clearly more steps;");
   s.value("implicit-stretch", p.implicit_stretch)
       .range(1, 1e6)
       .doc(
           "largest step with an implicit viscous term, in units of the explicit limit: bounds it for "
           "accuracy, since second order shows only where nu dt / h^2 is about 1 or less (4 gives it on the "
-          "flap); absent: stability limit only, which is cheaper");
+          "flap); default: only the stability limit, which is cheaper");
   s.check(
       [&p] {
         return p.implicit_stretch && p.viscous == ViscousTreatment::explicit_
@@ -160,7 +285,7 @@ void declare_start(config::Section& s, FluidParameters& p) {
   s.value("body-force", p.body_force)
       .unit("m/s^2")
       .plausible(1e-4, 1e6)
-      .doc("force per mass, one expression of x, y, z [m] and t [s] per component; absent: none");
+      .doc("force per mass, one expression of x, y, z [m] and t [s] per component; default: none");
 }
 
 /// Declares time schemes.
@@ -169,28 +294,28 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
        "scheme", p.scheme,
        {{"adams-bashforth", ExplicitScheme::adams_bashforth}, {"runge-kutta", ExplicitScheme::runge_kutta}})
       .doc(
-          "time scheme of the explicit terms; runge-kutta: three stages with a projection each, 2.5 times "
+          "time scheme of the explicit terms. runge-kutta: three stages with a projection each, 2.5 times "
           "longer steps at three times the work, explicit viscous term, mesh at rest");
   s.choice("projection", p.projection,
            {{"flux-memory", Projection::flux_memory}, {"incremental", Projection::incremental}})
       .doc(
-          "treatment of the difference between face fluxes and averaged cell velocities; flux-memory: "
+          "treatment of the difference between face fluxes and averaged cell velocities. flux-memory: "
           "carried over from step to step and smoothed by friction and convection, robust, steady loads "
-          "independent of the step; incremental: driven by pressure changes only, second order in time with "
+          "independent of the step. incremental: driven by pressure changes only, second order in time with "
           "the lowest loss of kinetic energy, but pressure noise is not damped");
   s.choice("face-values", p.face_values,
            {{"second-order", FaceValues::second_order},
             {"fourth-order", FaceValues::fourth_order},
             {"auto", FaceValues::automatic}})
       .doc(
-          "order in space of convection, explicit friction, fluxes and pressure gradient; fourth-order: along lines of "
+          "order in space of convection, explicit friction, fluxes and pressure gradient. fourth-order: along lines of "
           "hexahedra or quadrilaterals whose faces lie straight across, away from walls, second order elsewhere; a mesh "
-          "at rest; auto: fourth-order where that is possible on at least half of the mesh");
+          "at rest. auto: fourth-order where that is possible on at least half of the mesh");
   s.choice("volume-level", p.volume_level,
            {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
       .doc(
           "for a fluid without an outlet whose interface is a wall of its cavity: what sets the pressure "
-          "level that conserves its volume; none: such a fluid is rejected; structure: the coupler finds "
+          "level that conserves its volume. none: such a fluid is rejected. structure: the coupler finds "
           "the level from the structure's response to a pressure (coupler/volume.csv); the fluid's own "
           "pressures keep zero mean");
 }
@@ -212,13 +337,13 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
             .plausible(1e-9, 1e4)
             .doc(
                 "one expression of x, y, z [m] and t [s] per component, the velocity of the motion that "
-                "level describes; absent: at rest");
+                "level describes; default: at rest");
         b.choice("surface", body.surface,
                  {{"auto", BodySurface::automatic}, {"steps", BodySurface::steps}, {"cut", BodySurface::cut}})
             .doc(
-                "part of a cell that the body closes; steps: all or nothing, by the cell's center, so that each cell "
-                "it gains or loses is a shock to the pressure; cut: the part inside it, so that cells "
-                "close and open gradually; auto: cut on a moving mesh, steps on one at rest");
+                "how the body closes cells. steps: a cell is closed if its center is inside, which disturbs the pressure when a "
+                "moving body gains or loses a cell. cut: the part inside is closed, so that cells close and open gradually. "
+                "auto: cut on a moving mesh, steps on one at rest");
       },
       "body",
       "rigid bodies in a mesh that does not conform to them and may move through them; requires an outlet");
@@ -235,11 +360,11 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
       "motion", p.motion,
       [](config::Section& m, fv::MotionParameters& motion) { couplet::fv::declare(m, motion, true); },
       "prescribed motion of the whole mesh or around a body, without a mesh mover; it starts from the "
-      "reference configuration; absent: none");
+      "reference configuration; default: none");
   s.optional_section<RotationParameters>(
       "rotating-frame", p.rotating_frame, declare_rotation,
       "a rotating frame: the mesh is at rest in it, all velocities are relative to it, and Coriolis, "
-      "centrifugal and Euler forces act; absent: none");
+      "centrifugal and Euler forces act; default: none");
 }
 
 /// Declares models of neglected effects.
@@ -249,12 +374,12 @@ void declare_models(config::Section& s, FluidParameters& p) {
       [](config::Section& t, TurbulenceParameters& turbulence) {
         t.choice("model", turbulence.model,
                  {{"smagorinsky", TurbulenceModel::smagorinsky}, {"wale", TurbulenceModel::wale}})
-            .doc("wale: no eddy viscosity in pure shear, correct at walls; smagorinsky: the classical model");
+            .doc("wale: no eddy viscosity in pure shear, correct at walls. smagorinsky: the classical model");
         t.value("constant", turbulence.constant)
             .positive()
-            .doc("model constant, multiplied by the cell width; absent: 0.325 (wale), 0.17 (smagorinsky)");
+            .doc("model constant, multiplied by the cell width; default: 0.325 (wale), 0.17 (smagorinsky)");
       },
-      "eddy viscosity of the unresolved scales; absent: none");
+      "eddy viscosity of the unresolved scales; default: none");
   s.optional_section<StatisticsParameters>(
       "statistics", p.statistics,
       [](config::Section& t, StatisticsParameters& statistics) {
@@ -268,7 +393,7 @@ void declare_models(config::Section& s, FluidParameters& p) {
   s.optional_section<CompressibilityParameters>(
       "compressibility", p.compressibility,
       [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
-      "weakly compressible fluid: pressure waves travel at the speed of sound, closed parts compress; absent: "
+      "weakly compressible fluid: pressure waves travel at the speed of sound, closed parts compress; default: "
       "incompressible, judged by the speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
   s.check([&p] { return p.compressibility ? misfit_of(*p.compressibility, p.density) : ""; },
           "compressibility");

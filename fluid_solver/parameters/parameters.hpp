@@ -5,9 +5,11 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "common/base/types.hpp"
 #include "common/config/section.hpp"
 #include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
@@ -43,8 +45,6 @@ struct RotationParameters {
 
 /// Source of the mass per area behind a Robin interface.
 enum class Impedance { given, structure };
-/// Motion of Robin faces on the two sides of a thin body.
-enum class Sides { automatic, together, apart };
 
 /// Keys of all conditions; those that a condition does not read keep their defaults.
 struct BoundaryParameters {
@@ -62,7 +62,6 @@ struct BoundaryParameters {
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
   Impedance impedance = Impedance::given;            // interface
-  Sides sides = Sides::automatic;                    // interface
   /// True if the pressure equation accounts for the response of the wall.
   bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };
@@ -130,7 +129,7 @@ struct CompressibilityParameters {
   WaveScheme scheme = WaveScheme::three_level;
   std::optional<double> mean_time;       // [s], of the means at absorbing boundaries
   std::optional<double> speed_of_sound;  // [m/s]
-  std::string substance;                 // one of substances(); empty: not given
+  std::string substance;                 // one of substances(); empty if not given
   std::optional<double> temperature;     // [K], of the substance
   std::optional<double> pressure;        // [Pa], absolute; with the density: c^2 = gamma p / rho
   std::optional<double> heat_capacity_ratio;
@@ -175,7 +174,7 @@ enum class TurbulenceModel { smagorinsky, wale };
 /// Large-eddy simulation; absent if there is no model.
 struct TurbulenceParameters {
   TurbulenceModel model = TurbulenceModel::wale;
-  std::optional<double> constant;  // absent: the usual one of the model
+  std::optional<double> constant;  // absent means the usual one of the model
   double constant_of() const { return constant.value_or(model == TurbulenceModel::wale ? 0.325 : 0.17); }
 };
 
@@ -185,7 +184,7 @@ enum class BodySurface { automatic, steps, cut };
 /// A rigid body inside the mesh.
 struct BodyParameters {
   config::ExpressionText level;                  // [m], below zero inside
-  std::vector<config::ExpressionText> velocity;  // [m/s]; empty: at rest
+  std::vector<config::ExpressionText> velocity;  // [m/s]; empty means at rest
   BodySurface surface = BodySurface::automatic;
 };
 
@@ -195,7 +194,7 @@ struct GapParameters {
   double opening = 0;  // [m]
   /// Height of the seat, the second wall, along `direction` [m]; absent if not given.
   std::optional<config::ExpressionText> height;
-  std::vector<double> direction;  // from the seat to the other wall; empty: z, in 2-D y
+  std::vector<double> direction;  // from the seat to the other wall; empty means z (y in 2-D)
 };
 
 /// Running means from a time on; absent if there are none.
@@ -244,7 +243,7 @@ struct Properties {
   double rho = 0;    ///< density [kg/m^3]
   double mu = 0;     ///< dynamic viscosity [Pa s]
   double nu = 0;     ///< kinematic viscosity [m^2/s]
-  double sound = 0;  ///< speed of sound [m/s]; 0: incompressible
+  double sound = 0;  ///< speed of sound [m/s]; 0 means incompressible
 };
 
 struct FluidParameters {
@@ -255,13 +254,13 @@ struct FluidParameters {
   double density = 0;    // [kg/m^3]
   double viscosity = 0;  // dynamic [Pa s]
   std::map<std::string, BoundaryParameters> boundaries;
-  std::optional<double> time_step;  // [s]; absent: from the stability limit
+  std::optional<double> time_step;  // [s]; absent if it follows from the stability limit
   double safety_factor = 0.8;
   ViscousTreatment viscous = ViscousTreatment::automatic;
   /// Largest ratio of implicit to explicit sub-step; absent if unlimited.
   std::optional<double> implicit_stretch;
   double pressure_tolerance = 1e-6;
-  std::vector<config::ExpressionText> initial_velocity;    // [m/s]; empty: at rest
+  std::vector<config::ExpressionText> initial_velocity;    // [m/s]; empty means at rest
   std::optional<config::ExpressionText> initial_pressure;  // [Pa]
   std::vector<config::ExpressionText> body_force;          // [m/s^2]; empty if there is none
   std::optional<TurbulenceParameters> turbulence;
@@ -275,7 +274,7 @@ struct FluidParameters {
   Projection projection = Projection::flux_memory;
   FaceValues face_values = FaceValues::second_order;
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
-  std::optional<CompressibilityParameters> compressibility;  // absent: neglected, checked by the density
+  std::optional<CompressibilityParameters> compressibility;  // absent if neglected, which the density checks
   std::map<std::string, ProbeParameters> probes;
   /// Speed of sound [m/s]; 0 if the fluid is computed as incompressible.
   double sound_speed() const { return solved_sound(compressibility, density, viscosity); }
@@ -290,5 +289,15 @@ std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& 
 void declare(config::Section& section, FluidParameters& parameters);
 /// Declares the section `output`.
 void declare_output(config::Section& section, FluidOutputParameters& parameters);
+
+/// A field made from the velocity gradient g, g(i, j) = du_i/dx_j [1/s], of each cell. In 2-D, z has no part in g.
+struct GradientField {
+  const char *name, *unit;  ///< the name is a key of `output` that enables the field
+  const char* meaning;
+  bool is_vector;  ///< three components; in 2-D only the last one. Otherwise only the first.
+  Vec3 (*value)(const Tensor3& g);
+};
+/// All such fields.
+std::span<const GradientField> gradient_fields();
 
 }  // namespace couplet::fluid

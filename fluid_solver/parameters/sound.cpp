@@ -114,8 +114,8 @@ void declare(config::Section& s, CompressibilityParameters& p) {
             {"trapezoidal", WaveScheme::trapezoidal}})
       .doc(
           "time scheme of the pressure of a weakly compressible fluid (small changes of density, any acoustic Courant "
-          "number); three-level: damps what a step does not resolve; trapezoidal: a fifth of its error, damps nothing "
-          "(a finding reports when it rings); "
+          "number). three-level: damps what a step does not resolve. trapezoidal: a fifth of its error, damps nothing "
+          "(a finding reports when it rings). "
           "none: incompressible, and judged by the other keys");
   s.value("mean-time", p.mean_time)
       .unit("s")
@@ -123,7 +123,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .positive()
       .doc(
           "time over which the mean flow and pressure at `absorbing` boundaries are taken; waves of the angular frequency "
-          "w are reflected by 1/(2 w mean-time); absent: ten times the travel time of sound across the mesh");
+          "w are reflected by 1/(2 w mean-time); default: ten times the travel time of sound across the mesh");
   s.value("speed-of-sound", p.speed_of_sound)
       .unit("m/s")
       .plausible(10, 2e4)
@@ -135,7 +135,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .unit("K")
       .plausible(70, 5000)
       .positive()
-      .doc("temperature of the substance, absolute (20 degC or 293.15 K); absent: 20 degC");
+      .doc("temperature of the substance, absolute (20 degC or 293.15 K); default: 20 degC");
   s.value("pressure", p.pressure)
       .unit("Pa")
       .plausible(1, 1e10)
@@ -146,7 +146,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
   s.value("heat-capacity-ratio", p.heat_capacity_ratio)
       .range(1, 2)
       .doc(
-          "heat capacity ratio of a gas; absent: that of the substance, or of the gas with the nearest density");
+          "heat capacity ratio of a gas; default: that of the substance, or of the gas with the nearest density");
   s.value("upstream-volume", p.upstream_volume)
       .unit("m^3")
       .plausible(1e-15, 1e6)

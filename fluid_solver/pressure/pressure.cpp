@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/state/placement.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 
@@ -22,11 +22,9 @@ Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> v) { return 
 }  // namespace
 
 template <int D>
-PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
-                                      const Couplings* couplings)
+PressureEquation<D>::PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed)
     : mesh_(mesh),
       boundary_(boundary),
-      couplings_(couplings),
       fixed_(fixed),
       direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {}
 
@@ -35,14 +33,10 @@ void PressureEquation<D>::make_solver() {
   const linalg::CellGraph graph{mesh_.cells, mesh_.comm,
                                 std::span<const Index>(mesh_.owner).first(mesh_.n_interior),
                                 std::span<const Index>(mesh_.neighbour).first(mesh_.n_interior)};
-  linalg::Beside beside;
-  if (couplings_) beside = {couplings_->row, couplings_->column};
   using Preconditioner = linalg::CellSolver::Preconditioner;
-  const Preconditioner kind = direct_      ? Preconditioner::factors
-                              : couplings_ ? Preconditioner::ml
-                                           : Preconditioner::multigrid;
-  solver_ = std::make_unique<linalg::CellSolver>("pressure", graph, beside, kind);
-  pinned_ = kind != Preconditioner::multigrid;
+  solver_ = std::make_unique<linalg::CellSolver>(
+      "pressure", graph, direct_ ? Preconditioner::factors : Preconditioner::multigrid);
+  pinned_ = direct_;
 }
 
 template <int D>
@@ -66,8 +60,7 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at, const 
 template <int D>
 void PressureEquation<D>::fill(std::span<const double> coefficients) {
   const std::size_t owned = mesh_.cells.n_owned(), faces = mesh_.n_interior;
-  solver_->fill(coefficients.first(owned), coefficients.subspan(owned, faces),
-                coefficients.subspan(owned + faces));
+  solver_->fill(coefficients.first(owned), coefficients.subspan(owned, faces));
 }
 
 template <int D>
@@ -80,7 +73,6 @@ void PressureEquation<D>::save(io::CheckpointWriter& file) const {
   file.write(mesh::Entries::owned_cells, "pressure-preconditioner", all.first(owned));
   const std::size_t faces = all.empty() ? 0 : std::size_t(mesh_.n_interior);
   file.write(mesh::Entries::interior_faces, "pressure-preconditioner-faces", all.subspan(owned, faces));
-  if (couplings_) file.write("pressure-preconditioner-couplings", all.subspan(owned + faces));
 }
 
 template <int D>
@@ -96,12 +88,7 @@ void PressureEquation<D>::load(io::CheckpointReader& file) {
     const std::vector<double> faces =
         file.read_or_none(mesh::Entries::interior_faces, "pressure-preconditioner-faces", 1);
     saved.insert(saved.end(), faces.begin(), faces.end());
-    if (couplings_) {
-      const std::vector<double> beside = file.read("pressure-preconditioner-couplings");
-      saved.insert(saved.end(), beside.begin(), beside.end());
-    }
-    const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior) +
-                                     (couplings_ ? couplings_->row.size() : 0);
+    const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior);
     if (!memory.is_due && saved.size() != coefficients)
       throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
   }
@@ -120,7 +107,6 @@ void PressureEquation<D>::set(const Placement<D>& at, bool regular, const Diagon
   if (!solver_) make_solver();
   values_ = diagonal(at, added);
   for (Index f = 0; f < mesh_.n_interior; ++f) values_.push_back(-at.conductance[f]);
-  if (couplings_) values_.insert(values_.end(), couplings_->value.begin(), couplings_->value.end());
   fill(values_);
   if (fixed_) std::vector<double>().swap(values_), solver_->solver().refresh();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -8,16 +10,10 @@
 #include "common/io/checkpoint.hpp"
 #include "common/linalg/cell_solver.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/state/placement.hpp"
+#include "fluid_solver/motion/scene.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
-
-/// Entries in rows of owned cells in addition to those of the mesh. Symmetric as a whole.
-struct Couplings {
-  std::vector<Index> row;
-  std::vector<GlobalIndex> column;
-  std::vector<double> value;  ///< [m]
-};
 
 /// Additions to the diagonal; an empty vector adds nothing.
 struct Diagonal {
@@ -30,10 +26,8 @@ struct Diagonal {
 template <int D>
 class PressureEquation {
  public:
-  /// `fixed`: the mesh is at rest, so nothing is kept for a second set(). `couplings`: set() reads their
-  /// values at fixed positions; nullptr if there are none. They must outlive the equation.
-  PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed,
-                   const Couplings* couplings = nullptr);
+  /// `fixed`: the mesh is at rest, so nothing is kept for a second set().
+  PressureEquation(const mesh::Mesh& mesh, const Boundary<D>& boundary, bool fixed);
   /// `regular`: the additions determine the level in a closed domain. Collective.
   void set(const Placement<D>& at, bool regular = false, const Diagonal& added = {});
   /// True if the pressure is determined only up to a constant.
@@ -49,8 +43,8 @@ class PressureEquation {
   void refresh() {
     if (solver_) solver_->solver().refresh();
   }
-  /// `b`: per owned cell, made compatible here in a closed domain. `p`: per local cell, guess on entry; on
-  /// exit with current ghosts, and zero mean in a closed domain (at its convective outlets, if any). Stops at
+  /// `b`: right-hand side per owned cell, made compatible here in a closed domain. `p`: pressure per local cell, a guess on
+  /// entry; on exit it has current ghosts, and zero mean in a closed domain (at its convective outlets, if any). Stops at
   /// max(relative |b|, absolute). `answer` also reduces the residual of the guess to this share, down to
   /// least_answer relative |b|, so that a partner that changes b sees the response of p. `size`: replaces |b|
   /// unless negative. Collective.
@@ -66,13 +60,12 @@ class PressureEquation {
                                         std::span<double> p, double relative, double absolute);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
-  const Couplings* couplings_;  // nullptr if there are none
   bool fixed_, regular_ = false;
   bool pinned_ = true;  // one cell's pressure is zero if it is determined up to a constant
   bool direct_;         // small 2-D meshes: Cholesky factors are kept
   std::unique_ptr<linalg::CellSolver> solver_;
   void fill(std::span<const double> coefficients);
-  // Moving mesh only. Matrix entries: diagonal per owned cell, one entry per face, then the couplings. The
+  // Moving mesh only. Matrix entries: diagonal per owned cell, then one entry per face. The
   // preconditioner is stored with the entries it was made from, now and at the accepted level.
   std::vector<double> values_;
   struct Lagging {
@@ -81,5 +74,128 @@ class PressureEquation {
   };
   Lagging now_, accepted_;
 };
+
+/// dp/dt at the end of a step from pressures at mid-steps: rate p + sum past_k p_k, with p of this step and
+/// p_k of earlier ones. It is the derivative of the parabola through three levels, (2 p - 3 p_1 + p_2)/dt for
+/// equal steps, of a line through two, and 0 with one. L-stable for waves: with W = c k dt, (2 z - 1)(z -
+/// 1)^2 + W^2 z^3 = 0 has |z| < 1.
+struct WaveRule {
+  double rate = 0;  ///< [1/s]; 0 if there is no earlier level, and the step is incompressible
+  std::array<double, 2> past{};
+};
+
+/// `times`: times of earlier levels, latest first; only two are used.
+inline WaveRule three_level_rule(double middle, double end, std::span<const double> times) {
+  WaveRule rule;
+  const double h = end - middle;
+  if (times.empty()) return rule;
+  const double h1 = end - times[0];
+  if (times.size() == 1) {
+    rule.rate = 1 / (h1 - h);
+    rule.past[0] = -rule.rate;
+    return rule;
+  }
+  const double h2 = end - times[1];
+  rule.rate = (h1 + h2) / ((h1 - h) * (h2 - h));
+  rule.past[0] = (h + h2) / ((h - h1) * (h2 - h1));
+  rule.past[1] = (h + h1) / ((h - h2) * (h1 - h2));
+  return rule;
+}
+
+/// Weights of v at t^{n+1}, t^n and t^{n-1} for a second-order value at t^{n+1/2}. Stiff components decay by
+/// -1/3 per step, as in the implicit viscous term. `old`: size of the previous step, or 0.
+inline std::array<double, 3> middle_weights(double dt, double old) {
+  constexpr double c = 1.0 / 16;
+  if (old <= 0) return {1, 0, 0};
+  const double a = 0.5 + c * old / dt;
+  return {a, 1 - a - c, c};
+}
+
+/// Rule of a step, with at most three levels.
+template <int D>
+WaveRule wave_rule(const Step<D>& step) {
+  std::array<double, 2> times{};
+  std::size_t levels = 0;
+  while (levels < times.size() && step.by.pressure[levels]) {
+    times[levels] = step.by.pressure[levels]->time;
+    ++levels;
+  }
+  return three_level_rule(step.middle(), step.end(), std::span(times).first(levels));
+}
+/// Factor of p in dp/dt at the end of the step [1/s]; 0 in a step that starts a flow without a pressure.
+template <int D>
+double wave_rate(const Step<D>& step, bool trapezoidal) {
+  if (!step.by.pressure[0]) return 0;
+  return trapezoidal ? 4 / step.dt : wave_rule(step).rate;
+}
+
+/// Right-hand side of the pressure equation.
+struct RightSide {
+  std::vector<double> b;  ///< per owned cell
+  double size = -1;       ///< norm for the tolerance, see PressureEquation::solve(); negative: |b|
+};
+
+/// Feature in the pressure equation. Every function is called once per step or solve and itself loops over
+/// faces or cells. Scene, step and prediction are those of the current step.
+template <int D>
+class Term {
+ public:
+  Term(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+      : scene_(scene), mesh_(scene.mesh), step_(step), prediction_(prediction) {}
+  virtual ~Term() = default;
+
+  /// Called after the prediction from a level. Collective.
+  virtual void prepare(const State<D>&) {}
+
+  /// True if the term determines the pressure level of a closed domain in this step.
+  virtual bool sets_level() const { return false; }
+  /// Changes whenever the matrix entries do, on a mesh at rest. 0 stands for a matrix without terms.
+  virtual double version() const { return 0; }
+  virtual void add_to_diagonal(Diagonal&) {}
+  /// Called with a new matrix. Collective.
+  virtual void respond(PressureEquation<D>&) {}
+
+  /// Sets pressures, velocities and fluxes of the boundary that are known before p. Collective.
+  virtual void foresee(const State<D>&, Projected<D>&) {}
+  /// Adds to the right-hand side. Collective.
+  virtual void before(Projected<D>&, RightSide&) {}
+  /// Sets pressures, velocities and fluxes of the boundary once p is known. Collective.
+  virtual void after(Projected<D>&) {}
+
+  /// Adds data to the level that the next step needs and that depend on p.
+  virtual void complete(PressureLevel<D>&) const {}
+  /// Advances the state of the term from level n to n+1. Collective.
+  virtual void commit(const Projected<D>&, State<D>&) const {}
+  /// Initializes a pressure and a state that no step computed. Collective.
+  virtual void start(const Placement<D>&, PressureLevel<D>&) const {}
+  virtual void start(State<D>&) const {}
+
+  /// State of the solvers in addition to the level, as of the last accept(). Collective.
+  virtual void accept() {}
+  virtual void visit(io::Archive&) {}
+
+ protected:
+  const Scene<D>& scene_;
+  const mesh::Mesh& mesh_;
+  const Step<D>& step_;
+  const Prediction<D>& prediction_;
+};
+
+// Factories of the terms, each in the file of its name.
+
+template <int D>
+using MakeTerm = std::unique_ptr<Term<D>>(const Scene<D>&, const Step<D>&, const Prediction<D>&);
+/// Walls of known mass (Robin condition). Collective.
+template <int D>
+MakeTerm<D> make_yielding_walls;
+/// Openings that let pressure waves out. Collective.
+template <int D>
+MakeTerm<D> make_absorbing_boundaries;
+/// Weak compressibility in the cells.
+template <int D>
+MakeTerm<D> make_compression;
+/// A volume behind the inlets.
+template <int D>
+MakeTerm<D> make_upstream_volume;
 
 }  // namespace couplet::fluid

@@ -29,7 +29,7 @@ constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
 // Closed domain: share of the boundary fluxes that a moving wall may leave as a discretization error, and the
 // speed of a fluid at rest [m/s]. Walls that move tangentially leave a share of their speeds as the error.
-constexpr double largest_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
+constexpr double largest_open_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
 
 template <int D>
 std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const Step<D>& step,
@@ -46,13 +46,6 @@ std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const St
   return terms;
 }
 
-template <int D>
-const Couplings* couplings_of(const std::vector<std::unique_ptr<Term<D>>>& terms) {
-  for (const auto& term : terms)
-    if (const Couplings* found = term->couplings()) return found;
-  return nullptr;
-}
-
 }  // namespace
 
 template <int D>
@@ -64,8 +57,7 @@ PressureProjection<D>::PressureProjection(const Scene<D>& scene, const Step<D>& 
       prediction_(prediction),
       out_(result),
       terms_(make_terms(scene, step, prediction)),
-      equation_(scene.mesh, scene.boundary, !moving && scene.parameters.bodies.empty() && terms_.empty(),
-                couplings_of(terms_)) {}
+      equation_(scene.mesh, scene.boundary, !moving && scene.parameters.bodies.empty() && terms_.empty()) {}
 
 template <int D>
 void PressureProjection<D>::prepare(const State<D>& from) {
@@ -252,7 +244,7 @@ void PressureProjection<D>::balance_closed_domain() {
   if (adjustable && !scene_.boundary.has_convective_outlet() &&
       !(scene_.boundary.sealed() && scene_.boundary.interface_patches().empty()) &&
       scene_.parameters.volume_level == VolumeLevelBy::nobody && !scene_.boundary.yields() &&
-      std::abs(sums[total]) > largest_leftover * sums[size] &&
+      std::abs(sums[total]) > largest_open_leftover * sums[size] &&
       std::abs(sums[total]) > round_speed * sums[speeds] &&
       sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
     throw Error(
@@ -402,13 +394,15 @@ void PressureProjection<D>::accept() {
 template <int D>
 void PressureProjection<D>::save(io::CheckpointWriter& file) const {
   equation_.save(file);
-  for (const auto& term : terms_) term->save(file);
+  io::Archive archive(file);
+  for (const auto& term : terms_) term->visit(archive);
 }
 
 template <int D>
 void PressureProjection<D>::load(io::CheckpointReader& file) {
   equation_.load(file);
-  for (const auto& term : terms_) term->load(file);
+  io::Archive archive(file);
+  for (const auto& term : terms_) term->visit(archive);
   forget_matrix();
 }
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/linalg/acceleration.hpp"
-#include "fluid_solver/pressure/term.hpp"
-#include "fluid_solver/state/placement.hpp"
+#include "fluid_solver/pressure/pressure.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/state/fourth_order.hpp"
+#include "fluid_solver/state/state.hpp"
 
 #include <algorithm>
 #include <array>

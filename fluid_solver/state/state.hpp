@@ -1,15 +1,155 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
-#include "fluid_solver/state/placement.hpp"
+#include "common/mesh/mesh.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
+
+template <int D>
+using Vectors = std::vector<Vec<D>>;
+
+/// Flat view of an array of vectors, for halo updates, output and checkpoints.
+template <int D>
+std::span<double> flat(Vectors<D>& values) {
+  return {values.empty() ? nullptr : values.front().data(), values.size() * D};
+}
+template <int D>
+std::span<const double> flat(const Vectors<D>& values) {
+  return {values.empty() ? nullptr : values.front().data(), values.size() * D};
+}
+
+/// Geometry of one placement of the points for face loops, per flux face of the mesh (interior faces, then
+/// the boundary of owned cells) unless stated otherwise.
+template <int D>
+struct Placement {
+  std::vector<double> volume;  ///< V [m^3], per local cell
+  Vectors<D> area;             ///< S [m^2], out of the owner
+  /// g = |S|^2/(S.d) [m], over-relaxed; d from the owner to the neighbor (or face) center.
+  std::vector<double> conductance;
+  Vectors<D> oblique;          ///< k = S - g d [m^2], tangential; empty on orthogonal meshes
+  std::vector<double> weight;  ///< of the owner in the linear interpolation to the face, per interior face
+  Vectors<D> centre;           ///< per local cell [m]
+  std::vector<Vec3> boundary_centre;  ///< per owned boundary face [m]
+  double obliqueness = 0;             ///< largest |k|/|S| on this rank
+  /// Vector from the interpolation point to the face center, per interior face [m]; empty if not skewed.
+  Vectors<D> skew;
+  /// Per local cell, with `skew`: matrix B that makes the Gauss gradient G of values at the interpolation
+  /// points exact for linear fields: G B for vectors (du_i/dx_j), B^T G for scalars.
+  std::vector<Tensor<D>> gradient_cure;
+  bool skewed() const { return !skew.empty(); }
+  /// Vector from the midpoint between the cells to the face center, skewed meshes only [m].
+  Vec<D> offset(Index f) const {
+    return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique_of(f));
+  }
+  /// Shared by placements that are translations of each other; nullptr if unknown.
+  std::shared_ptr<const char> shape{};
+  /// k of a face [m^2], zero on orthogonal meshes.
+  Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }
+};
+/// Correction of a value interpolated linearly between the cells at an interior face of a skewed mesh.
+template <int D>
+double skew_part(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& gradient, Index f) {
+  const double weight = at.weight[f];
+  return (weight * gradient[mesh.owner[f]] + (1 - weight) * gradient[mesh.neighbour[f]]).dot(at.skew[f]);
+}
+/// Limit of |k|/|S| for a mesh to count as orthogonal.
+constexpr double orthogonal = 1e-9;
+
+/// Collective.
+template <int D>
+std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, const mesh::Geometry& geometry);
+template <int D>
+std::shared_ptr<const Placement<D>> make_placement(const mesh::Mesh& mesh, std::span<const Vec3> points);
+/// Translates a placement: only the centers differ. `from` must have a shape.
+template <int D>
+std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by);
+
+/// Placement in which values at marked interior faces are means of the cell values, wherever the face lies.
+template <int D>
+std::shared_ptr<const Placement<D>> in_the_middle(const mesh::Mesh& mesh, const Placement<D>& from,
+                                                  std::span<const char> faces);
+
+/// Largest side of the bounding box of points [m]. Collective.
+double largest_extent(const mesh::Mesh& mesh, std::span<const Vec3> points);
+
+/// Cell with the largest value over all ranks.
+struct LargestCell {
+  double value = 0;
+  GlobalIndex id = -1;        ///< number in the mesh file; -1 if no rank has a cell
+  Vec3 place = Vec3::Zero();  ///< [m]
+  int rank = 0;               ///< owner
+  Index here = -1;            ///< local number on that rank; -1 elsewhere
+};
+
+/// `value`: function of an owned cell; NaN counts as largest. Collective; only `here` differs between ranks.
+template <int D, class Value>
+LargestCell find_largest(const mesh::Mesh& mesh, const Placement<D>& at, const Value& value) {
+  struct {
+    double value;
+    int rank;
+  } worst{-std::numeric_limits<double>::infinity(), parallel::comm_rank(mesh.comm)};
+  LargestCell found;
+  const int own = worst.rank;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const double given = value(c), size = std::isnan(given) ? std::numeric_limits<double>::infinity() : given;
+    if (size <= worst.value) continue;
+    worst.value = size;
+    found.here = c;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh.comm);
+  if (own != worst.rank) found.here = -1;
+  double data[4] = {0, 0, 0, -1};
+  if (found.here >= 0) {
+    for (int d = 0; d < D; ++d) data[d] = at.centre[found.here][d];
+    data[3] = static_cast<double>(mesh.cell_id[found.here]);
+  }
+  MPI_Bcast(data, 4, MPI_DOUBLE, worst.rank, mesh.comm);
+  found.value = worst.value;
+  found.rank = worst.rank;
+  found.place = Vec3(data[0], data[1], data[2]);
+  found.id = static_cast<GlobalIndex>(data[3]);
+  return found;
+}
+
+/// Describes the largest entry of a failed equation: "Its right-hand side is largest, 3e+200, in cell 7 at
+/// (0.1, 0.5, 0) m."
+inline std::string largest_entry(const LargestCell& of) {
+  return fmt::format("Its right-hand side is {}, in cell {} at ({:.6g}, {:.6g}, {:.6g}) m.",
+                     std::isfinite(of.value) ? fmt::format("largest, {:.3g}", of.value) : "not finite", of.id,
+                     of.place.x(), of.place.y(), of.place.z());
+}
+
+// Sums over the interior faces of each cell, compiled for several instruction sets.
+
+/// sum -= factor times the outflow of phi; returns the sum of squares of phi.
+double subtract_outflow(const mesh::Mesh& mesh, double factor, std::span<const double> phi,
+                        std::span<double> sum);
+/// sum += outflow of phi through all faces, including the boundary.
+void add_outflow(const mesh::Mesh& mesh, std::span<const double> phi, std::span<double> sum);
+/// phi -= factor g (p_N - p_P).
+struct FluxCorrection {
+  double factor;
+  const double* conductance;  ///< g
+  double* phi;
+};
+/// sum += p_f S, p_f linear between the cells. `correction`: computed in the same pass; nullptr for none.
+template <int D>
+void add_pressure(const mesh::Mesh& mesh, const Placement<D>& at, std::span<const double> p,
+                  const FluxCorrection* correction, Vectors<D>& sum);
 
 /// Volume-integrated rates of change of u on a fixed mesh [m^4/s^2], per local cell (ghosts are undefined).
 template <int D>
@@ -49,7 +189,7 @@ enum class Start : int { at_rest, after_impulse, flowing };
 template <int D>
 struct History {
   double time = 0;        ///< t^n [s]
-  double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
+  double dt_old = 0;      ///< size of the last step [s]; 0 means no history, the next step is an Euler step
   bool implicit = false;  ///< the history has an implicit viscous term (Rates::viscous)
   Start start = Start::flowing;
   /// Latest first; nullptr if there is none yet.
@@ -64,6 +204,11 @@ struct EnergyLedger {
   double reference = 0;  ///< recent scale for the excess [J]
   double level = 0;      ///< reference pressure for the work at boundaries [Pa]
   double work = 0;       ///< net work done so far [J]
+  /// Archives the members in checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(energy, largest, excess, reference, level, work);
+  }
   /// False if the energy is at round-off relative to the largest so far.
   bool is_judged() const { return energy > 1e-10 * largest && reference > 0; }
 };
@@ -112,7 +257,7 @@ struct SubStep {
   bool yields = false;                     ///< walls of known mass respond to the pressure (Robin condition)
 };
 
-/// Sub-step and its view of level n, from which it starts. Constant until the next one.
+/// Sub-step with the history at its start, time level n. Constant until the next sub-step.
 template <int D>
 struct Step : SubStep<D> {
   History<D> by;
@@ -151,11 +296,55 @@ struct Projected {
 
 /// Writes a complete state, including history, bit for bit. Collective.
 template <int D>
-void write_state(io::CheckpointWriter& file, const State<D>& state, bool compressible = false);
-/// `at_rest`: placement of a mesh at rest; nullptr if the file has the points. `compressible`: the file is of
-/// such a fluid. Throws Error if the file does not fit the mesh. Collective.
+void write_state(io::CheckpointWriter& file, const State<D>& state);
+/// `at_rest`: placement of a mesh at rest; nullptr if the file has the points. Throws Error if the file does
+/// not fit the mesh. Collective.
 template <int D>
 State<D> read_state(io::CheckpointReader& file, const mesh::Mesh& mesh,
-                    std::shared_ptr<const Placement<D>> at_rest, bool compressible = false);
+                    std::shared_ptr<const Placement<D>> at_rest);
+
+/// Three cells in a row. The middle one is owned; its two faces are parallel and normal to the line of cells.
+struct Link {
+  Index before, cell, after;
+  Index face;                        ///< one of the two, with S pointing from `before` to `after`
+  int axis = -1;                     ///< axis parallel to S; -1 if there is none
+  double g_before = 0, g_after = 0;  ///< conductances of the two faces [m]
+};
+
+/// Links of a mesh at rest, in the order of their cells.
+template <int D>
+struct Lines {
+  std::vector<Link> links;
+  double share = 0;  ///< fraction of links among the cells and directions of the whole mesh
+
+  /// Collective.
+  Lines(const mesh::Mesh& mesh, const Placement<D>& at);
+  /// Placement for the fourth-order operators: the face value is the mean of two cells if both have a link
+  /// across the face. Collective.
+  std::shared_ptr<const Placement<D>> seen(const mesh::Mesh& mesh, const Placement<D>& at) const;
+};
+
+/// Corrections by links to the second-order operators (docs/theory/fluid-models.md). D is the second
+/// difference of a link, U its flux velocity times S.
+template <int D>
+class FourthOrder {
+ public:
+  FourthOrder(const mesh::Mesh& mesh, Lines<D> lines) : mesh_(mesh), lines_(std::move(lines)) {}
+
+  /// Adds to the rate of convection and friction (none if nu = 0) of a state. Collective.
+  void add_rates(const State<D>& state, double nu, Vectors<D>& rate) const;
+  /// u - n (n.Du)/6 over the links of each cell, ghosts current; its means are the fluxes. Collective.
+  const Vectors<D>& flux_velocity(const Placement<D>& at, const Vectors<D>& u);
+  /// Applies the transpose to a pressure gradient: g - n (n.D(V g))/(6 V). Collective.
+  void sharpen(const Placement<D>& at, Vectors<D>& gradient) const;
+  /// mu sum (g_1 x - g_2 y)^2/(g_1 + g_2)/6, the contribution to viscous dissipation on this rank [W].
+  double dissipation(double mu, const Vectors<D>& u) const;
+  double share() const { return lines_.share; }
+
+ private:
+  const mesh::Mesh& mesh_;
+  Lines<D> lines_;
+  Vectors<D> flux_velocity_;
+};
 
 }  // namespace couplet::fluid

@@ -18,38 +18,56 @@ namespace couplet::fluid {
 
 namespace {
 
+/// Refuses effects that no scheme combines. The first one that applies is told.
 template <int D>
-void check_frame(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
-                 bool moving) {
-  if (!parameters.rotating_frame) return;
-  const auto refuse = [](const char* what) { throw Error("rotating-frame: {}", what); };
-  if (moving)
-    refuse(
-        "the mesh is at rest in the frame. Move the rotation to 'motion' (angle), or remove 'motion' and "
-        "the mesh mover.");
-  if (!boundary.interface_patches().empty())
-    refuse("no structure supports a rotating frame: boundaries of type interface are not allowed.");
-  if (!parameters.bodies.empty()) refuse("immersed bodies do not support it; remove 'bodies'.");
-  if (parameters.scheme == ExplicitScheme::runge_kutta)
-    refuse("its forces are extrapolated from step to step: use 'scheme: adams-bashforth'.");
-  const RotationParameters& frame = *parameters.rotating_frame;
-  const Vec3 axis = D == 2 ? Vec3(Vec3::UnitZ()) : Vec3(frame.axis.normalized());
+void check_effects(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
+                   bool moving) {
+  const bool bodies = !parameters.bodies.empty(), gaps = !parameters.gaps.empty(),
+             frame = parameters.rotating_frame.has_value(), waves = parameters.is_compressible(),
+             stages = parameters.scheme == ExplicitScheme::runge_kutta,
+             implicit = parameters.viscous == ViscousTreatment::implicit;
+  const bool cut = bodies && parameters.bodies.begin()->second.surface == BodySurface::cut;
   bool across = false;
+  const Vec3 axis =
+      frame && D == 3 ? Vec3(parameters.rotating_frame->axis.normalized()) : Vec3(Vec3::UnitZ());
   for (const Vec3& shift : mesh.neighbour_shift)
     across = across || shift.cross(axis).norm() > 1e-6 * shift.norm();
-  if (parallel::any(mesh.comm, across))
-    refuse("the centrifugal force differs between periodic patches that are not shifted along the axis.");
-}
-
-void check_waves(const FluidParameters& parameters) {
-  const auto refuse = [](const char* with, const char* remove) {
-    throw Error("compressibility: not supported together with {}; remove {}, or set 'scheme: none'.", with,
-                remove);
-  };
-  if (!parameters.bodies.empty()) refuse("immersed bodies", "'bodies'");
-  if (parameters.rotating_frame) refuse("a rotating frame", "'rotating-frame'");
-  if (parameters.scheme == ExplicitScheme::runge_kutta)
-    refuse("the stages of runge-kutta", "'scheme: runge-kutta'");
+  const struct {
+    bool applies;
+    const char* message;
+  } refused[] = {
+      {frame && moving,
+       "rotating-frame: the mesh is at rest in the frame. Move the rotation to 'motion' (angle), or remove 'motion' and the "
+       "mesh mover."},
+      {frame && !boundary.interface_patches().empty(),
+       "rotating-frame: no structure supports a rotating frame: boundaries of type interface are not allowed."},
+      {frame && bodies, "rotating-frame: immersed bodies do not support it; remove 'bodies'."},
+      {frame && stages,
+       "rotating-frame: its forces are extrapolated from step to step: use 'scheme: adams-bashforth'."},
+      {frame && parallel::any(mesh.comm, across),
+       "rotating-frame: the centrifugal force differs between periodic patches that are not shifted along the axis."},
+      {bodies && gaps, "gaps: not supported together with immersed bodies; remove 'gaps' or 'bodies'."},
+      {bodies && boundary.closed(),
+       "bodies: a fluid with immersed bodies needs an outlet, because they may displace fluid."},
+      {cut && parameters.projection == Projection::incremental,
+       "projection: incremental does not support cells that bodies cut; use flux-memory, or on a mesh at rest "
+       "'surface: steps' of the bodies."},
+      {bodies && implicit,
+       "viscous: implicit is not possible with immersed bodies, which act on the explicit step."},
+      {waves && bodies,
+       "compressibility: not supported together with immersed bodies; remove 'bodies', or set 'scheme: none'."},
+      {waves && frame,
+       "compressibility: not supported together with a rotating frame; remove 'rotating-frame', or set 'scheme: none'."},
+      {waves && stages,
+       "compressibility: not supported together with the stages of runge-kutta; remove 'scheme: runge-kutta', or set "
+       "'scheme: none'."},
+      {gaps && boundary.closed() && !waves,
+       "gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their fluid."},
+      {stages && moving, "scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover."},
+      {stages && implicit,
+       "scheme: runge-kutta treats the viscous term explicitly; use 'viscous: explicit' or adams-bashforth."}};
+  for (const auto& [applies, message] : refused)
+    if (applies) throw Error("{}", message);
 }
 
 /// `auto` becomes second order if fourth is not possible.
@@ -65,15 +83,6 @@ void check_order(FluidParameters& parameters, bool moving) {
         remove);
   log::info("Face values: second-order (auto: {})", with);
   parameters.face_values = FaceValues::second_order;
-}
-
-void check_sides(const FluidParameters& parameters) {
-  for (const auto& [name, b] : parameters.boundaries)
-    if (b.sides == Sides::together)
-      throw Error(
-          "boundaries.{}.sides: together needs an outlet, since in a closed fluid the level of the pressure depends on "
-          "each side by itself; use 'auto' or 'apart'.",
-          name);
 }
 
 void check_axes(const FluidParameters& parameters, int dim) {
@@ -140,41 +149,18 @@ template <int D>
 void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
                     bool moving) {
   check_axes(parameters, D);
-  check_frame(mesh, boundary, parameters, moving);
-  if (boundary.closed()) check_sides(parameters);
   check_parts(mesh, boundary);
-  if (!parameters.bodies.empty()) {
-    if (!parameters.gaps.empty())
-      throw Error("gaps: not supported together with immersed bodies; remove 'gaps' or 'bodies'.");
-    if (boundary.closed())
-      throw Error("bodies: a fluid with immersed bodies needs an outlet, because they may displace fluid.");
-    if (parameters.bodies.begin()->second.surface == BodySurface::cut &&
-        parameters.projection == Projection::incremental)
-      throw Error(
-          "projection: incremental does not know cells that bodies cut; use flux-memory, or on a mesh at rest "
-          "'surface: steps' of the bodies.");
-    if (parameters.viscous == ViscousTreatment::implicit)
-      throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
-    parameters.viscous = ViscousTreatment::explicit_;
-  }
+  check_effects(mesh, boundary, parameters, moving);
   if (parameters.face_values != FaceValues::second_order) check_order(parameters, moving);
-  if (parameters.is_compressible()) check_waves(parameters);
-  if (!parameters.gaps.empty() && boundary.closed() && !parameters.is_compressible())
-    throw Error(
-        "gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their "
-        "fluid.");
-  if (parameters.scheme != ExplicitScheme::runge_kutta) return;
-  if (moving) throw Error("scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover.");
-  if (parameters.viscous == ViscousTreatment::implicit)
-    throw Error(
-        "scheme: runge-kutta treats the viscous term explicitly; use 'viscous: explicit' or adams-bashforth.");
-  parameters.viscous = ViscousTreatment::explicit_;
+  // Bodies act on the explicit step, and the stages are explicit.
+  const bool is_explicit = !parameters.bodies.empty() || parameters.scheme == ExplicitScheme::runge_kutta;
+  if (is_explicit) parameters.viscous = ViscousTreatment::explicit_;
 }
 
 template void check_together<2>(const mesh::Mesh&, const Boundary<2>&, FluidParameters&, bool);
 template void check_together<3>(const mesh::Mesh&, const Boundary<3>&, FluidParameters&, bool);
 
-// Fluids without an outlet and with moving walls.
+// Checks of fluids without an outlet and with moving walls.
 
 namespace {
 
@@ -214,29 +200,26 @@ double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
 template <int D>
 void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme) {
   const Boundary<D>& boundary = fluid.boundary();
-  const bool closed = boundary.closed() && !boundary.has_convective_outlet();
+  const bool closed = boundary.closed() && !boundary.has_convective_outlet(),
+             alone = scheme == coupling::Scheme::standalone, waves = fluid.parameters().is_compressible(),
+             walled = !boundary.interface_patches().empty();
   if (fluid.parameters().volume_level == VolumeLevelBy::structure) {
-    if (scheme == coupling::Scheme::standalone)
-      throw Error("volume-level: structure: this fluid runs alone, without a structure; remove the key.");
-    if (fluid.parameters().is_compressible())
-      throw Error(
-          "volume-level: structure: a compressible fluid has a pressure level of its own; remove the key.");
-    if (boundary.yields())
-      throw Error(
-          "volume-level: structure: walls with a surface-density get their level from the pressure "
-          "equation; remove one of the two keys.");
-    if (!closed || boundary.interface_patches().empty() || !boundary.body_patches().empty())
-      throw Error(
-          "volume-level: structure: this fluid {}, so a structure cannot set its pressure level; remove the "
-          "key.",
-          !closed                           ? "has an outlet"
-          : boundary.body_patches().empty() ? "has no wall of type interface"
-                                            : "has bodies that move as prescribed");
+    const std::pair<bool, const char*> refused[] = {
+        {alone, "this fluid runs alone, without a structure; remove the key."},
+        {waves, "a compressible fluid has a pressure level of its own; remove the key."},
+        {boundary.yields(),
+         "walls with a surface-density get their level from the pressure equation; remove one of the two keys."},
+        {!closed, "this fluid has an outlet, so a structure cannot set its pressure level; remove the key."},
+        {!boundary.body_patches().empty(),
+         "this fluid has bodies that move as prescribed, so a structure cannot set its pressure level; remove the key."},
+        {!walled,
+         "this fluid has no wall of type interface, so a structure cannot set its pressure level; remove the key."}};
+    for (const auto& [applies, message] : refused)
+      if (applies) throw Error("volume-level: structure: {}", message);
     return;
   }
-  if (scheme == coupling::Scheme::standalone || !closed || boundary.interface_patches().empty() ||
-      boundary.yields() || fluid.parameters().is_compressible())
-    return;
+  const bool is_set = alone || !closed || !walled || boundary.yields() || waves;
+  if (is_set) return;
   const auto [share, area] = open_share(fluid);
   if (share <= largest_open_share) return;
   throw Error(

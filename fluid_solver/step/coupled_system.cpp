@@ -89,9 +89,9 @@ double FractionalStep<D>::splitting_error(const PressureLevel<D>& now) {
   return std::sqrt(parallel::sum(mesh_.comm, square)) / scale;
 }
 
-/// A step's predictor and projection precondition the coupled system [griffith2009]. Anderson acceleration of the pressure that the
-/// predictor takes is GMRES for a linear system. If the passes do not converge, the step is the one without them.
-/// Meshes in motion keep that one, too: a slot that opens again from a hundredth of its height gained energy in coupled steps.
+/// Solves the coupled system of velocity and pressure, preconditioned by a step's predictor and projection [griffith2009].
+/// Anderson acceleration of the predictor's pressure equals GMRES for this linear system. The uncoupled step is kept if the
+/// passes do not converge, and on moving meshes, where a slot that opened again gained energy in coupled steps.
 template <int D>
 void FractionalStep<D>::solve_coupled(const State<D>& from, const Vectors<D>& w) {
   if (step_.moving() || scene_.obstacles->marks() || bodies_) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/step/energy_guard.hpp"
+#include "fluid_solver/step/stages.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/motion/rotation.hpp"
+#include "fluid_solver/motion/scene.hpp"
 
 namespace couplet::fluid {
 namespace {

@@ -36,8 +36,8 @@ class Fluid {
         bool moving_mesh, double start_time = 0);
 
   void begin_step(double time, double dt);
-  /// `points`: at t^{n+1}, empty if the mesh is at rest. `wall_velocity`: per boundary face at t^{n+1} [m/s],
-  /// read only at interface faces; empty if they are at rest. Collective.
+  /// `points`: positions at t^{n+1}, empty if the mesh is at rest. `wall_velocity`: velocity of each boundary face at t^{n+1}
+  /// [m/s], read only at interface faces; empty if they are at rest. Collective.
   void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// Sets the pressure that gave the interface its velocity, per boundary face [Pa]. Walls of known mass then
   /// respond to the change of pressure (see yielding_walls.cpp). Call before prepare() and solve_pressure().

@@ -10,7 +10,7 @@
 #include "common/fv/use.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/state/placement.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 

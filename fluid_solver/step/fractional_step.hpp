@@ -5,11 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "fluid_solver/motion/gaps.hpp"
-#include "fluid_solver/motion/immersed.hpp"
+#include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/pressure/projection.hpp"
-#include "fluid_solver/step/energy_guard.hpp"
 #include "fluid_solver/step/stages.hpp"
 
 namespace couplet::fluid {
@@ -87,7 +85,7 @@ class FractionalStep {
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
   const Scene<D>& scene() const { return scene_; }
-  /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
+  /// The masses of such walls have changed; the pressure matrix is rebuilt when it is needed next.
   void forget_walls() { projection_.forget_matrix(); }
   /// Pressure of the last project() per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return projected_.boundary; }

@@ -3,7 +3,7 @@
 
 #include <mpi.h>
 
-#include "fluid_solver/state/placement.hpp"
+#include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
 

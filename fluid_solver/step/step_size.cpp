@@ -83,7 +83,7 @@ const LimitTable& implicit_table() {
 constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90},
     adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25}, runge_kutta{2.51, 2.37, 2.5, 2.4, 2.1, 1.73};
 
-/// Lower bound of the limit. Cells that cannot be decisive by it are skipped, without computing the angle.
+/// Lower bound of the limit. Cells for which it is not decisive are skipped without computing the angle.
 double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) {
   const bool rk = scheme == ExplicitScheme::runge_kutta;
   if (convection <= diffusion) return rk ? 2.37 : 0.96;

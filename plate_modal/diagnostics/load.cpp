@@ -55,10 +55,10 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
       look_within_step(6 + int(steps % 5));
   }
   void look(diagnostics::Report& report) override {
-    report_neglected(report, "load within a face", within_faces(), 0.05,
-                     fmt::format("error of the load's effect on the modes with one force per face = {:.2g}",
-                                 within_faces()),
-                     "the pressure varies within a face: refine the mesh there", within_faces());
+    report_present(report, "load within a face", within_faces(), 0.05,
+                   fmt::format("error of the load's effect on the modes with one force per face = {:.2g}",
+                               within_faces()),
+                   "the pressure varies within a face: refine the mesh there");
     if (!(size_ > 0) || !(view_.step.is_last || samples_ >= least_looks)) return;
     const double apart = std::sqrt(apart_ / size_);
     report_present(
@@ -71,7 +71,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override {
     if (fine_ > 0) report.errors.mesh += within_faces();  // NaN with modes of a file
     if (!has_acted_ && (view_.pressure->changes_in_time() || !view_.pressure->is_uniform()))
-      report_neglected(
+      report_present(
           report, "load between the faces or steps", 1, 0.5,
           "the prescribed pressures were 0 at every face center in every step",
           "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face "
@@ -79,7 +79,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     // Only round-off remains if modes do not move along the forces, or forces cancel.
     const double part = std::sqrt(part_ / most_);
     if (part < 1e-9)
-      report_neglected(
+      report_present(
           report, "load that moves no mode", 1, 0.5,
           fmt::format("modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
                       part),

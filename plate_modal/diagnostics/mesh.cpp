@@ -50,7 +50,7 @@ class MeshOfModes final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override {
     report.errors.mesh = mesh_gap();
     // 0.1 corresponds to four cells per half wave in both directions.
-    report_neglected(
+    report_present(
         report, "mesh that resolves the modes", mesh_gap(), 0.1,
         fmt::format("deflection of cell centers against their corners = {:.2g} (rms over the motion)",
                     mesh_gap()),

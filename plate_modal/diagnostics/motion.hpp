@@ -13,7 +13,7 @@ namespace couplet::plate {
 /// oscillates. Stores only sums per mode.
 class Motion final {
  public:
-  /// Limit of the share of coarse modes: docs/plate.md.
+  /// Limit of the share of coarse modes, explained in docs/plate.md.
   static constexpr double coarse_limit = 0.1;
   /// Results; NaN if not available.
   struct Evidence {
@@ -38,7 +38,7 @@ class Motion final {
 
   explicit Motion(std::span<const double> omega);
 
-  /// Adds an accepted step of length `dt`. `load`: on each mode in the step, without gravity and seat.
+  /// Adds an accepted step of length `dt`. `load`: load on each mode in the step, without gravity and seat.
   void accepted(const ModalState& before, const ModalState& after, std::span<const double> load, double dt);
   /// `at_end`: nothing follows. Empty before a quarter of the longest period, because slow modes have not
   /// responded yet and fast ones dominate.

@@ -42,7 +42,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
                      fmt::format("compliance of the loads in truncated modes = {:.2g}", share),
                      "the loads excite truncated modes: keep more modes ('modes.number')", share);
     // A load without a component in the truncated modes does not excite them at any frequency.
-    if (!(share < 1e-6)) look_at_load_frequency(report);
+    if (!(share < 1e-6)) look_at_load_frequency(report, share);
     look_at_velocity(report);
   }
   void visit(io::Archive& archive) override { archive.common("compliance", left_out_, all_); }
@@ -96,13 +96,14 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   }
   // A mode responds to a load of frequency f by 1/(1 - (f/f_mode)^2): at two thirds of its frequency 1.8
   // times the static measure, and near it without bound.
-  void look_at_load_frequency(diagnostics::Report& report) const {
+  void look_at_load_frequency(diagnostics::Report& report, double share) const {
     const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
     report_neglected(
         report, "load faster than the modes", seen.load_over_last, 2. / 3,
         fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
                     seen.load_omega / (2 * std::numbers::pi), seen.load_over_last),
-        "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
+        "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')",
+        seen.load_over_last < 1 ? share / (1 / (seen.load_over_last * seen.load_over_last) - 1) : 1);
   }
   /// Share of the initial kinetic energy that is in no mode.
   void look_at_velocity(diagnostics::Report& report) const {

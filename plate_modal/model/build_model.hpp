@@ -14,7 +14,7 @@ namespace couplet::plate {
 struct PlateContext {
   MPI_Comm comm = MPI_COMM_SELF;
   std::string name = "plate";
-  std::filesystem::path case_folder, output_folder;  ///< output empty: no files are written
+  std::filesystem::path case_folder, output_folder;  ///< no files are written if output_folder is empty
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< of the run; NaN if unknown
 };

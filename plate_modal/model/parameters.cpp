@@ -61,7 +61,7 @@ void declare_body(config::Section& s, Parameters& p) {
                   {"simply-supported", Support::simply_supported},
                   {"symmetry", Support::symmetry}})
             .required()
-            .doc("support of the edge; symmetry: no slope across it");
+            .doc("support of the edge. symmetry: no slope across it");
       },
       "patch", "one entry for each part of the outline; needed with 'mesh'");
 }
@@ -90,7 +90,7 @@ void declare_place(config::Section& s, Parameters& p) {
       "position of the mid-surface");
   s.choice("wetted", p.wetted, {{"both", Wetted::both}, {"upper", Wetted::upper}, {"lower", Wetted::lower}})
       .doc(
-          "sides that form the interface; upper: where the normal points; both: including the rims of free "
+          "sides that form the interface. upper: where the normal points. both: including the rims of free "
           "edges");
   s.value("surface-density", p.surface_density)
       .doc("also give the mass behind each face [kg/m^2], the impedance for a Robin interface");
@@ -102,7 +102,7 @@ void declare_modes(config::Section& s, Parameters& p) {
       [&](config::Section& m) {
         m.value("number", p.number)
             .range(1, 10000)
-            .doc("number of modes of a mesh to keep, the lowest first; absent: 15");
+            .doc("number of modes of a mesh to keep, the lowest first; default: 15");
         m.check(
             [&] { return p.number && *p.number != std::floor(*p.number) ? "a whole number is needed" : ""; },
             "number");
@@ -238,7 +238,7 @@ void declare(config::Section& s, Parameters& p) {
   using Analysis = Parameters::Analysis;
   s.choice("analysis", p.analysis,
            {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"modal", Analysis::modal}})
-      .doc("static: deflection of the plate without inertia; modal: frequencies and shapes only");
+      .doc("static: deflection of the plate without inertia. modal: frequencies and shapes only");
   declare_body(s, p);
   declare_place(s, p);
   declare_modes(s, p);

@@ -52,7 +52,7 @@ class PlateModel final {
 
   /// Lowest modes of the plate.
   modes::EigenModes modes(int n) const;
-  /// Solves K u = load, in unknowns. Throws Error if the supports leave it free, and SolveFailure.
+  /// Solves K u = load for the unknowns. Throws Error if the supports leave the plate free, and SolveFailure.
   std::vector<double> deflect(std::span<const double> load) const;
 
  private:

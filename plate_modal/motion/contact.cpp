@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plate_modal/motion/contact.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -91,16 +92,7 @@ double Contact::largest_stiffness() const {
   for (std::size_t f = 0; f < gap_.size(); ++f)
     all.selfadjointView<Eigen::Lower>().rankUpdate(
         Eigen::Map<const Eigen::VectorXd>(shape_.data() + f * n_modes_, n_modes_), kappa_[f]);
-  // Power iteration; one percent suffices, and it converges from below.
-  Eigen::VectorXd x = Eigen::VectorXd::Ones(n_modes_).normalized();
-  double value = 0;
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::VectorXd y = all.selfadjointView<Eigen::Lower>() * x;
-    value = y.norm();
-    if (!(value > 0)) break;
-    x = y / value;
-  }
-  return value;
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(all, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
 double Contact::penetration(std::size_t face, std::span<const double> q) const {

@@ -18,7 +18,7 @@ namespace couplet::plate {
 class PressureLoad final {
  public:
   /// A side consists of the faces with normals within 60 degrees of `normal` (upper) or its opposite (lower).
-  /// Throws Error if a side with a pressure has no face. `name`: of the participant, for messages.
+  /// Throws Error if a side with a pressure has no face. `name`: name of the participant, for messages.
   PressureLoad(const Surface& surface, const Load& load, const Vec3& normal, std::string name = "plate");
 
   const std::optional<fv::Expression>& upper() const { return upper_; }

@@ -143,7 +143,7 @@ class Job:
 
     # -- programs -----------------------------------------------------------------------------------------------------
     def case_run(self, case, out, overrides, ranks, timeout, flags=()):
-        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: by participant; `flags`: further words of all programs.
+        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: ranks of each participant; `flags`: further arguments of all programs.
         A failure has what was written until then as its `results`."""
         command = Case(case, self.build).command({"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides, flags=flags)
         identity = self.keep and made_of(command, pathlib.Path(case).parent)
@@ -166,7 +166,7 @@ class Job:
 
     def case(self, case, keys=(), ranks=(), timeout=3600, flags=()):
         """Results of configs/<case>: a folder, a file 'folder/name' of it, or a path that ends in .yaml. `participant` is its first one; a key '.key' is one of that
-        participant. `ranks`: of coupler, fluid, solid and mover, or a number, of the only participant. Runs with the same keys are made once."""
+        participant. `ranks`: ranks of coupler, fluid, solid and mover, or one number for the only participant. Runs with the same keys are made once."""
         def make():
             file = self.root / (case if case.endswith(".yaml") else f"configs/{case}.yaml" if "/" in case else f"configs/{case}/case.yaml")
             participant = next(iter(Case(file).participants))

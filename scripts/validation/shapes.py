@@ -144,7 +144,7 @@ def run(job, case, read, of=None, within=None, low=None, high=None, limits=(), k
     over the run with a word of WAYS before the column, in a row ('row-6'), or the number ('maximum-1') and the time ('time-of-maximum-1') of a maximum; 'FILE.py: FUNCTION(NUMBERS).KEY'
     of a file beside the case, which takes the participant's folder ('./FILE.py': that of the run; without KEY: all that it gives); 'passes: mean' of the coupling, 'residual: largest' of its last passes.
     Met where it is within the share `within` of `of`, or from `low` to `high`, each one number or one for each reading, and with `quiet` where the run does not warn;
-    reported where nothing judges. `keys`: of the case, '.key' those of its participant; 'ranks=1,2,1,1'; `quick`: further ones with --quick. `meshes`: its
+    reported where nothing judges. `keys`: keys of the case, '.key' for those of its participant, or 'ranks=1,2,1,1'; `quick`: further keys with --quick. `meshes`: its
     mesh-parameters, or lists of keys, of several runs, of which the last is judged; `limits`: of each, of the share by which the first reading is off, or of its
     size without `of`. `cost`: shows the processor minutes."""
     keys = (*keys_of(keys), *(keys_of(quick) if job.quick else ()))

@@ -41,7 +41,7 @@ struct StrainGap {
   double variation = 0;           ///< InnerVariation::missed() of e1 where it is needed
   std::vector<Tensor3> strain{};  ///< e1, of the gradient in use
 };
-/// `strain`: of a displacement gradient. Collective.
+/// `strain`: returns the strain of a displacement gradient. Collective.
 StrainGap strain_gap(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known,
                      Tensor3 (*strain)(const Tensor3&));
 

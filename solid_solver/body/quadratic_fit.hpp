@@ -61,8 +61,8 @@ void add_mirror(const mesh::Geometry& geometry, Index face, std::vector<MirrorPl
 
 /// Mean of (x - x_c) (x - x_c)^T over a local cell [m^2], from its vertices: exact for simplices and boxes.
 Tensor3 cell_moment(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell);
-/// Appends `cell` and the local cells of its material that share a vertex with it. `mark`: per local cell,
-/// the cell it was last gathered for; initially -1.
+/// Appends `cell` and the local cells of its material that share a vertex with it. `mark`: the cell
+/// for which each local cell was last gathered, initially -1.
 void gather_cells(const mesh::Mesh& mesh, const mesh::Csr& cells_of_point, Index cell,
                   std::vector<Index>& mark, std::vector<Index>& cells);
 /// Boundary faces of each local cell, numbered among all faces.

@@ -50,37 +50,4 @@ class RecoveredStrain {
   double difference_ = 0, whole_ = 0;
 };
 
-/// Compares two strain energies of a displacement. One is that of the operator, by face strains over their
-/// pyramids. The other is smooth: it integrates a quadratic per cell, fitted to the vertices of cells that
-/// share a vertex. The difference measures the error of the operator's stiffness for this displacement
-/// (recovered displacements: Naga and Zhang, SIAM J. Numer. Anal. 42 (2004) 1780).
-///
-/// Ratio to the true displacement error (scripts/validate solid-accuracy): 0.3-1.2 on triangles (Cook's
-/// panel, a ring, an orthotropic bar; recovered strains: 0.02-1.1). It is far too large on sheared structured
-/// triangles, whose errors cancel. On other cells it is less reliable: 0.3-40 on bent tetrahedra.
-class SmoothEnergy {
- public:
-  /// Keeps references.
-  SmoothEnergy(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
-  /// True for meshes of triangles. Collective.
-  static bool is_of_use(const mesh::Mesh& mesh);
-
-  /// Adds the displacement gradient of a flux face; add those of partition faces on both ranks.
-  void add(Index face, const Tensor3& gradient);
-  /// Relative difference of the operator's energy from the smooth one; 0 if there is none. `point_u`:
-  /// displacement of all local points, `dim` values each [m]. Samples at most about 20 000 cells, evenly.
-  /// Collective.
-  double missed(std::span<const double> point_u) const;
-
- private:
-  struct Patch;
-  void gather(Index cell, Patch& patch) const;
-  double smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const;
-
-  const mesh::Mesh& mesh_;
-  const mesh::Geometry& geometry_;
-  const elastic::ElasticOperator& rows_;
-  std::vector<double> counted_;  // per owned cell: sum V_fP G : C : G
-};
-
 }  // namespace couplet::solid

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
@@ -161,9 +162,12 @@ std::vector<double> SolidBody::scaled(std::vector<double> values) const {
 }
 
 std::vector<double> SolidBody::dead_loads(double t) const {
-  std::vector<double> forces(boundaries_.n_forces(), 0);
-  boundaries_.add_forces(t, forces, !equilibrium_->means().takes_pressure);
-  return scaled(std::move(forces));
+  if (t != time_of_dead_loads_) {
+    dead_loads_.assign(boundaries_.n_forces(), 0);
+    boundaries_.add_forces(t, dead_loads_, !equilibrium_->means().takes_pressure);
+    time_of_dead_loads_ = t;
+  }
+  return scaled(dead_loads_);
 }
 
 std::vector<double> SolidBody::body_forces(double t, const Vec3& shift) const {
@@ -272,17 +276,12 @@ std::vector<double> SolidBody::known_of(const BodyField& field) const {
   const int dim = mesh_.dim;
   const elastic::VertexConstraints& constraints = elastic_.constraints();
   std::vector<double> known(elastic_.n_known() * dim, 0);
-  const auto at = [dim](std::span<const double> values, Index i) {
-    Vec3 u = Vec3::Zero();
-    for (int a = 0; a < dim; ++a) u[a] = values[std::size_t(i) * dim + a];
-    return u;
-  };
   for (const Index v : constraints.points()) {
-    const Vec3 u = at(field.points, v), held = u - constraints.free_part(v) * u;
+    const Vec3 u = elastic::vector_at(field.points, v, dim), held = u - constraints.free_part(v) * u;
     for (int a = 0; a < dim; ++a) known[std::size_t(constraints.column(v)) * dim + a] = held[a];
   }
   for (const Index f : elastic_.known_faces()) {
-    const Vec3 u = at(field.faces, f - mesh_.n_interior);
+    const Vec3 u = elastic::vector_at(field.faces, f - mesh_.n_interior, dim);
     for (int a = 0; a < dim; ++a) known[std::size_t(elastic_.known_of_face(f)) * dim + a] = u[a];
   }
   return known;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,7 +11,7 @@
 #include "common/fv/expression.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/boundaries.hpp"
-#include "solid_solver/boundary/rigid_patches.hpp"
+#include "solid_solver/boundary/loads.hpp"
 #include "solid_solver/boundary/seat.hpp"
 #include "solid_solver/equilibrium/equilibrium.hpp"
 #include "solid_solver/parameters/parameters.hpp"
@@ -119,6 +120,8 @@ class SolidBody final {
   std::unique_ptr<Seat> seat_;
   bool has_mass_ = false;
   double load_factor_ = 1;
+  mutable std::vector<double> dead_loads_;  // at the last time asked for, without the factor
+  mutable double time_of_dead_loads_ = std::numeric_limits<double>::quiet_NaN();
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
   std::vector<fv::Expression> body_force_;

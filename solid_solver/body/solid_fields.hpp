@@ -28,7 +28,7 @@ struct Deformation {
   double rotation = unknown;  ///< angle [rad]
 };
 
-/// Fields derived from the accepted state. `points`: from point_displacement(). All functions are collective.
+/// Fields derived from the accepted state. `points`: result of point_displacement(). All functions are collective.
 class SolidFields final {
  public:
   /// Keeps references. `last`: contains the loads for the forces.
@@ -40,7 +40,7 @@ class SolidFields final {
   /// Requires wants_acceleration().
   std::vector<double> point_acceleration() const;
   /// On each side of the joints of materials: at small strain recovered from patches of cells (StressRecovery), else
-  /// interpolated from the stress in the cells and on the boundary faces. `wanted`: flags of local points, empty: all; others
+  /// interpolated from the stress in the cells and on the boundary faces. `wanted`: flags of local points, empty means all; others
   /// may hold anything. `left`, of a body with recovers_stress(): StressRecovery::left_at_points().
   SidedTensors stress_sides(std::span<const double> points, std::span<const std::uint8_t> wanted = {},
                             std::vector<std::vector<double>>* left = nullptr) const;
@@ -49,7 +49,7 @@ class SolidFields final {
   }
   /// On boundary faces of owned cells, `dim` values each, out of the body [Pa]: as the loads have it where it is known (at
   /// small strain), else sigma n of the mean of `sides` of its cell's material over the face's points, of which those on a patch
-  /// suffice for its faces. `places`: where the local points are; the normal is that of the deformed face at large strain.
+  /// suffice for its faces. `places`: positions of the local points; the normal is that of the deformed face at large strain.
   std::vector<double> traction(std::span<const Vec3> places, const SidedTensors& sides) const;
   SidedTensors strain_sides(std::span<const double> points) const;
   /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa].
@@ -64,6 +64,8 @@ class SolidFields final {
   /// Sum of all loads of the last solve: tractions, pressures, interface, body forces.
   Vec3 total_load() const;
   Deformation deformation(std::span<const double> points) const;
+  /// Loads at the accepted time; the interface's are those of the last solve.
+  elastic::ElasticLoads loads_now() const;
 
  private:
   BodyField displacement(std::span<const double> points) const {
@@ -75,7 +77,6 @@ class SolidFields final {
   std::vector<SurfaceTraction> known_tractions() const;
   DiscreteStress discrete_stress(std::span<const double> points) const;
   std::vector<PatchForce> reactions_by_trial_functions() const;
-  elastic::ElasticLoads loads_now() const;
   Displaced displaced(std::span<const double> points) const;
 
   const SolidBody& body_;

@@ -59,7 +59,6 @@ std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   return forces;
 }
 
-/// Loads at the accepted time; the interface's are those of the last solve.
 elastic::ElasticLoads SolidFields::loads_now() const {
   elastic::ElasticLoads loads;
   loads.faces = body_.dead_loads(state_.time);

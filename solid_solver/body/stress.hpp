@@ -39,7 +39,7 @@ class PointTensors {
   /// `is_symmetry`: one flag per patch. `inside`: any interpolation, kept by reference. Collective.
   PointTensors(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const std::vector<bool>& is_symmetry,
                const fv::VertexInterpolation& inside);
-  /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Collective.
+  /// `cells`: tensors of owned cells; `faces`: tensors of boundary faces of owned cells. Collective.
   SidedTensors interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
   /// Does the same for tensors that are not symmetric. Materials are averaged.
   std::vector<Tensor3> interpolate_full(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;

@@ -39,17 +39,16 @@ struct DiscreteStress {
 /// stresses are per cell (ElasticOperator::volume_by_cells).
 class StressRecovery {
  public:
-  /// Both by reference. `plane_stress`: there is no stress across the plane.
+  /// Keeps references to both. `plane_stress`: true if there is no stress across the plane.
   StressRecovery(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, bool plane_stress);
 
-  /// Stress [Pa], the mean of the cells around on each side of a joint. `wanted`: flags of local points, empty: all;
+  /// Stress [Pa], the mean of the cells around on each side of a joint. `wanted`: flags of local points, empty means all;
   /// others may hold anything. Collective.
   SidedTensors at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
-  /// Returns the error of the stress at the `wanted` points, over its size there or least_scale() [1]: the median of its
-  /// differences from the quadratics of the cells one ring on, continued to the point. NaN at other points, and where there
-  /// is no such cell.
-  /// It does not see what is wrong with the displacement as a whole. `sides`: at_points() of them, for each of which there
-  /// is an entry. Collective.
+  /// Returns the relative error of the stress at each side of the `wanted` points [1], and NaN where it is unknown. The error
+  /// is a median over the cells one ring further out, whose quadratics are continued to the point and compared with the
+  /// stress there. It is divided by that stress or, if larger, by least_scale(). An error of the displacement as a whole is
+  /// not included. `sides`: result of at_points() for the same points. Collective.
   std::vector<std::vector<double>> left_at_points(const DiscreteStress& found,
                                                   std::span<const std::uint8_t> wanted,
                                                   const SidedTensors& sides) const;

@@ -80,7 +80,7 @@ SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition&
       c.known_components[i] = from.components[i].has_value();
       c.known.emplace_back(from.components[i].value_or(config::ExpressionText{}), where + ".components");
     }
-    // All components are known, so it is held as by `value`, also at its vertices.
+    // All components are known, so the part is held like one with `value`, including its vertices.
     c.by_component = c.known_components.head(dim).minCoeff() == 0;
   } else if (from.type == Type::fixed_displacement || from.type == Type::spring) {
     if (!from.value.empty()) c.known = fv::make_expressions(from.value, dim, where + ".value");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
 #include "common/fv/use.hpp"
 #include "common/mesh/mesh.hpp"
@@ -21,7 +22,7 @@ namespace couplet::solid {
 /// round-off. The faces remain free to deform, as with RBE3 elements. Without a point, it is uniform.
 class DistributedForce {
  public:
-  /// `faces`: of this rank. `load.point` is used if `has_point`. Throws Error for no area. Collective.
+  /// `faces`: faces of this rank. `load.point` is used if `has_point`. Throws Error for no area. Collective.
   DistributedForce(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> faces,
                    const TotalLoad& load, bool has_point, const std::string& where);
 
@@ -60,7 +61,7 @@ Tensor3 sum_of(MPI_Comm comm, const Tensor3& value);
 /// total is F to round-off on any mesh. Its directions stay fixed at large strain (dead load).
 class BearingLoad {
  public:
-  /// `faces`: of this rank. Throws Error with `where` if they do not form a cylinder. Collective.
+  /// `faces`: faces of this rank. Throws Error with `where` if they do not form a cylinder. Collective.
   BearingLoad(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> faces,
               const TotalLoad& load, std::string where);
 
@@ -119,10 +120,38 @@ double mean_positive(double d0, double d1);
 double mean_positive(double d0, double d1, double d2);
 
 /// Faces of this rank that carry a point load: open faces with their center within its radius. Without a
-/// radius it is the nearest face of all ranks, which must be open. `open`: per boundary face of owned cells,
-/// true if a force on it has an effect. Throws Error with `where`. Collective.
+/// radius it is the nearest face of all ranks, which must be open. `open`: flag of each boundary face of owned
+/// cells, true if a force on it has an effect. Throws Error with `where`. Collective.
 std::vector<Index> faces_of_point_load(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                        const PointLoad& load, std::span<const std::uint8_t> open,
                                        const std::string& where);
+
+/// Patches whose faces move as rigid bodies with small angles: u_i = U + w x (x_i - c) at face centers x_i
+/// (RBE2 elements). There is no penalty and no additional unknown: P A P u = P b is solved in the range of P,
+/// the orthogonal projection onto such motions. Sums of rigid motions are rigid, so every time scheme
+/// preserves them. Vertices are means of nodes as elsewhere: their share of a face's force acts on cells.
+class RigidPatches {
+ public:
+  RigidPatches() = default;
+  /// `faces`: faces of owned cells, one list per patch on all ranks. Each face must have an unknown. Collective.
+  RigidPatches(const mesh::Mesh& mesh, const elastic::ElasticOperator& elastic,
+               const std::vector<std::vector<Index>>& faces);
+
+  bool empty() const { return patches_.empty(); }
+  /// Applies P to unknowns of ElasticOperator. Collective.
+  void project(std::span<double> unknowns) const;
+
+ private:
+  struct Patch {
+    std::vector<std::size_t> node;   // index of the unknown
+    std::vector<Vec3> arm;           // x_i - c
+    double share = 0;                // 1 / number of faces of all ranks
+    Tensor3 spin = Tensor3::Zero();  // inverse of sum (|r|^2 I - r r^T); zero about a line of faces
+  };
+  void make(Patch& patch) const;
+
+  const mesh::Mesh* mesh_ = nullptr;
+  std::vector<Patch> patches_;
+};
 
 }  // namespace couplet::solid

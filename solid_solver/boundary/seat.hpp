@@ -16,9 +16,9 @@ namespace couplet::solid {
 /// uniform stress. Faces, places and areas are undeformed; a plane remains a plane at large strain.
 class Seat final {
  public:
-  /// `open`: boundary faces of owned cells with only a force condition. K and h of (4.33) are the constrained
-  /// modulus and depth of the cell behind the face. `kernel`: of the symmetric gradient, by reference. Throws
-  /// Error if no face is oriented towards the seat. Collective.
+  /// `open`: boundary faces of owned cells with only a force condition. K and h of [thesis, equation 4.33] are
+  /// the constrained modulus and depth of the cell behind the face. `kernel`: kernel of the symmetric gradient, kept by
+  /// reference. Throws Error if no face is oriented towards the seat. Collective.
   Seat(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const elastic::ElasticKernel& kernel,
        const contact::ContactParameters& parameters, std::span<const std::uint8_t> open, bool is_static);
 
@@ -34,7 +34,7 @@ class Seat final {
   bool is_conserving() const { return is_conserving_; }
   /// True without penetration (static analysis, no given stiffness). `kappa` only helps to find the pressure.
   bool is_rigid() const { return is_rigid_; }
-  /// Displacement along the direction for `values` of unknowns and known columns (empty: zeros). Collective.
+  /// Displacement along the direction for `values` of unknowns and known columns (empty means zeros). Collective.
   std::vector<double> along(std::span<const double> unknowns, std::span<const double> known) const;
   /// Penetration [m]; not positive if the face is clear of the seat. Collective.
   std::vector<double> penetration(std::span<const double> unknowns, std::span<const double> known) const;
@@ -50,7 +50,7 @@ class Seat final {
     double pressure = 0;     ///< largest [Pa]
     double area = 0;         ///< of the faces in contact [m^2]
   };
-  /// `forces`: of a rigid seat; empty to use the spring forces. Collective.
+  /// `forces`: forces of a rigid seat; empty to use the spring forces. Collective.
   Look look(std::span<const double> penetration, std::span<const double> forces) const;
 
  private:

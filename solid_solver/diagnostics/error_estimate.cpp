@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/weighted_estimate.hpp"
+#include "solid_solver/output/displacement_error.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -47,13 +49,14 @@ struct PhaseDrift {
 };
 
 /// Estimates the error of the displacement:
-///   mesh    difference of stress work and strain energy, equal in equilibrium; if larger, that of recovered
-///           and face strains (symmetric gradient: its work has no error), or the squared relative difference
-///           of two gradients' strains; see StrainAudit::missed_by_mesh(). Motion adds PhaseDrift.
+///   mesh    static: displacement_error(), the rms over the body. In motion, and where that is not available: difference of stress
+///           work and strain energy, equal in equilibrium; if larger, that of recovered and face strains (symmetric gradient:
+///           its work has no error), or the squared relative difference of two gradients' strains; see
+///           StrainAudit::missed_by_mesh(). Motion adds PhaseDrift.
 ///   step    sum of the local errors, see VelocityErrors; none if static
 ///   linear  static: work of the equilibrium residual over that of the loads, the error of the compliance;
 ///           dynamic: relative residuals of all steps, see StepErrors
-/// Thermal strain uses weighted_mesh_error(); in motion the mesh part is then unknown. Computed temperatures
+/// With thermal strain the mesh part of a motion is unknown. Computed temperatures
 /// add their error, relative to the distance from the reference, times the thermal share of strain energy. At
 /// finite strain the mesh part is half the squared difference of two gradients' Green strains, times the
 /// sensitivity of the deformed body to its stiffness (static runs: one solve with the tangent), or if larger
@@ -82,9 +85,9 @@ class ErrorEstimate final : public diagnostics::Diagnostic {
   void add_heat(diagnostics::ErrorParts& parts) const;
   double missed_of_large_strain() const;
   double finite_mesh_error() const;
-  double thermal_mesh_error(double known) const;
   double missed_now() const;
   double linear_mesh_error() const;
+  void find_displacement_error();
 
   SolidView view_;
   const SolidBody& body_;
@@ -93,7 +96,8 @@ class ErrorEstimate final : public diagnostics::Diagnostic {
   time::VelocityErrors steps_;
   time::StepErrors linear_;
   PhaseDrift drift_;
-  std::optional<HeatErrors> heat_;  // of temperatures that are solved for and strain the body
+  std::optional<double> displacement_;  // relative error of a static displacement
+  std::optional<HeatErrors> heat_;      // of temperatures that are solved for and strain the body
 };
 
 /// Residual of the last solve relative to its rows.
@@ -128,8 +132,8 @@ void ErrorEstimate::add_heat(diagnostics::ErrorParts& parts) const {
   body_.thermal()->add_loads(view_.now().time, body_.kernel(), forces);
   const double energy = product(view_.comm(), u, force), work = product(view_.comm(), u, forces);
   const double share = energy > 0 ? std::min(1.0, std::abs(work) / energy) : 1;
-  for (const auto part : {&diagnostics::ErrorParts::mesh, &diagnostics::ErrorParts::step})
-    parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
+  if (!std::isnan(parts.mesh)) parts.mesh = std::fmax(parts.mesh, share * load.mesh);
+  parts.step = std::fmax(parts.step, share * load.step);  // a number beats NaN
 }
 
 /// Relative strain energy error of the mesh: half of sum V mu |E1 - E2|^2 / sum V mu |E1|^2 with Green
@@ -156,16 +160,6 @@ double ErrorEstimate::finite_mesh_error() const {
   }
 }
 
-/// Thermal mesh error, at least `known`. Energies are no measure if heat strains the body. A moving body may
-/// be free, so the error is then unknown.
-double ErrorEstimate::thermal_mesh_error(double known) const {
-  if (body_.is_dynamic() || is_axisymmetric(body_.elastic())) return diagnostics::ErrorParts::unknown;
-  std::vector<double> pressure = body_.thermal()->pressure(view_.now().time);
-  pressure.resize(std::size_t(body_.mesh().n_faces()), 0);
-  const double weighted = weighted_mesh_error(body_, view_.unknowns(), view_.known(), pressure);
-  return std::isnan(weighted) ? weighted : std::max(known, weighted);
-}
-
 /// Relative error of the strain energy now; NaN of a body without strain.
 double ErrorEstimate::missed_now() const {
   const StrainAudit& audit = strain_->now(true);
@@ -173,14 +167,33 @@ double ErrorEstimate::missed_now() const {
   return std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
 }
 
+/// Static: at least the variation within quadrilaterals, which no reconstruction shows. Energies alone are no measure if heat strains
+/// the body.
 double ErrorEstimate::linear_mesh_error() const {
+  if (displacement_)
+    return std::max(*displacement_, strain_->now(true).inner_variation);  // NaN without a displacement
+  if (body_.parameters().expansion) return diagnostics::ErrorParts::unknown;
   if (!body_.is_dynamic()) return missed_now();
   return drift_.largest > 0 ? drift_.missed + drift_.over_size(drift_.missed)
                             : diagnostics::ErrorParts::unknown;
 }
 
+/// While the solver is still available. Without it the estimate is that of the strain energy.
+void ErrorEstimate::find_displacement_error() {
+  SolutionMethod* method = view_.stepper.method();
+  if (!strain_ || !method || !body_.kernel().is_symmetric() || body_.seat()) return;
+  try {
+    displacement_ = displacement_error(body_, view_.now(), view_.fields.loads_now(), *method);
+    // Cells that do not carry a cubic, as in a single row, make it larger than the displacement itself.
+    if (*displacement_ > 1) displacement_ = diagnostics::ErrorParts::unknown;
+  } catch (const SolveFailure&) {
+    displacement_.reset();
+  }
+}
+
 void ErrorEstimate::observe(diagnostics::Report&) {
   if (heat_) heat_->see_step(heat()->trial(), heat()->accepted());
+  if (!body_.is_dynamic() && view_.stepper.step().is_last) find_displacement_error();
   if (!body_.is_dynamic()) return;
   const mesh::Mesh& mesh = body_.mesh();
   const std::size_t n = std::size_t(mesh.cells.n_owned()) * mesh.dim;
@@ -218,6 +231,8 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
   diagnostics::ErrorParts& parts = report.errors;
   parts.dimension = body_.mesh().dim;
   if (view_.now().steps == 0) return;
+  if (!body_.is_dynamic() && !view_.stepper.step().is_last)
+    find_displacement_error();  // a partner's load may be the last
   if (body_.is_dynamic()) {
     parts.step = steps_.over_size();
     parts.linear = linear_.over_size();
@@ -225,9 +240,9 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
     parts.linear = strain_ ? missed_work() : left_by_solver();
   }
   parts.mesh = strain_ ? linear_mesh_error() : finite_mesh_error();
-  if (!strain_) return;
-  add_heat(parts);
-  if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);
+  // Nothing estimates the error of load factors, the answer of a search for them. That of frequencies is bounded only.
+  if (body_.parameters().seeks_buckling) parts.mesh = std::numeric_limits<double>::quiet_NaN();
+  if (strain_) add_heat(parts);
 }
 
 void ErrorEstimate::visit(io::Archive& archive) {

@@ -23,7 +23,8 @@ double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, 
 /// Error of the temperature in heat conduction, relative to its variation: the distance from the mean
 /// temperature before the first step, or of a steady field from its own mean. Collective.
 ///   mesh    difference from a linear fit through each cell's neighbors
-///   step    sum of local errors by the rates of the last three steps, see VelocityErrors; none if steady
+///   step    sum of local errors by the rates of the last three steps, see VelocityErrors; none if steady. Of one
+///           or two steps, by the ratio of their changes, see of_first_steps()
 class HeatErrors {
  public:
   /// Keeps a reference to `mesh`.
@@ -39,10 +40,12 @@ class HeatErrors {
   double mean(std::span<const double> cells) const;
   double size(std::span<const double> temperature, double level) const;
   std::vector<double> gaps(const Heat& heat) const;
+  double of_first_steps(const Heat& heat) const;
 
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   bool steady_;
+  HeatParameters::Scheme scheme_;
   double level_ = 0;  // before the first step [K]
   bool begun_ = false;
   std::vector<double> rate_;  // of the previous step [K/s]; empty if none

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "solid_solver/diagnostics/neglected.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "common/csv/csv_reader.hpp"
+#include "common/elasticity/vector_at.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/mesh/topology.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/diagnostics/strain_energy.hpp"
+#include "solid_solver/diagnostics/view.hpp"
 #include "solid_solver/effects.hpp"
 
 namespace couplet::solid {
@@ -73,7 +82,8 @@ Opinion spare_inertia(double kinetic_over_strain, double steps) {
 // In linear theory the stretch of a fiber that rotates by phi without strain has the error phi^2/2. For a
 // gradient of 0.02 that is a fiftieth of the strain itself.
 Opinion neglected_geometry(const P& p, const Deformation& d,
-                           const std::optional<LargeStrainEstimate>& large_strain, double buckling_factor) {
+                           const std::optional<LargeStrainEstimate>& large_strain, bool is_bounded,
+                           double buckling_factor) {
   if (!deforms(p) || has_finite_strain(p)) return {};
   const std::string parts =
       std::isnan(d.strain)
@@ -81,13 +91,15 @@ Opinion neglected_geometry(const P& p, const Deformation& d,
           : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)", d.strain, 57.29578 * d.rotation);
   const double share = share_of_geometry(d, large_strain, buckling_factor);
   const bool is_estimated = large_strain || !std::isnan(buckling_factor);
+  // The share by the gradient is a lower bound: a clamped sheet stretches long before its gradient is large.
+  const bool is_known = is_estimated || is_bounded || share >= diagnostics::share_limit();
   return diagnostics::finding_of(
       {.effect = "geometric non-linearity",
-       .number = is_estimated ? share : d.gradient,
-       .limit = is_estimated ? 0.05 : 0.02,
+       .number = d.gradient,
+       .limit = 0.02,
        .what = fmt::format("max |grad u| = {:.2g}{}{}", d.gradient, parts,
                            large_strain   ? "; " + large_strain->text()
-                           : is_estimated ? fmt::format("; the buckling shape would grow by {:.2g}", share)
+                           : is_estimated ? "; the buckling shape would grow"
                                           : ""),
        .advice = !std::isnan(buckling_factor)
                      ? "lateral motion grows as the load nears the buckling load: use "
@@ -96,7 +108,7 @@ Opinion neglected_geometry(const P& p, const Deformation& d,
                  : d.gradient < 0.1 ? "expect errors of a few per cent"
                                     : "the result holds for linear theory, not for the body: use "
                                       "'kinematics: finite-strain'",
-       .share = share});
+       .share = is_known ? share : std::nan("")});
 }
 
 Opinion neglected_yielding(double share_of_yield) {
@@ -109,9 +121,27 @@ Opinion neglected_yielding(double share_of_yield) {
        .share = std::max(0., share_of_yield - 1)});
 }
 
+// Metals yield at strains of 0.1 to 0.5 %; plastics and rubber are softer and yield later or not at all.
+Opinion unknown_yielding(const P& p, double strain) {
+  constexpr double soft = 10e9;  // [Pa]
+  double stiffest = 0;
+  for (const SolidMaterial& m : materials_of(p)) {
+    if (m.yield_strength) return {};
+    stiffest = std::max(stiffest, m.youngs_modulus);
+  }
+  if (stiffest < soft || !(strain > 0.002)) return {};
+  return diagnostics::finding_of(
+      {.effect = "yielding",
+       .number = strain,
+       .limit = 0.002,
+       .what =
+           fmt::format("largest stress = {:.2g} of Young's modulus, and no yield strength is given", strain),
+       .advice = "give 'yield-strength' in 'material'"});
+}
+
 Opinion near_incompressibility(const P& p) {
   if (!deforms(p) || has_volume_strain_of_cells(p)) return {};
-  if (p.dimension == 2 && p.plane == P::Plane::stress) return {};  // its thickness is free: no locking
+  if (is_plane_stress(p)) return {};  // its thickness is free: no locking
   const double nu = std::max(0.0, largest_poissons_ratio(p));
   return diagnostics::finding_of(
       {.effect = "near incompressibility",
@@ -122,7 +152,8 @@ Opinion near_incompressibility(const P& p) {
                      ? "coarse meshes may be too stiff there, and an orthotropic material has no "
                        "volume strain per cell: compare two meshes"
                      : "coarse meshes are too stiff or worse there: use 'solution-method: "
-                       "{face-gradient: symmetric}' with one volume strain per cell"});
+                       "{face-gradient: symmetric}' with one volume strain per cell",
+       .left_out = false});
 }
 
 // Free thermal strain relative to the largest displacement gradient. Uses the material's coefficient and the
@@ -158,9 +189,273 @@ Opinion thermoelastic_coupling(const P& p, double coupling_number) {
              .limit = 0.005,
              .what = found.what,
              .left_out = false,
-             .is_spare = true,
-             .saves = diagnostics::saved_share("solid_solver", "thermoelastic coupling")};
+             .is_spare = true};
   return diagnostics::finding_of(found);
 }
+
+namespace {
+
+/// Inertia of a static run with several steps, from the velocities between them.
+class NeglectedInertia final : public diagnostics::Diagnostic {
+ public:
+  explicit NeglectedInertia(const SolidView& view) : view_(view) {}
+
+  void observe(diagnostics::Report&) override {
+    const SolidState &now = view_.now(), &before = view_.before();
+    if (before.steps < 1) return;
+    const mesh::Mesh& mesh = view_.body.mesh();
+    Vec3 inertia = Vec3::Zero();
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      for (int a = 0; a < mesh.dim; ++a) {
+        const std::size_t i = std::size_t(c) * mesh.dim + a;
+        inertia[a] += view_.body.density(c) * view_.body.geometry().volume[c] *
+                      (now.cell_v[i] - before.cell_v[i]) / (0.5 * (now.dt + before.dt));
+      }
+    for (int a = 0; a < mesh.dim; ++a) inertia[a] = parallel::sum(mesh.comm, inertia[a]);
+    const double load = view_.fields.total_load().norm();
+    if (load > 0) over_load_ = std::max(over_load_, inertia.norm() / load);
+  }
+
+  void look(diagnostics::Report& report) override {
+    if (view_.now().steps > 1) add(report, neglected_inertia(view_.body.parameters(), over_load_));
+  }
+
+  void visit(io::Archive& archive) override { archive.common("inertia", over_load_); }
+
+ private:
+  SolidView view_;
+  double over_load_ = 0;
+};
+
+/// Weight of a static body without gravity. By reciprocity, its work on the displacement by the loads over the work of the loads is
+/// the change of the displacement at the loads. It counts in the direction of the axis in which it is largest.
+class NeglectedWeight final : public diagnostics::Diagnostic {
+ public:
+  NeglectedWeight(const SolidView& view, std::shared_ptr<StrainEnergy> strain)
+      : view_(view), strain_(std::move(strain)) {}
+
+  void conclude(diagnostics::Report& report) override {
+    constexpr double gravity = 9.81;  // [m/s^2]
+    const SolidBody& body = view_.body;
+    const mesh::Mesh& mesh = body.mesh();
+    Vec3 moved = Vec3::Zero();  // mass times displacement
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      for (int a = 0; a < mesh.dim; ++a)
+        moved[a] +=
+            body.density(c) * body.geometry().volume[c] * view_.now().cell_u[std::size_t(c) * mesh.dim + a];
+    for (int a = 0; a < mesh.dim; ++a) moved[a] = std::abs(parallel::sum(mesh.comm, moved[a]));
+    int axis = 0;
+    moved.maxCoeff(&axis);
+    const StrainAudit& strain = strain_->now(false);
+    const double work = 2 * strain.strain_energy;
+    // Without loads a given motion is the answer, and what is below the scale is round-off.
+    if (!(work > 0) || strain.strain_energy < strain.scale || !(view_.fields.total_load().norm() > 0)) return;
+    const double share = gravity * moved[axis] / work;
+    add(report, diagnostics::finding_of(
+                    {.effect = "gravity",
+                     .number = share,
+                     .limit = 0,
+                     .what = fmt::format(
+                         "along {} the weight would change the displacement under the loads by {:.2g} of it",
+                         "xyz"[axis], share),
+                     .advice = "if it acts there, use 'gravity'",
+                     .share = share}));
+  }
+
+ private:
+  SolidView view_;
+  std::shared_ptr<StrainEnergy> strain_;
+};
+
+/// Yielding and volumetric locking.
+class NeglectedOfMaterial final : public diagnostics::Diagnostic {
+ public:
+  explicit NeglectedOfMaterial(const SolidView& view) : view_(view) {}
+
+  void look(diagnostics::Report& report) override {
+    add(report, neglected_yielding(share_of_yield()));
+    if (Opinion locks = near_incompressibility(view_.body.parameters())) {
+      report.position.push_back({"Poisson's ratio", locks->number, locks->limit, "solid-nu"});
+      add(report, std::move(locks));
+    }
+  }
+
+ private:
+  /// Largest von Mises stress over the yield strength; NaN if unknown.
+  double share_of_yield() const {
+    const SolidBody& body = view_.body;
+    const mesh::Mesh& mesh = body.mesh();
+    if (std::ranges::none_of(body.materials(),
+                             [](const SolidMaterial& m) { return m.yield_strength.has_value(); }))
+      return std::numeric_limits<double>::quiet_NaN();
+    const std::vector<Tensor3> stress =
+        view_.fields.face_stress(0, mesh.n_flux_faces(), view_.fields.point_displacement());
+    double share = 0;
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+      if (const auto& yield = body.materials()[mesh.material_of(mesh.owner[f])].yield_strength)
+        share = std::max(share, equivalent_stress(stress[f]) / *yield);
+    return parallel::max(mesh.comm, share);
+  }
+
+  SolidView view_;
+};
+
+/// Thermal strain and heat of deformation, for a case with temperatures.
+class NeglectedOfHeat final : public diagnostics::Diagnostic {
+ public:
+  explicit NeglectedOfHeat(const SolidView& view) : view_(view) {}
+
+  void look(diagnostics::Report& report) override {
+    const SolidParameters& p = view_.body.parameters();
+    const ThermalStrain& thermal = *view_.body.thermal();
+    const auto [low, high] = thermal.temperatures_seen();
+    const double reference = p.expansion.value_or(ThermalExpansion{}).reference_temperature;
+    const double gradient = view_.fields.deformation(view_.fields.point_displacement()).gradient;
+    largest_gradient_ = std::max(largest_gradient_, gradient);
+    add(report, neglected_thermal_strain(p, largest_gradient_, high - low,
+                                         std::max(std::abs(high - reference), std::abs(low - reference))));
+    if (const double number = thermal.coupling_number(); number > 0)
+      add(report, thermoelastic_coupling(p, number));
+  }
+
+  void visit(io::Archive& archive) override { archive.common("gradient", largest_gradient_); }
+
+ private:
+  SolidView view_;
+  double largest_gradient_ = 0;
+};
+
+}  // namespace
+
+diagnostics::Made neglected_inertia(const SolidView& view) {
+  if (view.body.is_dynamic()) return nullptr;
+  return std::make_shared<NeglectedInertia>(view);
+}
+
+diagnostics::Made neglected_weight(const SolidView& view, const std::shared_ptr<StrainEnergy>& strain) {
+  const P& p = view.body.parameters();
+  const bool has_interface =
+      std::ranges::any_of(p.boundaries, [](const auto& one) { return is_interface(one.second); });
+  if (!strain || view.body.is_dynamic() || !p.gravity.empty() || !p.body_force.empty() ||
+      view.body.thermal() || has_interface || is_axisymmetric(p))
+    return nullptr;
+  return std::make_shared<NeglectedWeight>(view, strain);
+}
+
+diagnostics::Made limits_of_material(const SolidView& view) {
+  return std::make_shared<NeglectedOfMaterial>(view);
+}
+
+diagnostics::Made effects_of_heat(const SolidView& view) {
+  if (!view.body.thermal()) return nullptr;
+  return std::make_shared<NeglectedOfHeat>(view);
+}
+
+namespace {
+
+/// Faces of the body that pass through each other: the depth of displaced boundary points in displaced cells that are not their
+/// neighbors.
+class MissingContact final : public diagnostics::Diagnostic {
+ public:
+  explicit MissingContact(const SolidView& view) : view_(view) {}
+  void look(diagnostics::Report& report) override {
+    const double share = depth_over_motion();
+    if (!(share > 0)) return;
+    add(report,
+        diagnostics::finding_of(
+            {.effect = "contact",
+             .number = share,
+             .limit = 0.01,
+             .what =
+                 fmt::format("faces pass through each other by {:.2g} of the largest displacement", share),
+             .advice = "there is no contact of bodies with each other: hold the faces apart, or end the "
+                       "loads before they meet",
+             .share = std::min(share, 1.)}));
+  }
+
+ private:
+  struct Place {
+    double x, y, z;
+    GlobalIndex point;
+    Vec3 at() const { return {x, y, z}; }
+  };
+
+  double depth_over_motion() const {
+    const mesh::Mesh& mesh = view_.body.mesh();
+    const std::vector<double> u = view_.fields.point_displacement();
+    std::vector<Vec3> moved = view_.body.geometry().points;
+    double motion = 0;
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      const Vec3 here = elastic::vector_at(u, Index(v), mesh.dim);
+      moved[v] += here;
+      if (Index(v) < mesh.points.n_owned()) motion = std::max(motion, here.norm());
+    }
+    motion = parallel::max(mesh.comm, motion);
+    std::vector<std::uint8_t> outside(moved.size(), 0);
+    for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+      if (mesh.twin.empty() || mesh.twin[std::size_t(f - mesh.n_interior)] < 0)
+        for (const Index v : mesh.face_points[f]) outside[std::size_t(v)] = 1;
+    std::vector<Place> mine;
+    for (Index v = 0; v < Index(moved.size()); ++v)
+      if (outside[std::size_t(v)]) mine.push_back({moved[v][0], moved[v][1], moved[v][2], mesh.point_id[v]});
+    std::vector<Place> places = parallel::all_gather(mesh.comm, mine);
+    std::ranges::sort(places, {}, &Place::x);
+    const mesh::Csr cells_of_point = mesh::transpose(mesh.cell_points, 0, mesh.points.n_local());
+    mesh::Csr cells_of_face;
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+      const std::array<Index, 2> sides{mesh.owner[f], f < mesh.n_interior ? mesh.neighbour[f] : -1};
+      cells_of_face.push_row({sides.data(), std::size_t(f < mesh.n_interior ? 2 : 1)});
+    }
+    const mesh::Csr faces_of_cell = mesh::transpose(cells_of_face, 0, mesh.cells.n_local());
+    const auto is_near = [&](Index cell, GlobalIndex point) {
+      for (const Index v : mesh.cell_points[cell])
+        for (const Index c : cells_of_point[v])
+          for (const Index w : mesh.cell_points[c])
+            if (mesh.point_id[w] == point) return true;
+      return false;
+    };
+    double depth = 0;
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+      if (std::ranges::none_of(faces_of_cell[c], [&](Index f) { return f >= mesh.n_interior; })) continue;
+      Vec3 low = Vec3::Constant(1e300), high = -low, middle = Vec3::Zero();
+      for (const Index v : mesh.cell_points[c]) {
+        low = low.cwiseMin(moved[v]), high = high.cwiseMax(moved[v]);
+        middle += moved[v] / double(mesh.cell_points[c].size());
+      }
+      for (auto p = std::ranges::lower_bound(places, low[0], {}, &Place::x);
+           p != places.end() && p->x < high[0]; ++p) {
+        if ((p->at() - low).minCoeff() < 0 || (high - p->at()).minCoeff() < 0 || is_near(c, p->point))
+          continue;
+        double here = std::numeric_limits<double>::max();
+        bool is_inside = true;
+        for (const Index f : faces_of_cell[c]) {
+          const double away = inward(mesh.face_points[f], moved, middle, p->at());
+          is_inside = is_inside && away > 0;
+          if (f >= mesh.n_interior) here = std::min(here, away);
+        }
+        if (is_inside) depth = std::max(depth, here);
+      }
+    }
+    return motion > 0 ? parallel::max(mesh.comm, depth) / motion : 0;
+  }
+
+  /// Distance of a place from the plane of a face, on the side of `middle`.
+  static double inward(std::span<const Index> points, const std::vector<Vec3>& moved, const Vec3& middle,
+                       const Vec3& at) {
+    const Vec3 along = moved[points[1]] - moved[points[0]];
+    const Vec3 normal = points.size() == 2
+                            ? Vec3(along[1], -along[0], 0)
+                            : Vec3((moved[points[points.size() - 1]] - moved[points[1]])
+                                       .cross(moved[points[points.size() / 2]] - moved[points[0]]));
+    const double side = normal.dot(middle - moved[points[0]]);
+    return normal.dot(at - moved[points[0]]) / normal.norm() * (side < 0 ? -1 : 1);
+  }
+
+  SolidView view_;
+};
+
+}  // namespace
+
+diagnostics::Made missing_contact(const SolidView& view) { return std::make_shared<MissingContact>(view); }
 
 }  // namespace couplet::solid

@@ -5,7 +5,7 @@
 
 #include "common/diagnostics/diagnostics.hpp"
 #include "solid_solver/body/solid_fields.hpp"
-#include "solid_solver/diagnostics/large_strain_estimate.hpp"
+#include "solid_solver/diagnostics/linear_theory.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {
@@ -18,13 +18,17 @@ using Opinion = std::optional<diagnostics::Finding>;
 Opinion neglected_inertia(const SolidParameters& parameters, double inertia_over_load);
 /// `kinetic_over_strain`: largest energy ratio in a dynamic run.
 Opinion spare_inertia(double kinetic_over_strain, double steps);
-/// `large_strain`: absent if not known or too small to matter. `buckling_factor`: NaN unless it is low.
+/// `large_strain`: absent if not known or, where the run `is_bounded` by its first terms, too small to matter. `buckling_factor`:
+/// NaN unless it is low.
 Opinion neglected_geometry(const SolidParameters& parameters, const Deformation& largest,
-                           const std::optional<LargeStrainEstimate>& large_strain, double buckling_factor);
+                           const std::optional<LargeStrainEstimate>& large_strain, bool is_bounded,
+                           double buckling_factor);
 /// `share_of_yield`: largest equivalent stress over the yield strength.
 Opinion neglected_yielding(double share_of_yield);
+/// Without a yield strength: `strain` is the largest one.
+Opinion unknown_yielding(const SolidParameters& parameters, double strain);
 Opinion near_incompressibility(const SolidParameters& parameters);
-/// `gradient`: largest of the displacement. `range`, `change`: of temperatures, largest from reference [K].
+/// `gradient`: largest displacement gradient. `range`, `change`: of the temperatures, and from the reference [K].
 Opinion neglected_thermal_strain(const SolidParameters& parameters, double gradient, double range,
                                  double change);
 /// Stiffening by the heat of deformation, thesis (2.27), needed or not.

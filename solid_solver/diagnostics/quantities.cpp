@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
+#include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/view.hpp"
 #include "solid_solver/output/heat_quantities.hpp"
 
@@ -29,10 +30,10 @@ class Quantities final : public diagnostics::Diagnostic {
   void observe(diagnostics::Report&) override {
     if (view_.stepper.step().is_last) estimate();
   }
-  void conclude(diagnostics::Report& report) override {
+  void conclude(diagnostics::Report&) override {
     if (!view_.stepper.step().is_last) estimate();  // a partner's load may be the last
-    const double mesh = report.errors.mesh;
-    for (QuantityEstimate& q : found_) q.body = mesh > 0 ? mesh * std::abs(q.value) : 0;
+    const double stiff = found_.empty() ? 0 : audit_strain(view_, true).inner_variation;
+    for (QuantityEstimate& q : found_) q.body = stiff * std::abs(q.value);
     tell_quantities(view_.comm(), view_.context, found_);
   }
 

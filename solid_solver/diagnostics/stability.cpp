@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "solid_solver/diagnostics/stability.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/diagnostics/neglected.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
 
 namespace couplet::solid {
@@ -70,7 +75,7 @@ void Stability::conclude(diagnostics::Report& report) {
                          l.is_maximum ? "maximum" : "minimum");
   report.sentences.push_back(fmt::format("load path: load factor {:.5g} at the end; limit points: {}.",
                                          path->factor(), found.empty() ? "none" : found));
-  if (path->stiffness() > 0) return;  // 0: not surely negative of a slender body
+  if (path->stiffness() > 0) return;  // 0 if a slender body's is not surely negative
   report.findings.push_back(
       {.id = "unstable-equilibrium",
        .severity = base::Severity::warning,
@@ -85,6 +90,73 @@ void Stability::conclude(diagnostics::Report& report) {
 void Stability::visit(io::Archive& archive) {
   archive.common("held", time_, stiffness_, load_, is_lost_, limits_told_);
   if (archive.reads()) softest_ = {};
+}
+
+namespace {
+
+const char* cure_of(const SolidView& view) {
+  if (!view.compares_gradients())
+    return "a time scheme that does not conserve the energy of a nonlinear law; a shorter step, "
+           "'energy-momentum: true' or 'time-scheme: {type: bathe}' prevents it";
+  if (view.body.kernel().is_symmetric()) return "a shorter step or 'time-scheme: {type: bathe}' prevents it";
+  return "the operator of 'solution-method: {face-gradient: thesis}' and 'corrected' is not symmetric, "
+         "so undamped motion grows on skewed, stretched or perturbed cells; use 'face-gradient: "
+         "symmetric', or damp it by 'time-scheme: {type: bathe}' or a little 'damping: {stiffness: "
+         "...}'; 'output: {spectrum: true}' computes its rate on a coarse mesh of the same kind";
+}
+
+}  // namespace
+
+std::string EnergyAudit::text() const {
+  return fmt::format(
+      "the solid has {:.6g} J of kinetic and strain energy; loads and initial motion supplied {:.6g} J "
+      "({:+.2g} %)",
+      held, given, 100 * created());
+}
+
+void EnergyBalance::look(diagnostics::Report& report) {
+  const SolidBody& body = view_.body;
+  if (!body.prescribed().is_zero() || (strain_ && body.thermal())) return;
+  const SolidState& state = view_.now();
+  const SolidLedger& ledger = view_.stepper.ledger();
+  const StrainAudit found = strain_ ? strain_->now(false) : StrainAudit{};
+  const double strain = strain_ ? std::max(0.0, std::min(found.strain_energy, found.stress_work))
+                                : body.equilibrium().energy(view_.unknowns(), state.known);
+  const double work = parallel::sum(view_.comm(), state.load_work);
+  audit_.is_driven = work != 0;
+  audit_.given =
+      parallel::sum(view_.comm(), state.energies.initial_kinetic) + work + ledger.initial_contact();
+  const double kinetic = parallel::sum(view_.comm(), ledger.kinetic(state));
+  largest_kinetic_ = std::max(largest_kinetic_, kinetic);
+  largest_strain_ = std::max(largest_strain_, strain);
+  audit_.held = kinetic + strain + ledger.contact(state);
+  audit_.scale = std::max(audit_.scale, std::abs(audit_.given));
+  if (audit_.is_hopeless())
+    throw Error("t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.", state.time,
+                audit_.text(), cure_of(view_));
+  if (!audit_.is_doubtful()) return;
+  report.findings.push_back(
+      {.id = "energy-growth",
+       .severity = audit_.severity(),
+       .number = audit_.created(),
+       .limit = audit_.limit(),
+       .sentence = fmt::format("energy balance: {} (limit {:+.2g} %): spurious growth; {}", audit_.text(),
+                               100 * audit_.limit(), cure_of(view_))});
+}
+
+void EnergyBalance::conclude(diagnostics::Report& report) {
+  if (audit_.scale > 0) report.sentences.push_back(fmt::format("energy balance: {}.", audit_.text()));
+  if (!view_.body.parameters().damping && !view_.body.kernel().is_symmetric())
+    report.sentences.emplace_back(
+        "structural damping neglected: free vibration does not decay, and modes resolved by the time step "
+        "may grow; a little 'damping: {stiffness: ...}' or 'time-scheme: {type: bathe}' prevents that; "
+        "'output: {spectrum: true}' computes the rate on a coarse mesh of the same kind.");
+  if (largest_strain_ > 0)
+    add(report, spare_inertia(largest_kinetic_ / largest_strain_, double(view_.now().steps)));
+}
+
+void EnergyBalance::visit(io::Archive& archive) {
+  archive.common("audit", audit_, largest_kinetic_, largest_strain_);
 }
 
 }  // namespace couplet::solid

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <string>
+
+#include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/view.hpp"
 
 namespace couplet::solid {
@@ -27,6 +31,57 @@ class Stability final : public diagnostics::Diagnostic {
   SoftMotion softest_;
   bool is_lost_ = false;
   std::size_t limits_told_ = 0;
+};
+
+/// Energy of a dynamic run compared with the energy supplied to it [J]; over all ranks.
+struct EnergyAudit {
+  double held = 0;        ///< kinetic and strain energy
+  double given = 0;       ///< initial energy and work of the loads
+  double scale = 0;       ///< largest energy supplied so far
+  bool is_driven = true;  ///< loads did work, which is known only approximately
+  double created() const { return scale > 0 ? (held - given) / scale : 0; }
+  /// Limits of energy growth without a cause. In an undriven body, only the motion can be in error.
+  static constexpr double most_created = 0.2, most_created_undriven = 0.1;
+  /// Limit above which the run ends because the result is unusable.
+  static constexpr double hopeless = 10;
+  // The comparisons treat NaN as exceeding every limit.
+  double limit() const { return is_driven ? most_created : most_created_undriven; }
+  bool is_doubtful() const { return !(created() <= limit()); }
+  /// Limit at which more energy was created than supplied.
+  static constexpr double useless = 1;
+  base::Severity severity() const {
+    return created() < useless ? base::Severity::warning : base::Severity::wrong;
+  }
+  bool is_hopeless() const { return !(created() <= hopeless); }
+  /// Both energies, with the growth in percent.
+  std::string text() const;
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(held, given, scale, is_driven);
+  }
+};
+
+/// Reports a motion with more energy than loads and initial motion supplied, and ends the run in hopeless
+/// cases. Moving supports and heat do work that is not counted, so there is no balance with them.
+class EnergyBalance final : public diagnostics::Diagnostic {
+ public:
+  /// `strain`: observed before it at the same steps; nullptr at large strain (energy of the law).
+  EnergyBalance(const SolidView& view, std::shared_ptr<StrainEnergy> strain)
+      : view_(view), strain_(std::move(strain)) {}
+  const EnergyAudit& audit() const { return audit_; }
+  void observe(diagnostics::Report& report) override {
+    if (is_time_to_look(view_)) look(report);
+  }
+  /// Throws Error if the result is unusable.
+  void look(diagnostics::Report& report) override;
+  void conclude(diagnostics::Report& report) override;
+  void visit(io::Archive& archive) override;
+
+ private:
+  SolidView view_;
+  std::shared_ptr<StrainEnergy> strain_;
+  EnergyAudit audit_;
+  double largest_kinetic_ = 0, largest_strain_ = 0;  // [J]
 };
 
 }  // namespace couplet::solid

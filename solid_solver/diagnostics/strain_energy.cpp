@@ -51,19 +51,15 @@ bool is_strained(const SolidBody& body) {
 /// Estimates of the variation within cells, where available.
 struct WithinCells {
   std::optional<InnerVariation> variation;
-  std::optional<SmoothEnergy> smooth;
   std::optional<RecoveredStrain> recovered;
   void add(Index f, const Tensor3& gradient) {
     const Tensor3 strain = 0.5 * (gradient + gradient.transpose());
     if (variation) variation->add(f, strain);
-    if (smooth) smooth->add(f, gradient);
     if (recovered) recovered->add(f, strain);
   }
   /// Call after all faces. Collective.
-  void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u,
-              std::span<const double> points, StrainAudit& audit) {
+  void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u, StrainAudit& audit) {
     if (variation) audit.inner_variation = variation->missed();
-    if (smooth) audit.smooth_difference = smooth->missed(points);
     if (!recovered) return;
     recovered->recover();
     const auto compare = [&](Index f, const Tensor3& g) { recovered->compare(f, 0.5 * (g + g.transpose())); };
@@ -75,11 +71,10 @@ struct WithinCells {
 WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
   WithinCells within;
   const elastic::ElasticOperator& rows = body.elastic();
-  within.recovered.emplace(mesh, rows);
+  // A static body with the symmetric gradient has displacement_error().
+  if (body.is_dynamic() || body.seat() || !body.kernel().is_symmetric()) within.recovered.emplace(mesh, rows);
   if (!body.kernel().is_symmetric() || is_strained(body)) return within;
   if (InnerVariation::is_needed(mesh, rows)) within.variation.emplace(mesh, rows);
-  // In a dynamic run, high modes would dominate.
-  if (!body.is_dynamic() && SmoothEnergy::is_of_use(mesh)) within.smooth.emplace(mesh, rows);
   return within;
 }
 
@@ -102,7 +97,7 @@ double StrainAudit::missed_by_mesh(int dim) const {
   if (!recovered_difference) return of_gradients;
   // A single cell across shows no slope to neighbors, so all of its bending would be missed.
   const double missed = dim == 3 ? std::min(*recovered_difference, of_gradients) : *recovered_difference;
-  return std::max({missed, smooth_difference, inner_variation});
+  return std::max(missed, inner_variation);
 }
 
 double StrainAudit::mismatch() const { return scale > 0 ? std::abs(stress_work - strain_energy) / scale : 0; }
@@ -220,7 +215,7 @@ StrainAudit audit_strain(const SolidView& view, bool compare) {
   }
   audit.strain_energy = parallel::sum(mesh.comm, energy);
   audit.stress_work = parallel::sum(mesh.comm, work);
-  within.finish(body.kernel(), {unknowns, known}, points, audit);
+  within.finish(body.kernel(), {unknowns, known}, audit);
   const Scales scales = scales_of(view);
   audit.scale = scales.of(audit.strain_energy, scales.energy);
   if (audit.recovered_difference && audit.scale > 0)

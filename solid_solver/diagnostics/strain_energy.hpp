@@ -25,8 +25,6 @@ struct StrainAudit {
   bool compares_gradients = false;
   /// InnerVariation::missed() of the symmetric gradient in 2-D, else 0.
   double inner_variation = 0;
-  /// SmoothEnergy::missed() of static triangle meshes, else 0.
-  double smooth_difference = 0;
   /// RecoveredStrain::missed(), scaled likewise.
   std::optional<double> recovered_difference;
   /// Error of the stiffness, and so of the displacement, due to the mesh: the largest of these. In 3-D the recovered
@@ -47,7 +45,7 @@ struct StrainAudit {
   template <class Numbers>
   void visit(Numbers& numbers) {
     numbers(strain_energy, stress_work, scale, gradient_difference, compares_gradients, inner_variation,
-            smooth_difference, recovered_difference);
+            recovered_difference);
   }
 };
 

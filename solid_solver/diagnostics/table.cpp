@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/diagnostics/energy_balance.hpp"
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 
@@ -20,6 +19,7 @@ using diagnostics::Made;
 #undef HEAT
 Made quantities(const HeatView& view);
 Made heat_error(const Heat& heat);
+Made neglected_weight(const SolidView& view, const std::shared_ptr<StrainEnergy>& strain);
 Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
                  std::shared_ptr<Stability> stability);
 

@@ -15,9 +15,8 @@
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::io {
-class CheckpointReader;
-class CheckpointWriter;
-}  // namespace couplet::io
+class Archive;
+}
 
 namespace couplet::solid {
 
@@ -101,8 +100,8 @@ class Equilibrium {
   /// Ends the current step; accept() makes it the start of the next one. Throws SolveFailure.
   virtual void end_step(std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {}
   virtual void accept() {}
-  virtual void save(io::CheckpointWriter&) const {}
-  virtual void load(io::CheckpointReader&, std::span<const double>, std::span<const double>) {}
+  /// Saves or loads what the accepted state adds to these unknowns and known columns.
+  virtual void visit(io::Archive&, std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {}
 
   /// Path whose load factor multiplies all loads and is an unknown of find(); nullptr for fixed loads.
   virtual LoadPath* load_path() { return nullptr; }
@@ -140,7 +139,7 @@ class Equilibrium {
                                       const linalg::LinearMap& /*elastic*/, std::vector<double> /*start*/) {
     return {};
   }
-  /// Sets thermal strains not included in the stress, one per local flux face (empty: unchanged).
+  /// Sets thermal strains not included in the stress, one per local flux face (empty means unchanged).
   virtual void set_expansion(const std::function<std::vector<double>()>& /*of_faces*/) {}
   /// Position of the loaded surface, given its moved points; empty if undeformed, where tractions are known.
   virtual std::span<const Vec3> surface(std::span<const Vec3> /*moved*/) const { return {}; }

@@ -68,19 +68,18 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
       tolerance_(parameters.method.relative_tolerance),
       most_linear_(parameters.method.max_iterations) {
   const mesh::Geometry& geometry = rows.geometry();
-  std::vector<const elastic::FiniteLaw*> all;
+  std::vector<elastic::FiniteLaw> all;
   for (const SolidMaterial& material : materials_of(parameters)) {
     const laws::Entry& law = *laws::of(material.law);
-    laws_.push_back(law.make(lame_constants(material.youngs_modulus, material.poissons_ratio),
-                             material.law_coefficients));
-    all.push_back(laws_.back().get());
-    if (rows.volume_by_cells() && !laws_.back()->has_bulk())
+    all.push_back(law.make(lame_constants(material.youngs_modulus, material.poissons_ratio),
+                           material.law_coefficients));
+    if (rows.volume_by_cells() && !all.back().has_bulk)
       throw Error(
           "solution-method.volume-strain: cells: the law '{}' has no purely volumetric part to evaluate per "
           "cell; use 'volume-strain: faces' or another law.",
           law.name);
   }
-  kernel_ = std::make_unique<elastic::FiniteKernel>(mesh, rows, all,
+  kernel_ = std::make_unique<elastic::FiniteKernel>(mesh, rows, std::move(all),
                                                     parameters.plane == SolidParameters::Plane::stress);
   using Preconditioner = MethodParameters::Preconditioner;
   const GlobalIndex cells = mesh.cells.n_global();

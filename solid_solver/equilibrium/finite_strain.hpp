@@ -56,8 +56,7 @@ class FiniteStrain final : public LargeStrain {
     return kernel_->holding_forces(unknowns, known, loads);
   }
   LoadPath* load_path() override { return path_ ? &*path_ : nullptr; }
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) override;
+  void visit(io::Archive& archive, std::span<const double>, std::span<const double>) override;
   /// Newton iterates of the last solve.
   const std::vector<NewtonIterate>& iterates() const { return iterates_; }
   /// Summary of the last solve, for example "3 iterations of Newton's method, ...".
@@ -98,7 +97,6 @@ class FiniteStrain final : public LargeStrain {
   double tolerance_, noise_, noise_of_motion_;
   double whole_ = 0;  // norm of the last residual with U'(J) instead of those pressures
   int most_linear_;
-  std::vector<std::unique_ptr<elastic::FiniteLaw>> laws_;
   std::unique_ptr<elastic::FiniteKernel> kernel_;
   std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
   std::vector<double> r_, trial_, du_;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
@@ -140,7 +141,7 @@ void FiniteStrain::correct(PathSearch& path, TangentSolver& solver, std::span<do
                     solver.solve(path.push, path.tangent, path_linear, most_linear_).iterations;
   std::vector<double> way(u.begin(), u.end());
   for (std::size_t i = 0; i < way.size(); ++i) way[i] += own[i] - path.start[i];
-  // The normal is that of length l over l^2: n . way = 1 on the plane.
+  // The normal is a vector of length l divided by l^2, so that n . way = 1 on the plane.
   const double change = (1 - path_->product(path.normal, way)) / path_->product(path.normal, path.tangent);
   for (std::size_t i = 0; i < u.size(); ++i) du_[i] = own[i] + change * path.tangent[i];
   search_path(path, u, change, path_growth * std::max(path.now.residual, path_small * path.most));
@@ -181,13 +182,9 @@ linalg::SolveStatistics FiniteStrain::follow_path(const Load& load, std::span<do
   return statistics;
 }
 
-void FiniteStrain::save(io::CheckpointWriter& file) const {
-  if (path_) path_->save(file, rows_);
-}
-
-void FiniteStrain::load(io::CheckpointReader& file, std::span<const double>, std::span<const double>) {
-  if (path_) path_->load(file, rows_);
-  is_restored_ = true;
+void FiniteStrain::visit(io::Archive& archive, std::span<const double>, std::span<const double>) {
+  if (path_) path_->visit(archive, rows_);
+  is_restored_ = is_restored_ || archive.reads();
 }
 
 // Stability of the equilibrium.

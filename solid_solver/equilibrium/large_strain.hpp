@@ -45,13 +45,13 @@ double rounding_of_forces(const mesh::Mesh& mesh, const elastic::ElasticOperator
 /// Round-off of forces per unit of displacement [N/m]. A slender body moves by many cell sizes, so no
 /// equilibrium is more accurate than the round-off of its displacement. Collective.
 double rounding_of_motion(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows);
-/// Describes the face with the smallest det F of all ranks. `face`: of this rank, or -1. Collective.
+/// Describes the face with the smallest det F of all ranks. `face`: a face of this rank, or -1. Collective.
 std::string worst_cell(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double ratio, Index face);
 
 /// Reports a free face next to a fixed one that has moved beyond the plane of the fixed one. A compressed
 /// bonded block folds onto its platens there, the earlier the finer the mesh, but contact with them is not
-/// modeled. Returns a description with the patch and the distance; empty if there is none. `displacement`: of
-/// a local node (cells, then boundary faces). Collective.
+/// modeled. Returns a description with the patch and the distance; empty if there is none. `displacement`: returns the
+/// displacement of a local node (cells, then boundary faces). Collective.
 std::string folded_support(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                            const std::function<Vec3(Index)>& displacement);
 
@@ -67,12 +67,12 @@ class StepJump {
   void set_stretch(std::vector<double> of_faces) { stretch_ = std::move(of_faces); }
   /// Marks the present stretches as those of an equilibrium.
   void settle() { settled_ = stretch_; }
-  /// `u`: unknowns before the first iteration. `correction`: of that iteration.
+  /// `u`: unknowns before the first iteration. `correction`: correction by that iteration.
   void predict(std::span<const double> u, std::span<const double> correction);
   /// Maps the previous equilibrium to the motion for the same load by the new tangent. Throws SolveFailure.
   using Backward = std::function<std::vector<double>(std::span<const double> before)>;
   /// Checks the new equilibrium `u`. Throws SolveFailure if it lies beyond both tangents; a shorter step
-  /// may succeed. `length`: of the body [m]. Calls `backward` only beyond the first tangent. Collective.
+  /// may succeed. `length`: length of the body [m]. Calls `backward` only beyond the first tangent. Collective.
   void end(MPI_Comm comm, std::span<const double> u, double length, const Backward& backward);
 
  private:

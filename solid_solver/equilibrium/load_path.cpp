@@ -2,7 +2,6 @@
 #include "solid_solver/equilibrium/load_path.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -81,38 +80,12 @@ void LoadPath::see_limit(double length, double time) {
   limits_.push_back({now_.factor - slope * slope / (2 * bend), time, before > 0});
 }
 
-void LoadPath::save(io::CheckpointWriter& file, const elastic::ElasticOperator& rows) const {
-  file.write_scalar("path-has-change", now_.change.empty() ? 0 : 1);
-  if (!now_.change.empty()) {
-    const elastic::NodeFields change = elastic::fields_of_unknowns(mesh_, rows, now_.change);
-    file.write(mesh::Entries::owned_cells, "path-change", change.inner);
-    file.write(mesh::Entries::owned_boundary, "path-change-faces", change.faces);
-  }
-  file.write_common("path", std::array{now_.factor, now_.stiffness, factor_before_, length_before_, dt_,
-                                       first_, nominal_, travelled_, largest_});
-  std::vector<double> limits;
-  for (const LimitPoint& l : limits_) limits.insert(limits.end(), {l.factor, l.time, double(l.is_maximum)});
-  file.write_common("path-limits", limits);
-}
-
-void LoadPath::load(io::CheckpointReader& file, const elastic::ElasticOperator& rows) {
-  now_.change.clear();
-  if (file.read_scalar("path-has-change") != 0) {
-    elastic::NodeFields change =
-        elastic::fields_of_unknowns(mesh_, rows, std::vector<double>(rows.n_unknowns()));
-    file.read(mesh::Entries::owned_cells, "path-change", change.inner);
-    file.read(mesh::Entries::owned_boundary, "path-change-faces", change.faces);
-    now_.change = elastic::unknowns_of_fields(mesh_, rows, change);
-  }
-  std::array<double, 9> v{};
-  file.read_common("path", v);
-  now_.factor = v[0], now_.stiffness = v[1], factor_before_ = v[2], length_before_ = v[3], dt_ = v[4],
-  first_ = v[5];
-  nominal_ = v[6], travelled_ = v[7], largest_ = v[8];
-  const std::vector<double> limits = file.read_common("path-limits");
-  limits_.clear();
-  for (std::size_t i = 0; i + 2 < limits.size(); i += 3)
-    limits_.push_back({limits[i], limits[i + 1], limits[i + 2] > 0});
+void LoadPath::visit(io::Archive& archive, const elastic::ElasticOperator& rows) {
+  bool has_change = !now_.change.empty();
+  archive.common("path", has_change, now_.factor, now_.stiffness, factor_before_, length_before_, dt_, first_,
+                 nominal_, travelled_, largest_, limits_);
+  now_.change.resize(has_change ? rows.n_unknowns() : 0, 0);
+  if (has_change) elastic::visit_unknowns(archive, "path-change", mesh_, rows, now_.change);
 }
 
 }  // namespace couplet::solid

@@ -9,9 +9,8 @@
 #include "solid_solver/parameters/method_parameters.hpp"
 
 namespace couplet::io {
-class CheckpointReader;
-class CheckpointWriter;
-}  // namespace couplet::io
+class Archive;
+}
 
 namespace couplet::solid {
 
@@ -19,6 +18,11 @@ namespace couplet::solid {
 struct LimitPoint {
   double factor = 0, time = 0;
   bool is_maximum = true;
+
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(factor, time, is_maximum);
+  }
 };
 
 /// Path of equilibria (u, lambda), A(u) = lambda b, followed by its arc length in a static run. Lengths are
@@ -47,8 +51,7 @@ class LoadPath {
   void accept(double time, double stiffness);
 
   /// `rows`: operator whose unknowns the changes refer to.
-  void save(io::CheckpointWriter& file, const elastic::ElasticOperator& rows) const;
-  void load(io::CheckpointReader& file, const elastic::ElasticOperator& rows);
+  void visit(io::Archive& archive, const elastic::ElasticOperator& rows);
 
  private:
   struct Point {

@@ -148,7 +148,7 @@ class ContactNewton {
 }  // namespace
 
 void clear_stress_across(const SolidParameters& parameters, std::span<Tensor3> stress) {
-  if (parameters.dimension != 2 || parameters.plane != SolidParameters::Plane::stress) return;
+  if (!is_plane_stress(parameters)) return;
   for (Tensor3& s : stress) s(2, 2) = 0;
 }
 

@@ -75,7 +75,7 @@ TangentSolver::TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOpera
       [this](std::span<const double> r, std::span<double> z) { precondition(r, z); });
 }
 
-/// Frames of cells by the mean of their faces' F; boundary faces rotate with their cell, supports do not.
+/// Computes the rotation of each cell from the mean F of its faces. Boundary faces rotate with their cell, except supports.
 void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
   const Index n = mesh_.cells.n_owned();
   std::vector<Tensor3> mean(n, Tensor3::Zero());

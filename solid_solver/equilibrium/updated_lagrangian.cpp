@@ -96,9 +96,6 @@ int unknown_condition_of(const elastic::BoundaryRow& row) {
   return row.has_value() ? 0 : row.level ? 1 : 2;
 }
 
-constexpr const char* points_on_file = "updated-points";
-constexpr const char* gradient_on_file = "updated-deformation";
-
 }  // namespace
 
 UpdatedLagrangian::UpdatedLagrangian(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
@@ -173,7 +170,7 @@ bool UpdatedLagrangian::find_stress() {
   if (!(parallel::min(mesh_.comm, least_) > 0)) return false;
   stress_.resize(n);
   energy_.resize(n);
-  first_piola(*law_, deformation_, stress_, energy_);
+  first_piola(law_, deformation_, stress_, energy_);
   return true;
 }
 
@@ -348,27 +345,27 @@ void UpdatedLagrangian::accept() {
   frame_.reset();
 }
 
-void UpdatedLagrangian::save(io::CheckpointWriter& file) const {
-  std::vector<double> points, gradient;
-  for (const Vec3& x : now_.points) points.insert(points.end(), x.begin(), x.end());
-  for (const Tensor3& F : now_.gradient)
-    gradient.insert(gradient.end(), F.reshaped().begin(), F.reshaped().end());
-  file.write(mesh::Entries::points, points_on_file, points);
-  file.write(mesh::Entries::flux_faces, gradient_on_file, gradient);
+namespace {
+
+/// Saves or loads vectors or tensors by their numbers.
+template <class T>
+void visit_field(io::Archive& archive, mesh::Entries entries, const char* name, std::vector<T>& values) {
+  constexpr std::size_t width = T::SizeAtCompileTime;
+  std::vector<double> numbers(width * values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) std::copy_n(values[i].data(), width, &numbers[width * i]);
+  archive.field(entries, name, numbers, width);
+  for (std::size_t i = 0; i < values.size(); ++i) std::copy_n(&numbers[width * i], width, values[i].data());
 }
 
-void UpdatedLagrangian::load(io::CheckpointReader& file, std::span<const double> unknowns,
-                             std::span<const double> known) {
-  std::vector<double> points(now_.points.size() * 3), gradient(now_.gradient.size() * 9);
-  file.read(mesh::Entries::points, points_on_file, points);
-  file.read(mesh::Entries::flux_faces, gradient_on_file, gradient);
-  for (std::size_t v = 0; v < now_.points.size(); ++v)
-    now_.points[v] = Vec3(points[3 * v], points[3 * v + 1], points[3 * v + 2]);
-  for (std::size_t f = 0; f < now_.gradient.size(); ++f)
-    now_.gradient[f] = Eigen::Map<const Tensor3>(gradient.data() + 9 * f);
+}  // namespace
+
+void UpdatedLagrangian::visit(io::Archive& archive, std::span<const double> unknowns,
+                              std::span<const double> known) {
+  visit_field(archive, mesh::Entries::points, "updated-points", now_.points);
+  visit_field(archive, mesh::Entries::flux_faces, "updated-deformation", now_.gradient);
   now_.u.assign(unknowns.begin(), unknowns.end());
   std::ranges::copy(known, now_.known.begin());
-  frame_.reset();
+  if (archive.reads()) frame_.reset();
 }
 
 }  // namespace couplet::solid

@@ -68,9 +68,7 @@ class UpdatedLagrangian final : public LargeStrain {
                                               const elastic::ElasticLoads& loads) override;
   void end_step(std::span<const double> unknowns, std::span<const double> known) override;
   void accept() override;
-  void save(io::CheckpointWriter& file) const override;
-  void load(io::CheckpointReader& file, std::span<const double> unknowns,
-            std::span<const double> known) override;
+  void visit(io::Archive& archive, std::span<const double> unknowns, std::span<const double> known) override;
 
  private:
   /// Configuration of the body and its deformation.
@@ -98,7 +96,7 @@ class UpdatedLagrangian final : public LargeStrain {
 
   const MethodParameters method_;
   double noise_ = 0;
-  std::unique_ptr<elastic::FiniteLaw> law_;
+  elastic::FiniteLaw law_;
   linalg::Accelerator accelerator_;
   Place now_, next_;
   std::unique_ptr<UpdatedFrame> frame_;

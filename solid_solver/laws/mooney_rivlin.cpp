@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/laws/law_of.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::laws {
@@ -28,10 +27,9 @@ struct MooneyRivlin {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> mooney_rivlin(const elastic::LameConstants& lame,
-                                                  std::span<const double> coefficients) {
+elastic::FiniteLaw mooney_rivlin(const elastic::LameConstants& lame, std::span<const double> coefficients) {
   const double share = coefficients.empty() ? 0 : coefficients[0];
-  return std::make_unique<LawOf<MooneyRivlin>>(
+  return finite_law(
       MooneyRivlin{lame.mu / 2 * (1 - share), lame.mu / 2 * share, elastic::bulk_modulus(lame)});
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/laws/law_of.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::laws {
@@ -27,10 +26,9 @@ struct NearlyIncompressible {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> nearly_incompressible_neo_hookean(const elastic::LameConstants& lame,
-                                                                      std::span<const double>) {
-  return std::make_unique<LawOf<NearlyIncompressible>>(
-      NearlyIncompressible{lame.mu, elastic::bulk_modulus(lame)});
+elastic::FiniteLaw nearly_incompressible_neo_hookean(const elastic::LameConstants& lame,
+                                                     std::span<const double>) {
+  return finite_law(NearlyIncompressible{lame.mu, elastic::bulk_modulus(lame)});
 }
 
 }  // namespace couplet::laws

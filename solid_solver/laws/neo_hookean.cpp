@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/laws/law_of.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::laws {
@@ -28,8 +27,8 @@ struct NeoHookean {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> neo_hookean(const elastic::LameConstants& lame, std::span<const double>) {
-  return std::make_unique<LawOf<NeoHookean>>(NeoHookean{lame.mu, lame.lambda});
+elastic::FiniteLaw neo_hookean(const elastic::LameConstants& lame, std::span<const double>) {
+  return finite_law(NeoHookean{lame.mu, lame.lambda});
 }
 
 }  // namespace couplet::laws

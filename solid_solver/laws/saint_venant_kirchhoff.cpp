@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/laws/law_of.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::laws {
@@ -29,9 +28,8 @@ struct SaintVenantKirchhoff {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> saint_venant_kirchhoff(const elastic::LameConstants& lame,
-                                                           std::span<const double>) {
-  return std::make_unique<LawOf<SaintVenantKirchhoff>>(SaintVenantKirchhoff{lame.mu, lame.lambda});
+elastic::FiniteLaw saint_venant_kirchhoff(const elastic::LameConstants& lame, std::span<const double>) {
+  return finite_law(SaintVenantKirchhoff{lame.mu, lame.lambda});
 }
 
 }  // namespace couplet::laws

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/laws/law_of.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::laws {
@@ -29,11 +28,10 @@ struct Yeoh {
 
 }  // namespace
 
-std::unique_ptr<elastic::FiniteLaw> yeoh(const elastic::LameConstants& lame,
-                                         std::span<const double> coefficients) {
+elastic::FiniteLaw yeoh(const elastic::LameConstants& lame, std::span<const double> coefficients) {
   const auto ratio = [&](std::size_t i) { return i < coefficients.size() ? coefficients[i] : 0.0; };
   const double c1 = lame.mu / 2;
-  return std::make_unique<LawOf<Yeoh>>(Yeoh{c1, c1 * ratio(0), c1 * ratio(1), elastic::bulk_modulus(lame)});
+  return finite_law(Yeoh{c1, c1 * ratio(0), c1 * ratio(1), elastic::bulk_modulus(lame)});
 }
 
 }  // namespace couplet::laws

@@ -8,24 +8,21 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
-#include "common/elasticity/symmetric/tied_matrix.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
 namespace {
 
-// Maximum aggregates of the rigid coarse space: more hardly help, and their factors grow.
+// Maximum aggregates of the coarse space of rigid motions: more hardly help, and their factors grow.
 constexpr int most_aggregates = 200;
-// Minimum cells per aggregate for its rigid motions to be smooth on the scale of cells.
-constexpr GlobalIndex cells_of_aggregate = 64;
-// Likewise for the symmetric operator, only for slender bodies; and the minimum for both.
-constexpr GlobalIndex cells_of_slender_aggregate = 32;
+// Cells per aggregate for its rigid motions to be smooth on the scale of cells, and the fewest ones.
+constexpr GlobalIndex cells_of_aggregate = 32;
 constexpr int fewest_aggregates = 8;
 constexpr GlobalIndex fewest_cells = 4;
-// Length over thickness 2 V/S above which bending needs the rigid coarse space; a cube has 3.
+// Length over thickness 2 V/S above which bending needs the coarse space; a cube has 3.
 constexpr double slender = 12;
-// For the symmetric operator: slenderness, or this many cells for the first limit.
+// Slenderness without which it takes this many cells, too.
 constexpr double very_slender = 60;
 constexpr GlobalIndex many_cells = 4000;
 // Inertia over the stiffness of a cell's faces above which no motion is slow.
@@ -98,7 +95,7 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
   if (parameters.preconditioner == Preconditioner::factors)
     choose_factors();
   else
-    choose_multigrid(parameters);
+    choose_multigrid();
   const std::size_t n = problem.elastic.n_unknowns();
   const linalg::LinearMap apply = [this](std::span<const double> x, std::span<double> y) {
     const log::ScopedTimer timer(log::timers(), "solid: products");
@@ -125,62 +122,37 @@ bool NewtonKrylov::invert(std::span<const double> r, std::span<double> z) {
   return problem_.rigid == nullptr;
 }
 
-void NewtonKrylov::choose_multigrid(const MethodParameters&) {
+void NewtonKrylov::choose_multigrid() {
   const mesh::Mesh& mesh = problem_.mesh;
-  const mesh::Geometry& geometry = problem_.geometry();
-  const double heavy_here = heaviness(problem_);
+  const bool is_symmetric = problem_.is_symmetric();
+  std::vector<double> of_nodes = node_inertia(problem_);
   elastic::ElasticPreconditioner::Options options;
   options.scheme = problem_.kernel.scheme();
-  if (problem_.is_symmetric()) {
-    const std::vector<double> inertia = node_inertia(problem_);
-    options.node_inertia = inertia;
-    multigrid_ =
-        std::make_unique<elastic::ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
-    const double length = slenderness(mesh, geometry);
-    const bool is_slender = length > very_slender || (length > slender && mesh.cells.n_global() > many_cells);
-    if (heavy_here <= heavy && is_slender) add_rigid_motions(inertia, length);
-    name_ = modes_ ? fmt::format(
-                         "newton-krylov (conjugate gradients, multigrid and rigid motions of {} aggregates)",
-                         modes_->n_aggregates())
-                   : "newton-krylov (conjugate gradients, multigrid)";
-    return;
-  }
-  options.n_aggregates = heavy_here > heavy
-                             ? 0
-                             : static_cast<int>(std::min<GlobalIndex>(
-                                   most_aggregates, mesh.cells.n_global() / cells_of_aggregate));
-  if (options.n_aggregates < fewest_aggregates) options.n_aggregates = 0;
-  if (options.n_aggregates > 0) {
-    if (options.scheme == elastic::FaceGradientScheme::thesis) {
-      options.between = &problem_.kernel;
-    } else if (slenderness(mesh, geometry) > slender) {
-      between_ = std::make_unique<elastic::ElasticKernel>(mesh, problem_.elastic,
-                                                          elastic::FaceGradientScheme::thesis);
-      options.between = between_.get();
-    }
-  }
+  options.node_inertia = of_nodes;
   multigrid_ =
       std::make_unique<elastic::ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
+  if (!is_symmetric) of_nodes.assign(problem_.inertia.begin(), problem_.inertia.end());
+  if (heaviness(problem_) <= heavy) add_rigid_motions(of_nodes);
   name_ =
-      options.n_aggregates == 0
-          ? "newton-krylov (BiCGStab, multigrid)"
-          : fmt::format("newton-krylov (BiCGStab, multigrid{}rigid motions of {} aggregates)",
-                        options.between ? " after " : " and ", multigrid_->coarse_space()->n_aggregates());
+      fmt::format("newton-krylov ({}, multigrid{})", is_symmetric ? "conjugate gradients" : "BiCGStab",
+                  modes_ ? fmt::format(" and rigid motions of {} aggregates", modes_->n_aggregates()) : "");
 }
 
 /// Bending of a slender body varies too slowly for component-wise multigrid. A beam 10:1 of 80x8x8 cells
 /// takes 53 iterations instead of 143, one of 160x16x16 89 instead of 169, one 100:1 of 400x4x4 cubes 515
 /// instead of 1945 (to 1e-10). A plate of 4600 cells saves 6 of 46 iterations; 295 000 take 71, not 49.
-void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
+void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia) {
   const mesh::Mesh& mesh = problem_.mesh;
+  const double length = slenderness(mesh, problem_.geometry());
+  if (!(length > very_slender || (length > slender && mesh.cells.n_global() > many_cells))) return;
   // Half as long as thick, if the cells are fine enough.
   const GlobalIndex cells = mesh.cells.n_global();
   const GlobalIndex aggregates = std::min<GlobalIndex>(
-      most_aggregates, std::max(cells / cells_of_slender_aggregate,
-                                std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
+      most_aggregates,
+      std::max(cells / cells_of_aggregate, std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
   if (aggregates < fewest_aggregates) return;
   modes_ = std::make_unique<elastic::CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates),
-                                                        inertia);
+                                                        inertia, problem_.is_symmetric());
   modes_->update(at_rest(mesh));
 }
 

@@ -7,7 +7,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/solve/current_rigid_modes.hpp"
 #include "common/elasticity/solve/elastic_preconditioner.hpp"
-#include "common/elasticity/symmetric/tied_matrix.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/method/solution_method.hpp"
@@ -15,7 +15,7 @@
 namespace couplet::solid {
 
 /// BiCGStab on the matrix-free operator; one Newton step, because the problem is linear. Preconditioned by
-/// the compact component-wise operator and the rigid coarse space (ElasticPreconditioner). If the body is
+/// the compact component-wise operator (ElasticPreconditioner) and rigid motions of aggregates. If the body is
 /// small and one matrix serves many steps, it uses factors of the thesis's operator instead.
 class NewtonKrylov final : public SolutionMethod {
  public:
@@ -24,16 +24,15 @@ class NewtonKrylov final : public SolutionMethod {
  private:
   linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) override;
   bool invert(std::span<const double> r, std::span<double> z) override;
-  void choose_multigrid(const MethodParameters& parameters);
-  void add_rigid_motions(const std::vector<double>& inertia, double length);
+  void choose_multigrid();
+  void add_rigid_motions(const std::vector<double>& inertia);
   void choose_factors();
   void project(std::span<double> unknowns) const;
 
   SolidProblem problem_;
   linalg::KrylovOptions options_;
-  std::unique_ptr<elastic::ElasticKernel> between_;
   std::unique_ptr<elastic::ElasticPreconditioner> multigrid_;
-  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // for slender bodies with the symmetric operator
+  std::unique_ptr<elastic::CurrentRigidModes> modes_;  // for slender bodies
   std::unique_ptr<linalg::SparseMatrix> matrix_;
   std::unique_ptr<linalg::LinearSolver> factors_;
   std::unique_ptr<elastic::TiedMatrix> tied_;  // in 3-D

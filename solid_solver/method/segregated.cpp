@@ -13,7 +13,7 @@ namespace couplet::solid {
 
 namespace {
 
-// Reduction of a component's residual in one outer iteration, as in the thesis.
+// Reduction of a component's residual in one outer iteration, as in [thesis].
 constexpr double inner_tolerance = 1e-2;
 
 double stiffness(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, Index f) {

@@ -20,7 +20,7 @@ namespace couplet::solid {
 /// hundredth of the initial residual. Boundary unknowns follow from their own rows.
 class ScalarSystems {
  public:
-  /// `inertia`: per owned cell [N/m], empty if static. Keeps references to mesh (reference geometry) and
+  /// `inertia`: inertia of each owned cell [N/m], empty if static. Keeps references to mesh (reference geometry) and
   /// rows. Collective.
   ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                 std::span<const double> inertia);

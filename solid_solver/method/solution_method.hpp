@@ -11,7 +11,7 @@
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/boundary/rigid_patches.hpp"
+#include "solid_solver/boundary/loads.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/motion/ledger.hpp"
 
-#include <algorithm>
+#include <utility>
 
+#include "common/elasticity/node_fields.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -20,15 +21,10 @@ struct Placed {
 Placed place_unknowns(const SolidBody& body, const StageWork& work, std::span<const double> unknowns) {
   const mesh::Mesh& mesh = body.mesh();
   const int dim = mesh.dim;
-  const std::size_t n_cells = std::size_t(mesh.cells.n_owned()) * dim;
-  Placed placed;
-  placed.cells.assign(std::size_t(mesh.cells.n_local()) * dim, 0);
-  placed.faces.assign(std::size_t(mesh.boundary.n_local()) * dim, 0);
-  std::copy_n(unknowns.begin(), n_cells, placed.cells.begin());
-  const auto& free = body.elastic().unknown_faces();
-  for (std::size_t i = 0; i < free.size(); ++i)
-    for (int a = 0; a < dim; ++a)
-      placed.faces[std::size_t(free[i] - mesh.n_interior) * dim + a] = unknowns[n_cells + i * dim + a];
+  auto [cells, faces] = elastic::fields_of_unknowns(mesh, body.elastic(), unknowns);
+  Placed placed{std::move(cells), std::move(faces), {}};
+  placed.cells.resize(std::size_t(mesh.cells.n_local()) * dim, 0);
+  placed.faces.resize(std::size_t(mesh.boundary.n_local()) * dim, 0);
   body.elastic().impose_known(work.known, placed.faces);
   mesh.cells.update_ghosts(placed.cells, dim);
   mesh.boundary.update_ghosts(placed.faces, dim);
@@ -44,6 +40,7 @@ SolidLedger::SolidLedger(const SolidBody& body)
       mesh_(body.mesh()),
       geometry_(body.geometry()),
       parameters_(body.parameters()),
+      damping_(parameters_.damping.value_or(SolidDamping{})),
       elastic_(body.elastic()),
       kernel_(body.kernel()) {}
 
@@ -97,16 +94,18 @@ double SolidLedger::kinetic(const SolidState& state, std::span<const double> kno
 }
 
 void SolidLedger::add_work(const SolvedStage& stage) const {
-  if (!body_.has_mass())
-    add_face_work(stage);
-  else if (body_.equilibrium().means().has_products)
-    add_symmetric_work(stage);
-  else
-    add_finite_work(stage);
+  const Work work = !body_.has_mass()                          ? face_work(stage)
+                    : body_.equilibrium().means().has_products ? symmetric_work(stage)
+                                                               : finite_work(stage);
+  SolidEnergies& energies = stage.after.energies;
+  energies.internal_work += work.inside;
+  energies.external_work += work.outside;
+  energies.damping_loss += work.loss;
+  energies.kinetic = kinetic(stage.after);
 }
 
-/// Adds the work computed from face forces.
-void SolidLedger::add_face_work(const SolvedStage& stage) const {
+/// The work computed from face forces.
+SolidLedger::Work SolidLedger::face_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const int dim = mesh_.dim;
   std::vector<double> cells(after.cell_u.size()), faces(after.face_u.size());
@@ -129,22 +128,18 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
     for (int a = 0; a < dim; ++a)
       outside -= work.loads[n_cells + i * dim + a] * cells[std::size_t(mesh_.owner[free[i]]) * dim + a];
   }
-  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
-  const double dt = work.stage.dt, beta = damping.stiffness;
+  const double dt = work.stage.dt, beta = damping_.stiffness;
   double loss = 0;
   if (beta > 0) {
     // sigma(w) = sigma(x) + beta sigma(v); v is the change over the stage divided by its length.
     const std::vector<double> points = body_.to_points(cells, faces, work.known_change);
     loss = beta / dt * stress_work({cells, faces, points}, change, nullptr);
   }
-  SolidEnergies& energies = after.energies;
-  energies.internal_work += inside - loss;
+  double mass_loss = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    loss += damping.mass / dt * body_.density(c) * geometry_.volume[c] *
-            elastic::vector_at(cells, c, dim).squaredNorm();
-  energies.damping_loss += loss;
-  energies.external_work += outside;
-  energies.kinetic = kinetic(after);
+    mass_loss += damping_.mass / dt * body_.density(c) * geometry_.volume[c] *
+                 elastic::vector_at(cells, c, dim).squaredNorm();
+  return {inside - loss, outside, loss + mass_loss};
 }
 
 std::vector<double> SolidLedger::change_over(const SolvedStage& stage) const {
@@ -155,7 +150,7 @@ std::vector<double> SolidLedger::change_over(const SolvedStage& stage) const {
 }
 
 /// For the symmetric kernel, whose own products these are: work of all forces by its trial functions.
-void SolidLedger::add_symmetric_work(const SolvedStage& stage) const {
+SolidLedger::Work SolidLedger::symmetric_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const std::vector<double> change = change_over(stage);
   const elastic::ElasticField w{last.unknowns, work.known}, moved{change, work.known_change};
@@ -163,40 +158,30 @@ void SolidLedger::add_symmetric_work(const SolvedStage& stage) const {
   double outside = -kernel_.product(elastic::ElasticPart::springs, w, moved);
   for (std::size_t i = 0; i < change.size(); ++i) outside += loads[i] * change[i];
   if (!body_.prescribed().is_zero()) outside += known_work(stage);
-  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
-  double loss = damping.stiffness > 0 ? damping.stiffness / work.stage.dt *
-                                            kernel_.product(elastic::ElasticPart::stiffness, moved, moved)
-                                      : 0;
-  SolidEnergies& energies = after.energies;
-  energies.internal_work += kernel_.product(elastic::ElasticPart::stiffness, w, moved) - loss;
-  if (damping.mass > 0)
-    loss += damping.mass / work.stage.dt * kernel_.product(elastic::ElasticPart::mass, moved, moved);
-  energies.damping_loss += loss;
-  energies.external_work += outside;
-  energies.kinetic = kinetic(after);
+  const double dt = work.stage.dt, inside = kernel_.product(elastic::ElasticPart::stiffness, w, moved);
+  double loss = 0, mass_loss = 0;
+  if (damping_.stiffness > 0)
+    loss = damping_.stiffness / dt * kernel_.product(elastic::ElasticPart::stiffness, moved, moved);
+  if (damping_.mass > 0)
+    mass_loss = damping_.mass / dt * kernel_.product(elastic::ElasticPart::mass, moved, moved);
+  return {inside - loss, outside, loss + mass_loss};
 }
 
 /// At large strain: work of the scheme's internal force at its place on the change over the stage.
-void SolidLedger::add_finite_work(const SolvedStage& stage) const {
+SolidLedger::Work SolidLedger::finite_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const std::vector<double> change = change_over(stage);
   const std::vector<double> loads = mean_of_ends(work, last.load_rows);
   const std::vector<double> force = body_.equilibrium().forces(last.unknowns, work.known);
-  double inside = 0, outside = 0;
+  Work done;
   for (std::size_t i = 0; i < change.size(); ++i) {
-    inside += force[i] * change[i];
-    outside += loads[i] * change[i];
+    done.inside += force[i] * change[i];
+    done.outside += loads[i] * change[i];
   }
-  SolidEnergies& energies = after.energies;
-  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
-  if (damping.mass > 0) {
-    const elastic::ElasticField moved{change, work.known_change};
-    energies.damping_loss +=
-        damping.mass / work.stage.dt * kernel_.product(elastic::ElasticPart::mass, moved, moved);
-  }
-  energies.internal_work += inside;
-  energies.external_work += outside;
-  energies.kinetic = kinetic(after);
+  const elastic::ElasticField moved{change, work.known_change};
+  if (damping_.mass > 0)
+    done.loss = damping_.mass / work.stage.dt * kernel_.product(elastic::ElasticPart::mass, moved, moved);
+  return done;
 }
 
 /// For schemes other than the trapezoidal rule: mean of the loads at both ends of a stage, whose work on the
@@ -281,39 +266,31 @@ double SolidLedger::known_work(const SolvedStage& stage) const {
   for (std::size_t i = 0; i < way.size(); ++i) way[i] = 0.5 * dt * (way[i] + trial.known_rate[i]);
   sum +=
       kernel_.product(elastic::ElasticPart::mass, {rate, body_.known_acceleration(start, dt)}, {still, way});
-  if (parameters_.damping && parameters_.damping->mass > 0)
-    sum += parameters_.damping->mass * kernel_.product(elastic::ElasticPart::mass,
-                                                       {velocity, body_.known_velocity(start, dt)},
-                                                       {still, work.known_change});
+  if (damping_.mass > 0)
+    sum += damping_.mass * kernel_.product(elastic::ElasticPart::mass,
+                                           {velocity, body_.known_velocity(start, dt)},
+                                           {still, work.known_change});
   return sum;
 }
 
 void SolidLedger::add_load_work(const StageWork& work, const LastSolve& last, const BodyField& before,
                                 SolidState& after) const {
-  const int dim = mesh_.dim;
-  double sum = 0;
+  const std::size_t dim = mesh_.dim, n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  std::vector<double> change = body_.unknowns_of(after.cell_u, after.face_u);
+  const std::vector<double> start = body_.unknowns_of(before.cells, before.faces);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= start[i];
+  std::vector<double> forces = work.rhs;  // without a mass of faces only those of cells
   if (body_.has_mass()) {
-    for (std::size_t i = 0; i < std::size_t(mesh_.cells.n_owned()) * dim; ++i)
-      sum += last.load_rows[i] * (after.cell_u[i] - before.cells[i]);
-    std::size_t row = std::size_t(mesh_.cells.n_owned()) * dim;
+    forces = last.load_rows;
+  } else {
+    forces.resize(n_cells, 0);
     for (const Index f : elastic_.unknown_faces())
-      for (int a = 0; a < dim; ++a) {
+      for (std::size_t a = 0; a < dim; ++a) {
         const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
-        sum += last.load_rows[row++] * (after.face_u[b] - before.faces[b]);
+        forces.push_back(work.face_force[b] + (last.interface.empty() ? 0 : last.interface[b]));
       }
-    after.load_work += sum;
-    return;
   }
-  if (!work.rhs.empty())
-    for (std::size_t i = 0; i < std::size_t(mesh_.cells.n_owned()) * dim; ++i)
-      sum += work.rhs[i] * (after.cell_u[i] - before.cells[i]);
-  for (const Index f : elastic_.unknown_faces())
-    for (int a = 0; a < dim; ++a) {
-      const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
-      const double force = work.face_force[b] + (last.interface.empty() ? 0 : last.interface[b]);
-      sum += force * (after.face_u[b] - before.faces[b]);
-    }
-  after.load_work += sum;
+  for (std::size_t i = 0; i < change.size(); ++i) after.load_work += forces[i] * change[i];
 }
 
 }  // namespace couplet::solid

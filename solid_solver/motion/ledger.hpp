@@ -43,9 +43,13 @@ class SolidLedger final {
  private:
   double kinetic(const SolidState& state, std::span<const double> known_rate) const;
   double stress_work(const BodyField& stressed, const BodyField& change, double* on_boundary) const;
-  void add_face_work(const SolvedStage& stage) const;
-  void add_symmetric_work(const SolvedStage& stage) const;
-  void add_finite_work(const SolvedStage& stage) const;
+  /// Internal and external work and damping loss [J].
+  struct Work {
+    double inside = 0, outside = 0, loss = 0;
+  };
+  Work face_work(const SolvedStage& stage) const;
+  Work symmetric_work(const SolvedStage& stage) const;
+  Work finite_work(const SolvedStage& stage) const;
   std::vector<double> change_over(const SolvedStage& stage) const;
   std::vector<double> mean_of_ends(const StageWork& work, const std::vector<double>& at_place) const;
   double known_work(const SolvedStage& stage) const;
@@ -55,6 +59,7 @@ class SolidLedger final {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const SolidParameters& parameters_;
+  const SolidDamping damping_;
   const elastic::ElasticOperator& elastic_;
   const elastic::ElasticKernel& kernel_;
 };

@@ -54,12 +54,11 @@ class SolidStepper final {
   /// Frees the solvers at the end of a static run, before its output, which needs memory.
   void release_solver();
 
-  void save_state(io::CheckpointWriter& file) const;
-  void load_state(io::CheckpointReader& file);
-  /// First guesses affect results below the tolerance, so a restarted run uses the same ones. Load them after
-  /// the effects.
-  void save_guesses(io::CheckpointWriter& file) const;
-  void load_guesses(io::CheckpointReader& file);
+  /// Saves or loads the accepted state. Collective.
+  void visit(io::Archive& archive);
+  /// First guesses affect results below the tolerance, so a restarted run uses the same ones. Call after the
+  /// effects. Collective.
+  void visit_guesses(io::Archive& archive);
 
  private:
   void start_from_rest();
@@ -76,11 +75,9 @@ class SolidStepper final {
   linalg::SolveStatistics find_equilibrium(const StageWork& work, const SolidState& now);
   void scale_loads(const StageWork& work, double factor);
   void add_inertia(const StageWork& work, const SolidState& now);
-  void add_kernel_inertia(const SolidState& now, const time::Levels& known);
   void add_face_forces(const StageWork& work);
   void guess(const StageWork& work, const SolidState& now);
-  void finish_cells(const StageWork& work, const SolidState& now);
-  void finish_faces(const StageWork& work, const SolidState& now);
+  void finish_nodes(const StageWork& work, const SolidState& now);
   void finish_offsets(const time::Stage& stage, const SolidState& now);
   void finish_acceleration();
   void update_trial_ghosts();

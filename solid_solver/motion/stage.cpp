@@ -2,6 +2,8 @@
 // One stage of a step: system, right-hand side and solution (equations: SolidStepper).
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/log/log.hpp"
@@ -10,7 +12,6 @@
 #include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
-#include "solid_solver/motion/stage_contact.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -33,6 +34,76 @@ double highest_frequency(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
     highest = std::max(highest, 2 / length * std::sqrt(youngs_modulus / body.density(cell)));
   }
   return parallel::max(mesh.comm, highest);
+}
+
+/// Linear combinations of time levels per component of cells or faces. `start`: state at the start of the
+/// step, which is the old level of a second stage.
+class History {
+ public:
+  History(const SolidState& now, const SolidState& start, bool of_faces)
+      : u_(of_faces ? now.face_u : now.cell_u),
+        v_(of_faces ? now.face_v : now.cell_v),
+        a_(of_faces ? now.face_a : now.cell_a),
+        u_old_(&now == &start ? (of_faces ? now.face_u_old : now.cell_u_old)
+                              : (of_faces ? start.face_u : start.cell_u)),
+        v_old_(&now == &start ? (of_faces ? now.face_v_old : now.cell_v_old)
+                              : (of_faces ? start.face_v : start.cell_v)) {}
+  double operator()(const time::Levels& l, std::size_t i, double x = 0) const {
+    double value = l.x * x + l.u * u_[i] + l.v * v_[i];
+    if (!a_.empty()) value += l.a * a_[i];
+    if (!u_old_.empty()) value += l.u_old * u_old_[i] + l.v_old * v_old_[i];
+    return value;
+  }
+
+ private:
+  std::span<const double> u_, v_, a_, u_old_, v_old_;
+};
+
+/// Such a combination for all unknowns.
+std::vector<double> levels_of(const SolidBody& body, const SolidState& now, const SolidState& start,
+                              const time::Levels& levels) {
+  std::vector<double> cells(now.cell_u.size()), faces(now.face_u.size());
+  const History of_cells(now, start, false), of_faces(now, start, true);
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = of_cells(levels, i);
+  for (std::size_t i = 0; i < faces.size(); ++i) faces[i] = of_faces(levels, i);
+  return body.unknowns_of(cells, faces);
+}
+
+/// Levels of the part of a displacement that is independent of w, from levels `shown` of x = (w - beta v_h)/s.
+time::Levels known_part(const SolidBody& body, const StageWork& work, const time::Levels& shown) {
+  const double beta = body.parameters().damping ? body.parameters().damping->stiffness : 0;
+  return time::Levels{0, shown.u, shown.v, shown.a, shown.u_old, shown.v_old} -
+         (shown.x * beta / work.damping_scale) * work.stage.rate;
+}
+
+/// Response of the seat to the unknown w = x + beta v of a stage. The conserving rule uses the penetration at
+/// the end of the step, other schemes that at the stage's equilibrium. `now`: start of the stage, `start`:
+/// start of the step. Empty without a seat. Collective.
+std::optional<Pressing> pressing_of(const SolidBody& body, const StageWork& work, const SolidState& now,
+                                    const SolidState& start) {
+  const Seat* seat = body.seat();
+  if (!seat) return {};
+  const std::size_t n_known = body.prescribed().size() * body.mesh().dim;
+  std::vector<double> known_before(n_known, 0), known_shown(n_known, 0);
+  if (!body.is_dynamic()) {
+    const std::vector<double> still(body.elastic().n_unknowns(), 0);
+    return Pressing(*seat, 1, seat->penetration(still, {}), {});
+  }
+  const bool conserves = seat->is_conserving();
+  const time::Levels shown = conserves ? work.stage.end_value : time::Levels{1, 0, 0, 0, 0, 0};
+  const double factor = shown.x / work.damping_scale;
+  if (!body.prescribed().is_zero()) {
+    body.prescribed().evaluate(work.start_time, known_before);
+    body.prescribed().evaluate(work.end_time, known_shown);
+    const double place = conserves ? 1 : work.stage.place;
+    for (std::size_t i = 0; i < n_known; ++i)
+      known_shown[i] = known_before[i] + place * (known_shown[i] - known_before[i]) - factor * work.known[i];
+  }
+  std::vector<double> base = seat->penetration(levels_of(body, now, start, known_part(body, work, shown)),
+                                               known_shown),
+                      before;
+  if (conserves) before = seat->penetration(body.unknowns_of(now.cell_u, now.face_u), known_before);
+  return Pressing(*seat, factor, std::move(base), std::move(before));
 }
 
 }  // namespace
@@ -84,7 +155,7 @@ void SolidStepper::announce(const SolidSystem& system) {
   const bool first = method_announced_.empty();
   method_announced_ = chosen;
   log::info("Solution method: {}", chosen);
-  if (first && body_.is_dynamic())
+  if (first && body_.is_dynamic() && parameters_.output.modes == 0)
     log::info(
         "elastic Courant number of a step of {:.3g} s: {:.3g} (an explicit scheme would need at most 1)",
         step_.dt, step_.dt * highest_frequency(mesh_, geometry_, elastic_, body_) / 2);
@@ -173,7 +244,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
   const BodyField start{first ? state_.cell_u : cells, first ? state_.face_u : faces, {}};
   const auto finish = [&] {
     finish_offsets(work.stage, now);
-    finish_cells(work, now);
+    finish_nodes(work, now);
     if (body_.is_dynamic()) ledger_.add_load_work(work, last_, start, trial_);
   };
   if (!parameters_.output.energies) return finish();
@@ -222,7 +293,13 @@ void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
   time::Levels known =
       stage.acceleration + (damping.mass - work.system->mass_factor * damping.stiffness) * stage.rate;
-  if (body_.has_mass()) return add_kernel_inertia(now, known);
+  if (body_.has_mass()) {
+    // All nodes have inertia. That of known ones acts on the supports only, since each node has a mass of its own.
+    std::vector<double> force(last_.unknowns.size());
+    kernel_.apply_with_mass(levels_of(body_, now, state_, known), {}, 1, false, force);
+    for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
+    return;
+  }
   const History levels(now, state_, false);
   const int dim = mesh_.dim;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
@@ -232,21 +309,6 @@ void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
       last_.rhs[i] -= mass * levels(known, i);
     }
   }
-}
-
-/// All nodes have inertia. That of known ones acts on the supports only, since each node has a mass of its own.
-void SolidStepper::add_kernel_inertia(const SolidState& now, const time::Levels& known) {
-  const History cells(now, state_, false), faces(now, state_, true);
-  const int dim = mesh_.dim;
-  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
-  std::vector<double> levels(last_.unknowns.size()), force(last_.unknowns.size());
-  for (std::size_t i = 0; i < n_cells; ++i) levels[i] = cells(known, i);
-  const auto& open = elastic_.unknown_faces();
-  for (std::size_t i = 0; i < open.size(); ++i)
-    for (int a = 0; a < dim; ++a)
-      levels[n_cells + i * dim + a] = faces(known, std::size_t(open[i] - mesh_.n_interior) * dim + a);
-  kernel_.apply_with_mass(levels, {}, 1, false, force);
-  for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
 }
 
 /// A partner's load is its mean over the step, valid at mid-step. It is extrapolated to the stage from the
@@ -275,62 +337,42 @@ void SolidStepper::guess(const StageWork& work, const SolidState& now) {
   const Predictor predictor = parameters_.method.predictor;
   const double ahead =
       body_.is_dynamic() && predictor != Predictor::none ? work.stage.place * work.stage.dt : 0;
-  const int dim = mesh_.dim;
-  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
-  for (std::size_t i = 0; i < n_cells; ++i) last_.unknowns[i] = now.cell_u[i] + ahead * now.cell_v[i];
-  const auto& faces = elastic_.unknown_faces();
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (int a = 0; a < dim; ++a) {
-      const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;
-      last_.unknowns[n_cells + i * dim + a] = now.face_u[b] + ahead * now.face_v[b];
-    }
+  last_.unknowns = levels_of(body_, now, state_, {0, 1, ahead, 0, 0, 0});
 }
 
-void SolidStepper::finish_cells(const StageWork& work, const SolidState& now) {
+/// Faces with inertia are like the cells, and known support values are imposed at the end of the step; others have an offset.
+void SolidStepper::finish_nodes(const StageWork& work, const SolidState& now) {
   const time::Stage& stage = work.stage;
   const double s = work.damping_scale, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
-  const History levels(now, state_, false);
-  const std::size_t n = std::size_t(mesh_.cells.n_owned()) * mesh_.dim;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = beta > 0 ? (last_.unknowns[i] - beta * levels(stage.rate, i)) / s : last_.unknowns[i];
-    const double u = levels(stage.end_value, i, x), v = levels(stage.end_rate, i, x);
-    if (!trial_.cell_a.empty()) trial_.cell_a[i] = levels(stage.end_acceleration, i, x);
-    trial_.cell_u[i] = u;
-    trial_.cell_v[i] = v;
-  }
-  trial_.stage_dt = stage.dt;
-  if (body_.has_mass()) return finish_faces(work, now);
+  const auto finish = [&](const History& levels, std::size_t i, double w, std::vector<double>& u,
+                          std::vector<double>& v, std::vector<double>& a) {
+    const double x = beta > 0 ? (w - beta * levels(stage.rate, i)) / s : w;
+    const double end = levels(stage.end_value, i, x), rate = levels(stage.end_rate, i, x);
+    if (!a.empty()) a[i] = levels(stage.end_acceleration, i, x);
+    u[i] = end;
+    v[i] = rate;
+  };
+  const History of_cells(now, state_, false), of_faces(now, state_, true);
   const int dim = mesh_.dim;
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  for (std::size_t i = 0; i < n_cells; ++i)
+    finish(of_cells, i, last_.unknowns[i], trial_.cell_u, trial_.cell_v, trial_.cell_a);
+  trial_.stage_dt = stage.dt;
+  std::size_t row = n_cells;
   for (const Index f : elastic_.unknown_faces())
-    for (int a = 0; a < dim; ++a) {
+    for (int a = 0; a < dim; ++a, ++row) {
       const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
       const std::size_t c = std::size_t(mesh_.owner[f]) * dim + a;
-      trial_.face_u[b] += trial_.cell_u[c];
-      trial_.face_v[b] += trial_.cell_v[c];
+      if (body_.has_mass()) {
+        finish(of_faces, b, last_.unknowns[row], trial_.face_u, trial_.face_v, trial_.face_a);
+      } else {
+        trial_.face_u[b] += trial_.cell_u[c];
+        trial_.face_v[b] += trial_.cell_v[c];
+      }
     }
 }
 
-/// Like the cells, if faces have inertia. Known support values are imposed at the end of the step.
-void SolidStepper::finish_faces(const StageWork& work, const SolidState& now) {
-  const time::Stage& stage = work.stage;
-  const double s = work.damping_scale, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
-  const History levels(now, state_, true);
-  const int dim = mesh_.dim;
-  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
-  const auto& open = elastic_.unknown_faces();
-  for (std::size_t i = 0; i < open.size(); ++i)
-    for (int a = 0; a < dim; ++a) {
-      const std::size_t b = std::size_t(open[i] - mesh_.n_interior) * dim + a;
-      const double w = last_.unknowns[n_cells + i * dim + a];
-      const double x = beta > 0 ? (w - beta * levels(stage.rate, b)) / s : w;
-      const double u = levels(stage.end_value, b, x), v = levels(stage.end_rate, b, x);
-      if (!trial_.face_a.empty()) trial_.face_a[b] = levels(stage.end_acceleration, b, x);
-      trial_.face_u[b] = u;
-      trial_.face_v[b] = v;
-    }
-}
-
-// Stores in the faces the offset that finish_cells() adds to cell values: delta = u_B - u_P at the end of the
+// Stores in the faces the offset that finish_nodes() adds to cell values: delta = u_B - u_P at the end of the
 // stage, extrapolated from this solve and the last one (trapezoidal rule with equal steps: 3/2 and -1/2). Its
 // rate, valid at mid-step, follows from the ends. With stiffness damping w leads: w_B - w_P = delta + beta
 // d(delta)/dt.

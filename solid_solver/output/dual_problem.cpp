@@ -82,7 +82,11 @@ double DualProblem::missed(std::span<const double> j, SolutionMethod& method) co
   const std::vector<Tensor3> of_z = gap(z, {});
   double sum = 0;
   elastic::visit_pyramids(body_.mesh(), body_.geometry(), [&](Index c, Index f, double v) {
-    sum += v * contraction(body_.elastic().stress(c, gap_[std::size_t(f)]), of_z[std::size_t(f)]);
+    const Tensor3 &e = gap_[std::size_t(f)], &of_dual = of_z[std::size_t(f)];
+    sum += v * contraction(body_.elastic().stress(c, e), of_dual);
+    // The mean volume strain of a cell has no gap.
+    if (body_.elastic().volume_by_cells())
+      sum -= v * body_.elastic().lame(c).lambda * e.trace() * of_dual.trace();
   });
   return parallel::sum(body_.mesh().comm, sum);
 }

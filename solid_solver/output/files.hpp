@@ -4,6 +4,7 @@
 #include <deque>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,6 +12,8 @@
 
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/fields/mesh_part.hpp"
+#include "common/io/series.hpp"
+#include "common/parallel/collective.hpp"
 #include "solid_solver/body/stress.hpp"
 
 namespace couplet::solid {
@@ -21,6 +24,24 @@ struct SolidContext {
   std::filesystem::path output_folder;  ///< empty if nothing is written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   io::FieldChoice fields{};
+};
+
+/// Tables of a run, each opened for its first row. Only rank 0 writes.
+class SeriesFiles {
+ public:
+  /// Keeps a reference.
+  SeriesFiles(const SolidContext& context, MPI_Comm comm)
+      : context_(context), writes_(parallel::comm_rank(comm) == 0) {}
+  void add(const std::string& file, const std::vector<std::string>& columns, std::span<const double> row) {
+    if (!writes_) return;
+    const auto at = list_.try_emplace(file, context_.output_folder / file, columns, context_.restart_time);
+    at.first->second.row(row);
+  }
+
+ private:
+  const SolidContext& context_;
+  bool writes_;
+  std::map<std::string, io::Series> list_;
 };
 
 /// Fields and their values.

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "solid_solver/output/modal_analysis.hpp"
 
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/symmetric/tied_matrix.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
+#include "common/linalg/dense_eigenvalues.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/mesh.hpp"
+#include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/inner_variation.hpp"
 #include "solid_solver/body/recovered_strain.hpp"
@@ -87,46 +93,42 @@ bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method
   return parallel::sum(mesh.comm, blocks) * mesh.dim <= (mesh.dim == 2 ? most_rows_2d : most_rows_3d);
 }
 
-/// Search with factors of the shifted stiffness.
-modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
-                                    double shift) {
-  const mesh::Geometry& geometry = problem.geometry();
-  const mesh::Mesh& mesh = problem.mesh;
-  std::vector<double> density;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    density.push_back(cell_mass[std::size_t(c)] / geometry.volume[std::size_t(c)]);
-  elastic::TiedMatrix shifted(mesh, problem.elastic, {.mass = shift, .density = density});
-  check_factors(problem, shifted, shift);
-  shifted.factorise();
-  const modes::Pencil of{
-      .comm = mesh.comm,
-      .n = problem.elastic.n_unknowns(),
-      .k = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
-      .m = [&](std::span<const double> x,
-               std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
-      .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
+/// The lowest `n` modes, with an approximate inverse of K + shift M.
+modes::EigenModes search(const SolidProblem& problem, int n, double shift, linalg::LinearMap solve) {
+  const elastic::ElasticKernel& kernel = problem.kernel;
+  const modes::Pencil of{.comm = problem.mesh.comm,
+                         .n = problem.elastic.n_unknowns(),
+                         .k = [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, {}, y); },
+                         .m = [&](std::span<const double> x,
+                                  std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); },
+                         .solve = std::move(solve)};
   return modes::lowest_modes(of, n, -shift);
 }
 
-/// Search with one preconditioner.
-modes::EigenModes search(const SolidProblem& problem, const MethodParameters& method,
-                         std::span<const double> cell_mass, int n, double shift) {
+/// By factors of the shifted stiffness.
+modes::EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
+                                    double shift) {
+  std::vector<double> density;
+  for (Index c = 0; c < problem.mesh.cells.n_owned(); ++c)
+    density.push_back(cell_mass[std::size_t(c)] / problem.geometry().volume[std::size_t(c)]);
+  elastic::TiedMatrix shifted(problem.mesh, problem.elastic, {.mass = shift, .density = density});
+  check_factors(problem, shifted, shift);
+  shifted.factorise();
+  return search(problem, n, shift,
+                [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); });
+}
+
+/// By one preconditioner.
+modes::EigenModes search_by_iteration(const SolidProblem& problem, const MethodParameters& method,
+                                      std::span<const double> cell_mass, int n, double shift) {
   std::vector<double> inertia;
   for (const double m : cell_mass) inertia.push_back(shift * m);
   const auto shifted =
       make_solution_method({problem.mesh, problem.elastic, inertia, problem.kernel, shift}, method);
-  const modes::Pencil of{
-      .comm = problem.mesh.comm,
-      .n = problem.elastic.n_unknowns(),
-      .k = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
-      .m = [&](std::span<const double> x,
-               std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
-      .solve =
-          [&](std::span<const double> x, std::span<double> y) {
-            std::ranges::fill(y, 0);
-            if (norm(problem.mesh.comm, x) > 0) shifted->solve(x, y);
-          }};
-  return modes::lowest_modes(of, n, -shift);
+  return search(problem, n, shift, [&](std::span<const double> x, std::span<double> y) {
+    std::ranges::fill(y, 0);
+    if (norm(problem.mesh.comm, x) > 0) shifted->solve(x, y);
+  });
 }
 
 }  // namespace
@@ -146,38 +148,39 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
   modes::EigenModes modes;
   try {
     modes = by_factors ? search_by_factors(problem, cell_mass, n, shift_part * scale)
-                       : search(problem, method, cell_mass, n, shift_part * scale);
+                       : search_by_iteration(problem, method, cell_mass, n, shift_part * scale);
   } catch (const SolveFailure& e) {
     if (!chooses || !by_factors) throw;
     log::info("modes: the factorised search did not succeed: {}", e.what());
     method.preconditioner = MethodParameters::Preconditioner::multigrid;
-    modes = search(problem, method, cell_mass, n, shift_part * scale);
+    modes = search_by_iteration(problem, method, cell_mass, n, shift_part * scale);
   }
   for (double& value : modes.eigenvalue)
     if (value < rigid_part * scale) value = 0;
   return modes;
 }
 
-double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
+double energy_error(const SolidBody& body, const std::vector<double>& shape) {
   const mesh::Mesh& mesh = body.mesh();
+  const StrainGap gap =
+      strain_gap(body, shape, {}, [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); });
+  RecoveredStrain recovered(mesh, body.elastic());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.add(f, gap.strain[std::size_t(f)]);
+  recovered.recover();
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.compare(f, gap.strain[std::size_t(f)]);
+  return std::max({gap.missed + recovered.missed(), gap.variation, first_order_part * std::sqrt(gap.missed)});
+}
+
+double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
   double most = 0;
   for (std::size_t m = 0; m < modes.shape.size(); ++m) {
     if (!(modes.eigenvalue[m] > 0)) continue;  // a rigid motion
-    const std::vector<double>& shape = modes.shape[m];
-    const StrainGap gap =
-        strain_gap(body, shape, {}, [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); });
-    RecoveredStrain recovered(mesh, body.elastic());
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.add(f, gap.strain[std::size_t(f)]);
-    recovered.recover();
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) recovered.compare(f, gap.strain[std::size_t(f)]);
     // In a loaded body the stress stiffness contributes to the eigenvalue.
-    const elastic::ElasticField u{shape, {}};
+    const elastic::ElasticField u{modes.shape[m], {}};
     const double share =
-        parallel::sum(mesh.comm, body.kernel().product(elastic::ElasticPart::stiffness, u, u)) /
+        parallel::sum(body.mesh().comm, body.kernel().product(elastic::ElasticPart::stiffness, u, u)) /
         modes.eigenvalue[m];
-    const double missed =
-        std::max({gap.missed + recovered.missed(), gap.variation, first_order_part * std::sqrt(gap.missed)});
-    most = std::max(most, share * missed);
+    most = std::max(most, share * energy_error(body, modes.shape[m]));
   }
   return 0.5 * most;
 }
@@ -241,6 +244,308 @@ modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenMod
   for (const auto& [id, face] : corners) model.faces.push_row(face);
   if (dim == 3) modes::average_faces(model);
   return model;
+}
+
+namespace {
+
+// Distance between the places where a load is compared, relative to the size of the body.
+constexpr double load_step = 1e-6;
+// Largest skew part of the gradient of a body force with a potential, relative to the gradient.
+constexpr double skew_part = 1e-3;
+
+/// Derivatives of the values along each axis by central differences; values(shift) are those at moved places.
+template <class Values>
+std::vector<std::vector<double>> slopes(const SolidBody& body, const Values& values) {
+  const double h = load_step * mesh::extent_of(body.mesh(), body.geometry()).diagonal();
+  std::vector<std::vector<double>> result;
+  for (int a = 0; a < body.mesh().dim; ++a) {
+    const std::vector<double> before = values(-h * Vec3::Unit(a));
+    std::vector<double>& slope = result.emplace_back(values(h * Vec3::Unit(a)));
+    for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - before[i]) / (2 * h);
+  }
+  return result;
+}
+
+/// Adds -db/dx of the body forces if it is symmetric.
+void add_body_forces(const SolidBody& body, double time, std::vector<elastic::PlaceBlock>& to) {
+  const mesh::Mesh& mesh = body.mesh();
+  const auto slope = slopes(body, [&](const Vec3& shift) { return body.body_forces(time, shift); });
+  std::vector<elastic::PlaceBlock> blocks;
+  double skew = 0, whole = 0;
+  for (Index c = 0; c < mesh.cells.n_owned() && !slope[0].empty(); ++c) {
+    Tensor3 gradient = Tensor3::Zero();
+    for (int a = 0; a < mesh.dim; ++a)
+      for (int b = 0; b < mesh.dim; ++b)
+        gradient(a, b) = slope[std::size_t(b)][std::size_t(c * mesh.dim + a)];
+    if (gradient.isZero(0)) continue;
+    skew += (0.5 * (gradient - gradient.transpose())).squaredNorm();
+    whole += gradient.squaredNorm();
+    blocks.push_back({c, c, -0.5 * (gradient + gradient.transpose())});
+  }
+  if (parallel::sum(mesh.comm, skew) <= skew_part * skew_part * parallel::sum(mesh.comm, whole))
+    to.insert(to.end(), blocks.begin(), blocks.end());
+}
+
+/// Adds the symmetric part of a dp/dx, see pressure_stiffness().
+void add_pressure_slopes(const SolidBody& body, double time, std::vector<elastic::PlaceBlock>& to) {
+  const mesh::Mesh& mesh = body.mesh();
+  const auto slope =
+      slopes(body, [&](const Vec3& shift) { return body.boundaries().pressures(time, shift); });
+  for (Index b = 0; b < mesh.boundary.n_owned(); ++b) {
+    Vec3 gradient = Vec3::Zero();
+    for (int a = 0; a < mesh.dim; ++a) gradient[a] = slope[std::size_t(a)][std::size_t(b)];
+    if (gradient.isZero(0)) continue;
+    const Tensor3 block = body.geometry().face_area[mesh.n_interior + b] * gradient.transpose();
+    const Index node = mesh.cells.n_local() + b;
+    to.push_back({node, node, 0.5 * (block + block.transpose())});
+  }
+}
+
+}  // namespace
+
+elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
+  const mesh::Mesh& mesh = body.mesh();
+  elastic::Prestress prestress{
+      fields.face_stress(0, mesh.n_flux_faces(), fields.point_displacement()),
+      elastic::pressure_stiffness(mesh, body.geometry(), body.boundaries().pressures(time))};
+  add_body_forces(body, time, prestress.loads);
+  add_pressure_slopes(body, time, prestress.loads);
+  return prestress;
+}
+
+double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress) {
+  double least = 0;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    Tensor3 s = prestress.stress[std::size_t(f)];
+    if (mesh.dim == 2) s.row(2).setZero(), s.col(2).setZero();
+    Eigen::SelfAdjointEigenSolver<Tensor3> solver;
+    solver.computeDirect(s, Eigen::EigenvaluesOnly);
+    least = std::min(least, solver.eigenvalues()[0]);
+  }
+  return -parallel::min(mesh.comm, least);
+}
+
+namespace {
+
+// Additional ratios computed, for a gap in which the pivots are counted.
+constexpr int extra = 3;
+// A ratio 1/lambda below this part of the largest one is round-off of a load without buckling.
+constexpr double ratio_rounding = 1e-9;
+// Shift relative to the scale of the lowest squared frequency, see modal_analysis.
+constexpr double loaded_shift_part = 1e-4;
+
+void check_buckling_of(const SolidBody& body) {
+  if (!body.kernel().is_symmetric())
+    throw SolveFailure("It requires 'solution-method: {face-gradient: symmetric}'.");
+  if (!elastic::TiedMatrix::suits(body.mesh())) throw SolveFailure("It does not support periodic patches.");
+  if (!body.rigid().empty()) throw SolveFailure("It does not support patches that move as rigid bodies.");
+}
+
+void make_largest_one(MPI_Comm comm, std::vector<double>& shape) {
+  double largest = 0;
+  for (const double v : shape) largest = std::max(largest, std::abs(v));
+  largest = parallel::max(comm, largest);
+  if (largest > 0)
+    for (double& v : shape) v /= largest;
+}
+
+/// True if exactly `n` factors are below `s`.
+bool counts(const SolidBody& body, const elastic::Prestress& prestress, double s, std::size_t n) {
+  elastic::TiedMatrix loaded(body.mesh(), body.elastic(), {.stress = s, .prestress = &prestress});
+  loaded.factorise();
+  return loaded.negative() == GlobalIndex(n);
+}
+
+double largest_stress(const SolidBody& body, const elastic::Prestress& prestress) {
+  double largest = 0;
+  for (const Tensor3& s : prestress.stress) largest = std::max(largest, s.norm());
+  return parallel::max(body.mesh().comm, largest);
+}
+
+/// Factor at which the stress equals Young's modulus; buckling beyond is ignored.
+double overload(const SolidBody& body, const elastic::Prestress& prestress) {
+  double stiffest = 0;
+  for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
+    stiffest = std::max(stiffest, body.elastic().lame(c).mu);
+  return 2.5 * parallel::max(body.mesh().comm, stiffest) / largest_stress(body, prestress);
+}
+
+}  // namespace
+
+Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestress, int n) {
+  check_buckling_of(body);
+  if (!(largest_stress(body, prestress) > 0))
+    throw SolveFailure("The loads cause no stress in the body; add a load or a moving support.");
+  const mesh::Mesh& mesh = body.mesh();
+  elastic::StressStiffness stress(mesh, body.elastic(), prestress);
+  elastic::TiedMatrix stiffness(mesh, body.elastic(), {});
+  stiffness.factorise();
+  const modes::Pencil of{
+      .comm = mesh.comm,
+      .n = body.elastic().n_unknowns(),
+      .k =
+          [&](std::span<const double> x, std::span<double> y) {
+            stress.apply(x, y);
+            for (double& v : y) v = -v;
+          },
+      .m = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
+      .solve = [&](std::span<const double> x, std::span<double> y) { stiffness.solve(x, y); }};
+  for (int more = extra; more <= 8 * extra; more *= 2) {
+    modes::EigenModes found = modes::largest_modes(of, n + more);
+    Buckling result;
+    if (found.eigenvalue.empty()) {
+      if (counts(body, prestress, overload(body, prestress), 0)) return result;
+      continue;
+    }
+    const double least = ratio_rounding * std::abs(found.eigenvalue.front());
+    for (std::size_t i = 0; i < found.eigenvalue.size() && found.eigenvalue[i] > least; ++i) {
+      result.factor.push_back(1 / found.eigenvalue[i]);
+      result.shape.push_back(std::move(found.shape[i]));
+      make_largest_one(mesh.comm, result.shape.back());
+    }
+    if (result.factor.size() < 2) return result;
+    // Uses the widest gap beyond the wanted ones.
+    std::size_t end = std::min(std::size_t(n), result.factor.size() - 1);
+    double widest = 0;
+    for (std::size_t i = end; i < result.factor.size(); ++i)
+      if (result.factor[i] / result.factor[i - 1] > widest)
+        widest = result.factor[i] / result.factor[i - 1], end = i;
+    if (!counts(body, prestress, 0.5 * (result.factor[end - 1] + result.factor[end]), end)) continue;
+    const std::size_t kept = std::min(std::size_t(n), result.factor.size());
+    result.factor.resize(kept);
+    result.shape.resize(kept);
+    return result;
+  }
+  throw SolveFailure("Cannot verify the {} lowest load factors; request fewer.", n);
+}
+
+modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestress& prestress, int n) {
+  const mesh::Geometry& geometry = body.geometry();
+  check_buckling_of(body);
+  const mesh::Mesh& mesh = body.mesh();
+  const elastic::ElasticKernel& kernel = body.kernel();
+  std::vector<double> density;
+  double slowest = 1e300;
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) density.push_back(body.density(c));
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    slowest = std::min(slowest, body.elastic().lame(c).mu / density[std::size_t(c)]);
+  kernel.set_density(density);
+  const double length = mesh::extent_of(mesh, geometry).diagonal();
+  const double shift = loaded_shift_part * parallel::min(mesh.comm, slowest) / (length * length);
+  elastic::TiedMatrix loaded(mesh, body.elastic(), {.stress = 1, .prestress = &prestress});
+  loaded.factorise();
+  if (loaded.negative() > 0)
+    throw SolveFailure("The loaded equilibrium is unstable: {} modes have negative stiffness.",
+                       loaded.negative());
+  elastic::TiedMatrix shifted(mesh, body.elastic(),
+                              {.mass = shift, .density = density, .stress = 1, .prestress = &prestress});
+  shifted.factorise();
+  elastic::StressStiffness stress(mesh, body.elastic(), prestress);
+  std::vector<double> of_stress(body.elastic().n_unknowns());
+  const modes::Pencil of{
+      .comm = mesh.comm,
+      .n = body.elastic().n_unknowns(),
+      .k =
+          [&](std::span<const double> x, std::span<double> y) {
+            kernel.apply(x, {}, y);
+            stress.apply(x, of_stress);
+            for (std::size_t i = 0; i < y.size(); ++i) y[i] += of_stress[i];
+          },
+      .m = [&](std::span<const double> x,
+               std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); },
+      .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
+  return modes::lowest_modes(of, n, -shift);
+}
+
+namespace {
+
+/// Applies A to unit vectors; rows rank by rank. On rank 0.
+Eigen::MatrixXd probe(MPI_Comm comm, std::size_t n_local, GlobalIndex n, const ElasticApplication& apply) {
+  const GlobalIndex first = parallel::exclusive_scan(comm, GlobalIndex(n_local));
+  const bool root = parallel::comm_rank(comm) == 0;
+  Eigen::MatrixXd a(root ? n : 0, root ? n : 0);
+  std::vector<double> x(n_local, 0), y(n_local);
+  for (GlobalIndex j = 0; j < n; ++j) {
+    const bool mine = j >= first && j < first + GlobalIndex(n_local);
+    if (mine) x[std::size_t(j - first)] = 1;
+    apply(x, y);
+    if (mine) x[std::size_t(j - first)] = 0;
+    const std::vector<double> column = parallel::gather(comm, y);
+    if (root) a.col(j) = Eigen::Map<const Eigen::VectorXd>(column.data(), n);
+  }
+  return a;
+}
+
+std::vector<double> columns(const Eigen::MatrixXd& a) { return {a.data(), a.data() + a.size()}; }
+
+void check_size(GlobalIndex n) {
+  if (n > largest_spectrum)
+    throw Error(
+        "output.spectrum: the scene has {} displacement components; the spectrum is computed for at most "
+        "{}. Use a coarser mesh of the same kind.",
+        n, largest_spectrum);
+}
+
+}  // namespace
+
+std::vector<std::complex<double>> symmetric_spectrum(const mesh::Mesh& mesh, std::size_t n_unknowns,
+                                                     const ElasticApplication& stiffness,
+                                                     const ElasticApplication& mass) {
+  const GlobalIndex n = parallel::sum(mesh.comm, GlobalIndex(n_unknowns));
+  check_size(n);
+  const Eigen::MatrixXd a = probe(mesh.comm, n_unknowns, n, stiffness);
+  const Eigen::MatrixXd b = probe(mesh.comm, n_unknowns, n, mass);
+  if (parallel::comm_rank(mesh.comm) != 0) return {};
+  std::vector<Eigen::Index> massive, massless;
+  for (Eigen::Index i = 0; i < n; ++i)
+    (b(i, i) > 1e-12 * b.trace() / double(n) ? massive : massless).push_back(i);
+  Eigen::MatrixXd k = a(massive, massive), m = b(massive, massive);
+  if (!massless.empty()) k -= a(massive, massless) * a(massless, massless).ldlt().solve(a(massless, massive));
+  k = (0.5 * (k + k.transpose())).eval();
+  m = (0.5 * (m + m.transpose())).eval();
+  // An oblique support leaves a massless direction on the diagonal blocks.
+  m.diagonal().array() += 1e-13 * m.trace() / double(m.rows());
+  const std::vector<double> values = linalg::symmetric_eigenvalues(columns(k), columns(m), int(k.rows()));
+  return {values.begin(), values.end()};
+}
+
+std::vector<std::complex<double>> spectrum(const mesh::Mesh& mesh, std::span<const double> cell_mass,
+                                           std::size_t n_unknowns, const ElasticApplication& apply) {
+  const std::size_t n_cells = cell_mass.size() * mesh.dim;
+  const GlobalIndex n = parallel::sum(mesh.comm, GlobalIndex(n_unknowns)),
+                    n_massive = parallel::sum(mesh.comm, GlobalIndex(n_cells));
+  check_size(n_massive);
+  // Mass of each row, 0 for faces, in the order of the gathered rows.
+  std::vector<double> local_mass(n_unknowns, 0);
+  for (std::size_t i = 0; i < n_cells; ++i) local_mass[i] = cell_mass[i / mesh.dim];
+  const std::vector<double> mass = parallel::gather(mesh.comm, local_mass);
+  const Eigen::MatrixXd a = probe(mesh.comm, n_unknowns, n, apply);
+  if (parallel::comm_rank(mesh.comm) != 0) return {};
+  std::vector<Eigen::Index> massive, massless;
+  for (Eigen::Index i = 0; i < n; ++i) (mass[i] > 0 ? massive : massless).push_back(i);
+  Eigen::MatrixXd k = a(massive, massive);
+  if (!massless.empty())
+    k -= a(massive, massless) * a(massless, massless).partialPivLu().solve(a(massless, massive));
+  for (Eigen::Index i = 0; i < k.rows(); ++i) k.row(i) /= mass[massive[i]];
+  std::vector<std::complex<double>> result = linalg::general_eigenvalues(columns(k), int(k.rows()));
+  std::ranges::sort(result, {}, [](const std::complex<double>& z) { return std::pair(z.real(), z.imag()); });
+  return result;
+}
+
+std::vector<std::complex<double>> eigenvalues(const SolidBody& body) {
+  const mesh::Geometry& geometry = body.geometry();
+  const mesh::Mesh& mesh = body.mesh();
+  const elastic::ElasticKernel& kernel = body.kernel();
+  if (body.has_mass())
+    return symmetric_spectrum(
+        mesh, body.elastic().n_unknowns(),
+        [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, {}, y); },
+        [&](std::span<const double> x, std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); });
+  std::vector<double> mass;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) mass.push_back(body.density(c) * geometry.volume[c]);
+  const std::vector<double> still(body.prescribed().size() * mesh.dim, 0);
+  return spectrum(mesh, mass, body.elastic().n_unknowns(),
+                  [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, still, y); });
 }
 
 }  // namespace couplet::solid

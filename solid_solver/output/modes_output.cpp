@@ -2,6 +2,7 @@
 // Free vibrations and buckling in SolidOutput.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -9,7 +10,6 @@
 #include "common/log/log.hpp"
 #include "common/modes/modal_model.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/output/buckling.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/output.hpp"
 
@@ -66,7 +66,7 @@ void SolidOutput::write_shapes(const char* file, const char* name,
         .write(stepper_.state().time, body_.geometry().points, fields);
 }
 
-/// `of`: of what, for the log.
+/// `of`: object that vibrates, for the log.
 void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::EigenModes& found,
                                    const char* of) {
   const mesh::Mesh& mesh = body_.mesh();
@@ -87,11 +87,12 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
     series.row(row);
   }
   if (mesh.dim == 3) couplet::modes::write_modes(context_.output_folder / "modes.h5", model, "");
+  const auto first = std::ranges::find_if(model.frequency, [](double f) { return f > 0; });
+  const std::ptrdiff_t rigid = first - model.frequency.begin(), left = model.frequency.end() - first;
   diagnostics::set_result(
-      {"free vibrations",
+      {fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid motions", rigid) : ""),
        "Hz",
-       {model.frequency.begin(),
-        model.frequency.begin() + std::min<std::ptrdiff_t>(5, std::ssize(model.frequency))},
+       {first, first + std::min<std::ptrdiff_t>(5, left)},
        error});
   log::info(
       "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv, shapes in mode-shapes.xdmf{}; max residual {:.1e}; estimated error due "

@@ -17,7 +17,7 @@
 #include "solid_solver/body/stress.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/output/files.hpp"
-#include "solid_solver/output/spectrum.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
 
 namespace couplet::solid {
 
@@ -47,13 +47,15 @@ void SolidSurfaces::write(double time, std::span<const double> points, std::span
   fields.add("traction", "Pa", Place::cells, dim, std::move(traction));
   fields.add_tensor("stress", "Pa", Place::points, dim, stress);
   fields.add("equivalent-stress", "Pa", Place::points, 1, std::move(equivalent));
-  if (ThermalStrain* thermal = body_.thermal()) thermal->add_surface_fields(fields.list);
+  if (const ThermalStrain* thermal = body_.thermal()) {
+    fields.add("temperature", "K", Place::points, 1, thermal->point_temperature());
+    if (thermal->heat())
+      fields.add("heat-flux", "W/m^2", Place::cells, 1, thermal->heat()->boundary_inflow());
+  }
   for (std::size_t i = 0; i < series_.patches().size(); ++i) series_.write(i, time, places, fields.list);
 }
 
 namespace {
-
-using Place = io::OutputField::Place;
 
 /// Values of all local cells; ghosts, which are not written, contain zeros.
 std::vector<double> packed_cells(const mesh::Mesh& mesh, std::span<const Tensor3> owned) {
@@ -87,7 +89,12 @@ void add_cell_stress(const SolidBody& body, const SolidFields& derived, std::spa
 
 SolidOutput::SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
                          const SolidContext& context)
-    : derived_(derived), stepper_(stepper), body_(body), context_(context), probes_(body, derived) {
+    : derived_(derived),
+      stepper_(stepper),
+      body_(body),
+      context_(context),
+      probes_(body, derived),
+      series_(context, body.mesh().comm) {
   if (!body.parameters().output.surfaces.empty()) surfaces_.emplace(derived, body, context);
 }
 
@@ -123,7 +130,10 @@ void SolidOutput::write_volume(double time, std::span<const double> points, std:
     fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, derived_.cell_strain(points)));
   if (chosen.point_stress)
     fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
-  if (ThermalStrain* thermal = body_.thermal()) thermal->add_fields(fields.list);
+  if (const ThermalStrain* thermal = body_.thermal()) {
+    fields.add("temperature", "K", Place::points, 1, thermal->point_temperature());
+    fields.add("cell-temperature", "K", Place::cells, 1, thermal->cell_temperature());
+  }
   fields_->write(time, places, fields.list);
 }
 
@@ -131,9 +141,24 @@ void SolidOutput::write_series(double time, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
   if (!probes_.empty()) write_probes(time, points);
   write_reactions(time, points);
-  write_effort(time);
-  write_path(time);
-  if (body_.parameters().output.energies) write_energies(time, points);
+  const SolverEffort& effort = stepper_.effort();
+  if (effort.solves > 0)  // At the start there was no solve.
+    series_.add("solver.csv", {"time [s]", "solves", "iterations", "inner iterations", "residual"},
+                std::array{time, static_cast<double>(effort.solves), static_cast<double>(effort.iterations),
+                           static_cast<double>(effort.inner_iterations), effort.residual});
+  if (const LoadPath* path = body_.equilibrium().load_path())
+    series_.add("path.csv",
+                {"time [s]", "load factor [1]", "length [m]", "lowest stiffness [1]", "stable [1]"},
+                std::array{time, path->factor(), path->length(), path->stiffness(),
+                           path->stiffness() > 0 ? 1.0 : 0.0});
+  if (body_.parameters().output.energies) {
+    const SolidEnergies e = stepper_.ledger().total(stepper_.state(), points);
+    series_.add(
+        "energies.csv",
+        {"time [s]", "kinetic [J]", "strain [J]", "internal work [J]", "external work [J]",
+         "damping loss [J]", "lost by the scheme [J]"},
+        std::array{time, e.kinetic, e.strain, e.internal_work, e.external_work, e.damping_loss, e.lost()});
+  }
   if (body_.seat()) write_contact(time);
 }
 
@@ -167,29 +192,11 @@ void SolidOutput::write_spectrum(double dt) {
 }
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {
-  const std::vector<double> values = probes_.sample(points);
-  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
-  if (!probe_series_) {
-    std::vector<std::string> columns{"time [s]"};
-    columns.insert(columns.end(), probes_.columns().begin(), probes_.columns().end());
-    probe_series_.emplace(context_.output_folder / "probes.csv", columns, context_.restart_time);
-  }
-  std::vector<double> row{time};
-  row.insert(row.end(), values.begin(), values.end());
-  probe_series_->row(row);
-}
-
-void SolidOutput::write_energies(double time, std::span<const double> points) {
-  const SolidEnergies e = stepper_.ledger().total(stepper_.state(), points);
-  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
-  if (!energy_series_)
-    energy_series_.emplace(
-        context_.output_folder / "energies.csv",
-        std::vector<std::string>{"time [s]", "kinetic [J]", "strain [J]", "internal work [J]",
-                                 "external work [J]", "damping loss [J]", "lost by the scheme [J]"},
-        context_.restart_time);
-  energy_series_->row(std::vector<double>{time, e.kinetic, e.strain, e.internal_work, e.external_work,
-                                          e.damping_loss, e.lost()});
+  std::vector<double> row = probes_.sample(points);
+  std::vector<std::string> columns(probes_.columns().begin(), probes_.columns().end());
+  row.insert(row.begin(), time);
+  columns.insert(columns.begin(), "time [s]");
+  series_.add("probes.csv", columns, row);
 }
 
 /// Uses spring forces at the accepted time, for a rigid seat those of the last solve.
@@ -201,67 +208,30 @@ void SolidOutput::write_contact(double time) {
   const Seat::Look seen =
       seat.look(seat.penetration(body_.unknowns_of(state.cell_u, state.face_u), state.known),
                 seat.is_rigid() && !solved.empty() ? solved : still);
-  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
-  if (!contact_series_)
-    contact_series_.emplace(context_.output_folder / "contact.csv",
-                            std::vector<std::string>{"time [s]", "force [N]", "penetration [m]", "energy [J]",
-                                                     "largest pressure [Pa]", "area in contact [m^2]"},
-                            context_.restart_time);
-  contact_series_->row(std::array{time, seen.force, seen.penetration, seen.energy, seen.pressure, seen.area});
+  series_.add("contact.csv",
+              {"time [s]", "force [N]", "penetration [m]", "energy [J]", "largest pressure [Pa]",
+               "area in contact [m^2]"},
+              std::array{time, seen.force, seen.penetration, seen.energy, seen.pressure, seen.area});
 }
 
 void SolidOutput::write_reactions(double time, std::span<const double> points) {
   const int dim = body_.mesh().dim;
-  const std::vector<PatchForce> reactions = derived_.reactions(points);
-  const Vec3 load = derived_.total_load();
-  if (parallel::comm_rank(body_.mesh().comm) != 0) return;
-  std::vector<double> row{time};
   const SolidOutputParameters& chosen = body_.parameters().output;
+  const Vec3 load = derived_.total_load();
   const int first = dim == 2 ? 2 : 0;  // a plane scene turns about z
-  for (const PatchForce& r : reactions) {
-    row.insert(row.end(), r.force.data(), r.force.data() + dim);
+  std::vector<std::string> columns{"time [s]"};
+  std::vector<double> row{time};
+  const auto add = [&](const std::string& name, int axis, const char* unit, double value) {
+    columns.push_back(name + " " + base::axis_letters[axis] + unit);
+    row.push_back(value);
+  };
+  for (const PatchForce& r : derived_.reactions(points)) {
     const Vec3 moment = r.moment_about(chosen.moment_centre);
-    if (chosen.moments) row.insert(row.end(), moment.data() + first, moment.data() + 3);
+    for (int a = 0; a < dim; ++a) add(r.patch, a, " [N]", r.force[a]);
+    for (int a = first; chosen.moments && a < 3; ++a) add(r.patch + " moment", a, " [N m]", moment[a]);
   }
-  row.insert(row.end(), load.data(), load.data() + dim);
-  if (!reaction_series_) {
-    std::vector<std::string> columns{"time [s]"};
-    for (const PatchForce& r : reactions) {
-      for (int a = 0; a < dim; ++a) columns.push_back(r.patch + " " + base::axis_letters[a] + " [N]");
-      for (int a = first; chosen.moments && a < 3; ++a)
-        columns.push_back(r.patch + " moment " + base::axis_letters[a] + " [N m]");
-    }
-    for (int a = 0; a < dim; ++a) columns.push_back(std::string("load ") + base::axis_letters[a] + " [N]");
-    reaction_series_.emplace(context_.output_folder / "reactions.csv", columns, context_.restart_time);
-  }
-  reaction_series_->row(row);
-}
-
-void SolidOutput::write_path(double time) {
-  const LoadPath* path = body_.equilibrium().load_path();
-  if (!path || parallel::comm_rank(body_.mesh().comm) != 0) return;
-  if (!path_series_)
-    path_series_.emplace(context_.output_folder / "path.csv",
-                         std::vector<std::string>{"time [s]", "load factor [1]", "length [m]",
-                                                  "lowest stiffness [1]", "stable [1]"},
-                         context_.restart_time);
-  path_series_->row(
-      std::array{time, path->factor(), path->length(), path->stiffness(), path->stiffness() > 0 ? 1.0 : 0.0});
-}
-
-void SolidOutput::write_effort(double time) {
-  const SolverEffort& effort = stepper_.effort();
-  // At the start there was no solve.
-  if (effort.solves == 0 || parallel::comm_rank(body_.mesh().comm) != 0) return;
-  if (!solver_series_)
-    solver_series_.emplace(
-        context_.output_folder / "solver.csv",
-        std::vector<std::string>{"time [s]", "solves", "iterations", "inner iterations", "residual"},
-        context_.restart_time);
-  const std::array<double, 5> row{time, static_cast<double>(effort.solves),
-                                  static_cast<double>(effort.iterations),
-                                  static_cast<double>(effort.inner_iterations), effort.residual};
-  solver_series_->row(row);
+  for (int a = 0; a < dim; ++a) add("load", a, " [N]", load[a]);
+  series_.add("reactions.csv", columns, row);
 }
 
 }  // namespace couplet::solid

@@ -8,7 +8,6 @@
 
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/fields/surface_series.hpp"
-#include "common/io/series.hpp"
 #include "common/modes/pencil.hpp"
 #include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/body/solid_fields.hpp"
@@ -65,9 +64,6 @@ class SolidOutput {
   void write_vibrations(const SolidProblem& problem, const modes::EigenModes& found, const char* of);
   void write_probes(double time, std::span<const double> points);
   void write_reactions(double time, std::span<const double> points);
-  void write_effort(double time);
-  void write_path(double time);
-  void write_energies(double time, std::span<const double> points);
   void write_contact(double time);
 
   const SolidFields& derived_;
@@ -79,9 +75,7 @@ class SolidOutput {
   std::optional<double> buckling_factor_;
   std::optional<io::FieldWriter> fields_;
   std::optional<SolidSurfaces> surfaces_;
-  // On rank 0.
-  std::optional<io::Series> probe_series_, reaction_series_, path_series_, solver_series_, energy_series_,
-      contact_series_;
+  SeriesFiles series_;
 };
 
 }  // namespace couplet::solid

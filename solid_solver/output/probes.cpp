@@ -21,15 +21,6 @@ bool is_stress(std::string_view field) {
   return field == "stress" || field == "equivalent-stress" || field == "principal-stress";
 }
 
-/// Field of an effect at points, with its name and unit.
-io::OutputField effect_field(const SolidBody& body, const std::string& name) {
-  std::vector<io::OutputField> fields;
-  if (ThermalStrain* thermal = body.thermal()) thermal->add_fields(fields);
-  for (const io::OutputField& field : fields)
-    if (field.name == name && field.place == io::OutputField::Place::points) return field;
-  throw Error("probes: the field '{}' is requested, but nothing in this scene computes it.", name);
-}
-
 constexpr double least_weight =
     1e-9;  // of a point in the value at a place; below, the place lies on a side without it
 
@@ -121,7 +112,9 @@ void SolidProbes::add_columns(const std::string& probe, const std::string& field
     for (const char* i : {"1", "2", "3"}) columns_.push_back(probe + " principal-stress-" + i + " [Pa]");
     return;
   }
-  columns_.push_back(probe + " " + field + " [" + effect_field(body_, field).unit + "]");
+  if (!body_.thermal())
+    throw Error("probes: the field '{}' is requested, but nothing in this scene computes it.", field);
+  columns_.push_back(probe + " temperature [K]");
 }
 
 bool SolidProbes::watches_stress() const {
@@ -129,21 +122,18 @@ bool SolidProbes::watches_stress() const {
                              [](const Watched& w) { return std::ranges::any_of(w.fields, is_stress); });
 }
 
-bool SolidProbes::any_watches(std::initializer_list<const char*> fields) const {
-  for (const Watched& watched : probes_)
-    for (const char* field : fields)
-      if (std::ranges::find(watched.fields, field) != watched.fields.end()) return true;
-  return false;
+bool SolidProbes::any_watches(const char* field) const {
+  return std::ranges::any_of(probes_, [&](const Watched& w) { return std::ranges::count(w.fields, field); });
 }
 
 std::vector<double> SolidProbes::sample(std::span<const double> points) const {
   const int dim = body_.mesh().dim;
   std::vector<double> velocity, acceleration, row;
   SidedTensors stress, strain;
-  if (any_watches({"velocity"})) velocity = derived_.point_velocity();
-  if (any_watches({"acceleration"})) acceleration = derived_.point_acceleration();
+  if (any_watches("velocity")) velocity = derived_.point_velocity();
+  if (any_watches("acceleration")) acceleration = derived_.point_acceleration();
   if (watches_stress()) stress = derived_.stress_sides(points, stressed_);
-  if (any_watches({"strain"})) strain = derived_.strain_sides(points);
+  if (any_watches("strain")) strain = derived_.strain_sides(points);
   for (const Watched& watched : probes_) {
     for (const std::string& field : watched.fields) {
       std::vector<double> values;
@@ -165,7 +155,7 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
           values.assign(principal.begin(), principal.end());
         }
       } else {
-        values = watched.probe.sample(effect_field(body_, field).values, 1);
+        values = watched.probe.sample(body_.thermal()->point_temperature(), 1);
       }
       row.insert(row.end(), values.begin(), values.end());
     }

@@ -61,7 +61,7 @@ class SolidProbes {
   };
   void add_columns(const std::string& probe, const std::string& field);
   bool watches_stress() const;
-  bool any_watches(std::initializer_list<const char*> fields) const;
+  bool any_watches(const char* field) const;
 
   const SolidBody& body_;
   const SolidFields& derived_;

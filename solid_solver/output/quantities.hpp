@@ -33,7 +33,7 @@ struct QuantityEstimate {
   /// (quadratic_displacement()), of a stress by the residual of its recovery.
   double local = 0;
   double dual = 0;  ///< DualProblem::missed()
-  /// Relative displacement error of the whole body times the value. Covers cases where the other parts miss
+  /// Variation within the quadrilaterals of the whole body times the value. Covers cases where the other parts miss
   /// the error, such as regular cells in bending, whose residuals cancel.
   double body = 0;
   std::string patch{};     ///< of a heat flow, instead of `place`

@@ -76,7 +76,7 @@ void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimensi
   declare_moment(s, load.moment, dimension);
   s.choice("coupling", load.is_rigid, {{"distributing", false}, {"rigid", true}})
       .doc(
-          "distributing: the faces share the load by area and remain free to deform; rigid: their centers "
+          "distributing: the faces share the load by area and remain free to deform. rigid: their centers "
           "move as one rigid body (small strain, symmetric face gradient)");
   s.check([&] { return load.is_rigid ? std::string() : problem_of_nothing(load); }, "point");
 }
@@ -129,7 +129,7 @@ void declare(config::Section& s, PointLoad& load, const int& dimension) {
       .plausible(1e-9, 1e4)
       .not_negative()
       .doc(
-          "faces with their center within this distance of 'point' share the load, as for a remote-load; 0: "
+          "faces with their center within this distance of 'point' share the load, as for a remote-load; 0 means "
           "the nearest face alone takes the force");
   s.check([&] { return problem_of_nothing(load); }, "point");
   s.check(

@@ -56,7 +56,7 @@ struct SolidCondition {
     interface_
   };
   Type type = Type::free;
-  /// fixed-displacement: displacement [m]; traction: [Pa]; spring: displacement of its far end [m]; one per
+  /// Displacement [m] of a fixed-displacement, traction [Pa], or displacement of a spring's far end [m]; one per
   /// component.
   std::vector<config::ExpressionText> value;
   /// fixed-displacement: the known components [m], instead of `value`.

@@ -35,8 +35,8 @@ struct WallImpedance {
   /// whole mass in long steps, and rho c dt/2 if the wave does not cross the layer.
   double in_step(double dt) const;
 };
-/// Density times thickness of a wall, half of that if wet on both sides. `densities`, `speeds` (pressure
-/// waves; infinite if rigid), `volumes`: per cell of this rank. `areas`: per interface face. Collective.
+/// Density times thickness of a wall, half of that if wet on both sides. `densities`, `speeds` (of pressure waves,
+/// infinite if rigid) and `volumes` are values of this rank's cells; `areas` belong to interface faces. Collective.
 WallImpedance wall_impedance(MPI_Comm comm, std::span<const double> densities, std::span<const double> speeds,
                              std::span<const double> volumes, std::span<const Vec3> areas);
 
@@ -71,7 +71,7 @@ class FaceInterpolation {
 /// and those of other ranks near its places.
 class InterfaceTemperature final {
  public:
-  /// `centres`: of this rank's interface faces; some rank must have some. `places`: groups of this rank's
+  /// `centres`: centers of this rank's interface faces; some rank must have some. `places`: groups of this rank's
   /// points that need a temperature. Collective.
   InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres,
                        const std::vector<std::span<const Vec3>>& places);

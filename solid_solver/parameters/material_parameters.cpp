@@ -49,10 +49,10 @@ void declare(config::Section& s, Orthotropic& m) {
   s.check([&m] { return problem_of_numbers(m.shear_moduli, true, "three (G12, G23, G13)"); }, "shear-moduli");
   s.check([&m] { return problem_of_constants(m); }, "poissons-ratios");
   s.value("first-axis", m.first_axis)
-      .doc("direction of axis 1, one expression of x, y, z per component, any length; absent: x");
+      .doc("direction of axis 1, one expression of x, y, z per component, any length; default: x");
   s.value("second-axis", m.second_axis)
       .doc(
-          "axis 2, of which only the part normal to axis 1 counts; absent: y; in two dimensions it follows "
+          "axis 2, of which only the part normal to axis 1 counts; default: y; in two dimensions it follows "
           "from axis 1");
 }
 
@@ -173,7 +173,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
 void declare(config::Section& s, ZoneMaterial& m, bool is_elastic) {
   s.value("zones", m.zones)
       .doc(
-          "physical volumes (2-D: surfaces) of the mesh made of this material; absent: the one with this "
+          "physical volumes (2-D: surfaces) of the mesh made of this material; default: the one with this "
           "name");
   declare(s, static_cast<SolidMaterial&>(m), is_elastic);
 }
@@ -206,9 +206,7 @@ class Matrices {
   elastic::ElasticMatrix at(std::size_t material, const Vec3& x) const {
     const Tensor3 axes = axes_[material] ? axes_[material]->at(x) : Tensor3(Tensor3::Identity());
     const elastic::ElasticMatrix matrix = elastic::turned(own_[material], axes);
-    const bool plane_stress =
-        parameters_.dimension == 2 && parameters_.plane == SolidParameters::Plane::stress;
-    return plane_stress ? elastic::in_plane_stress(matrix) : matrix;
+    return is_plane_stress(parameters_) ? elastic::in_plane_stress(matrix) : matrix;
   }
 
  private:
@@ -254,8 +252,7 @@ elastic::LameConstants lame_constants(const SolidParameters& p, const SolidMater
                                     ? elastic::isotropic_mean(matrix_of(*material.orthotropic))
                                     : lame_constants(material.youngs_modulus, material.poissons_ratio);
   // sigma_zz = 0 eliminates the out-of-plane strain.
-  if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
-    lame.lambda = 2 * lame.lambda * lame.mu / (lame.lambda + 2 * lame.mu);
+  if (is_plane_stress(p)) lame.lambda = 2 * lame.lambda * lame.mu / (lame.lambda + 2 * lame.mu);
   return lame;
 }
 
@@ -280,9 +277,7 @@ bool has_orthotropic(const SolidParameters& p) {
 bool symmetric_suits(const SolidParameters& p) {
   using Type = MethodParameters::Type;
   if (p.method.type != Type::automatic && p.method.type != Type::newton_krylov) return false;
-  return std::ranges::none_of(p.boundaries, [&](const auto& entry) {
-    return has_no_energy(entry.second) || std::ranges::any_of(entry.second.parts, has_no_energy);
-  });
+  return !any_condition(p, has_no_energy);
 }
 
 elastic::VolumeStrain volume_strain_of(const SolidParameters& p) {
@@ -292,13 +287,12 @@ elastic::VolumeStrain volume_strain_of(const SolidParameters& p) {
     return elastic::VolumeStrain::faces;
   if (p.method.volume_strain == Chosen::cells) return elastic::VolumeStrain::cells;
   if (p.method.volume_strain == Chosen::shared) return elastic::VolumeStrain::shared;
-  const bool plane_stress = p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
-  if (plane_stress || is_axisymmetric(p) || has_orthotropic(p) ||
+  if (is_plane_stress(p) || is_axisymmetric(p) || has_orthotropic(p) ||
       largest_poissons_ratio(p) < nearly_incompressible)
     return elastic::VolumeStrain::faces;
   const bool has_bulk =
       !has_finite_strain(p) || std::ranges::all_of(materials_of(p), [](const SolidMaterial& m) {
-        return laws::of(m.law)->make({1, 1}, {})->has_bulk();
+        return laws::of(m.law)->make({1, 1}, {}).has_bulk;
       });
   return has_bulk ? elastic::VolumeStrain::cells : elastic::VolumeStrain::faces;
 }

@@ -16,7 +16,7 @@ namespace couplet::solid {
 /// Material with three planes of symmetry, and its axes.
 struct Orthotropic {
   std::vector<double> youngs_moduli, poissons_ratios, shear_moduli;  // 1 2 3; 12 23 13; 12 23 13 [Pa]
-  /// In x, y, z, of any length; empty: x and y. In 2-D only the first is used and the third is z. Only the
+  /// In x, y, z, of any length; empty means x and y. In 2-D only the first is used and the third is z. Only the
   /// part of the second normal to the first is used.
   std::vector<config::ExpressionText> first_axis, second_axis;
 };
@@ -48,8 +48,8 @@ struct SolidMaterial {
   double youngs_modulus = 0;  // [Pa]
   double poissons_ratio = 0;
   HeatMaterial heat{};
-  std::optional<double> yield_strength{};    // [Pa]; only for the finding about yielding
-  std::string law{};                         // of finite strain, see laws/; empty: Saint Venant-Kirchhoff
+  std::optional<double> yield_strength{};  // [Pa]; only for the finding about yielding
+  std::string law{};  // law of finite strain, see laws/; empty means Saint Venant-Kirchhoff
   std::vector<double> law_coefficients{};    // in addition to E and nu
   std::optional<Orthotropic> orthotropic{};  // instead of E and nu
 };

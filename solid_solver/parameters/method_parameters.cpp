@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/parameters/method_parameters.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <string>
 #include <vector>
 
-#include "common/fv/expression.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
@@ -24,9 +20,9 @@ void declare_equations(config::Section& s, MethodParameters& m) {
             {"segregated", Type::segregated},
             {"newton-krylov", Type::newton_krylov}})
       .doc(
-          "block-coupled: one assembled system of all displacement components; segregated: one scalar "
+          "block-coupled: one assembled system of all displacement components. segregated: one scalar "
           "system per component with outer iterations (with kinematics finite-strain: the "
-          "updated-Lagrangian method of the thesis); newton-krylov: matrix-free; auto: chosen by size and "
+          "updated-Lagrangian method of the thesis). newton-krylov: matrix-free. auto: chosen by size and "
           "scene, logged with the reason");
   s.choice("face-gradient", m.face_gradient,
            {{"auto", FaceGradient::automatic},
@@ -34,10 +30,10 @@ void declare_equations(config::Section& s, MethodParameters& m) {
             {"corrected", FaceGradient::corrected},
             {"symmetric", FaceGradient::symmetric}})
       .doc(
-          "displacement gradient at the faces; symmetric: derived from an energy, free of bending locking "
-          "and of spurious growth on any mesh, solved by conjugate gradients; thesis: of the source, locks "
-          "in bending with few or elongated cells; corrected: the same with second-order corrections, free "
-          "of locking, but undamped motion grows sooner with short steps; auto: symmetric, but thesis with "
+          "displacement gradient at the faces. symmetric: derived from an energy, free of bending locking "
+          "and of spurious growth on any mesh, solved by conjugate gradients. thesis: of the source, locks "
+          "in bending with few or elongated cells. corrected: the same with second-order corrections, free "
+          "of locking, but undamped motion grows sooner with short steps. auto: symmetric, but thesis with "
           "'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
 }
 
@@ -51,10 +47,10 @@ void declare_volume_strain(config::Section& s, MethodParameters& m) {
             {"cells", VolumeStrain::cells},
             {"shared", VolumeStrain::shared}})
       .doc(
-          "for face-gradient symmetric; cells: one per cell, free of volumetric locking as nu approaches "
-          "0.5; faces: one per face; shared: a tenth of the bulk modulus, at most a third of the shear "
+          "for face-gradient symmetric. cells: one per cell, free of volumetric locking as nu approaches "
+          "0.5. faces: one per face. shared: a tenth of the bulk modulus, at most a third of the shear "
           "modulus, on the faces, the rest on the cells: best in plane strain and for plates, too soft for "
-          "3-D bars with few cells across; auto: cells from nu = 0.4, otherwise faces");
+          "3-D bars with few cells across. auto: cells from nu = 0.4, otherwise faces");
   s.check(
       [&m] {
         const bool asked = m.volume_strain == VolumeStrain::cells || m.volume_strain == VolumeStrain::shared;
@@ -78,7 +74,7 @@ void declare_linear_solver(config::Section& s, MethodParameters& m) {
             {"bicgstab-ilu", LinearSolver::bicgstab_ilu},
             {"gmres-multigrid", LinearSolver::gmres_multigrid}})
       .doc(
-          "linear solver of block-coupled; auto: direct up to 60 000 unknowns (static: 200 000), otherwise "
+          "linear solver of block-coupled. auto: direct up to 60 000 unknowns (static: 200 000), otherwise "
           "bicgstab-ilu");
   s.choice("preconditioner", m.preconditioner,
            {{"auto", Preconditioner::automatic},
@@ -86,10 +82,10 @@ void declare_linear_solver(config::Section& s, MethodParameters& m) {
             {"factors", Preconditioner::factors},
             {"mixed", Preconditioner::mixed}})
       .doc(
-          "for newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
+          "for newton-krylov. multigrid: compact component-wise operator and rigid motions of aggregates. "
           "factors: LU of the thesis operator (symmetric: its own factors, mass included), reused for all steps "
-          "of one size; mixed: for the symmetric gradient with one volume strain per cell, with the mean "
-          "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3; "
+          "of one size. mixed: for the symmetric gradient with one volume strain per cell, with the mean "
+          "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3. "
           "auto: factors where the run makes so many steps that they pay, for several materials and from "
           "nu = 0.49 where they are set up in seconds; otherwise mixed from nu = 0.49, otherwise multigrid; an "
           "iteration that auto chose and that does not converge is replaced by factors if they fit into memory");
@@ -114,7 +110,7 @@ void declare_iteration(config::Section& s, MethodParameters& m) {
       .range(0, linalg::ResidualProjection::most)
       .doc(
           "for newton-krylov in dynamic analyses: number of latest predictor corrections that are combined "
-          "to minimize the initial residual; 0: off");
+          "to minimize the initial residual; 0 turns this off");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(
@@ -135,18 +131,6 @@ void declare(config::Section& s, MethodParameters& m) {
   declare_linear_solver(s, m);
   declare_iteration(s, m);
 }
-
-namespace {
-
-/// True if a partner's forces act on some patch or part of one.
-bool is_loaded_by_partner(const SolidParameters& p) {
-  if (p.interface_data && p.interface_data->temperature) return false;
-  return std::ranges::any_of(p.boundaries, [](const auto& entry) {
-    return is_interface(entry.second) || std::ranges::any_of(entry.second.parts, is_interface);
-  });
-}
-
-}  // namespace
 
 void declare(config::Section& s, SolidDamping& d) {
   s.value("mass", d.mass)
@@ -174,68 +158,19 @@ time::TimeSchemeParameters scheme_of(const SolidParameters& p) {
   time::TimeSchemeParameters scheme = p.time_scheme;
   if (scheme.type != time::TimeScheme::automatic) return scheme;
   const bool keeps_contact = p.contact && p.contact->rule == contact::ContactRule::conserving;
+  const bool is_loaded_by_partner =
+      !(p.interface_data && p.interface_data->temperature) && any_condition(p, is_interface);
   const bool damps = has_finite_strain(p) && !is_updated_lagrangian(p) && !p.energy_momentum &&
-                     !keeps_contact && is_loaded_by_partner(p);
+                     !keeps_contact && is_loaded_by_partner;
   scheme.type = damps ? time::TimeScheme::generalised_alpha : time::TimeScheme::trapezoidal;
   return scheme;
 }
-
-namespace {
-
-using Texts = std::vector<config::ExpressionText>;
-
-/// First text that depends on t; empty if none does, or it is invalid, which is reported elsewhere.
-std::string first_in_time(const Texts& texts) {
-  for (const config::ExpressionText& e : texts)
-    if (fv::problem_of(e).empty() && fv::Expression(e).uses_time()) return e.text;
-  return {};
-}
-
-Texts texts_of(const TotalLoad& load) {
-  Texts all = load.force;
-  all.insert(all.end(), load.moment.begin(), load.moment.end());
-  all.push_back(load.level);
-  return all;
-}
-
-Texts texts_of(const SolidCondition& c) {
-  Texts all = texts_of(c.load);
-  for (const Texts* more : {&c.value, &c.traction}) all.insert(all.end(), more->begin(), more->end());
-  for (const auto& component : c.components)
-    if (component) all.push_back(*component);
-  all.push_back(c.pressure);
-  all.push_back(c.along);
-  return all;
-}
-
-constexpr const char* why =
-    "depends on t; 'load-stepping: {type: arc-length}' multiplies all loads and prescribed displacements by one load "
-    "factor, so they must be constant in time: give those of load factor 1";
-
-std::string wrong_boundary(const SolidParameters& p) {
-  for (const auto& [name, b] : p.boundaries) {
-    std::vector<SolidCondition> all(b.parts.begin(), b.parts.end());
-    all.push_back(b);
-    for (const SolidCondition& c : all) {
-      if (is_interface(c))
-        return fmt::format(
-            "patch '{}' takes its load from the coupler, and 'load-stepping: {{type: arc-length}}' cannot scale it; "
-            "use 'type: load'",
-            name);
-      if (const std::string text = first_in_time(texts_of(c)); !text.empty())
-        return fmt::format("'{}' of patch '{}' {}", text, name, why);
-    }
-  }
-  return {};
-}
-
-}  // namespace
 
 void declare(config::Section& s, LoadStepping& l) {
   using Type = LoadStepping::Type;
   s.choice("type", l.type, {{"load", Type::load}, {"arc-length", Type::arc_length}})
       .doc(
-          "load: the steps follow the loads as functions of t; arc-length: a step is a length along the load path, "
+          "load: the steps follow the loads as functions of t. arc-length: a step is a length along the load path, "
           "which passes limit points of load (snap-through) and of displacement; loads are those at load factor 1, "
           "constant in time");
   s.value("first-load-factor", l.first_load_factor)
@@ -247,43 +182,6 @@ void declare(config::Section& s, LoadStepping& l) {
   s.value("longest", l.longest)
       .range(1, 1e4)
       .doc("for arc-length: largest length of a step over that of the first one");
-}
-
-void check_load_stepping(config::Section& s, SolidParameters& p) {
-  const auto check = [&](const char* key, auto problem) {
-    s.check(
-        [&p, problem]() -> std::string {
-          return p.load_stepping.type == LoadStepping::Type::arc_length ? problem() : std::string();
-        },
-        key);
-  };
-  check("load-stepping", [&p]() -> std::string {
-    return p.analysis == SolidParameters::Analysis::static_ && has_finite_strain(p) &&
-                   !is_updated_lagrangian(p)
-               ? ""
-               : "'type: arc-length' requires 'analysis: static', 'kinematics: finite-strain' and Newton's method "
-                 "('solution-method: {type: auto}')";
-  });
-  check("boundaries", [&p] { return wrong_boundary(p); });
-  check("point-loads", [&p]() -> std::string {
-    for (const auto& [name, load] : p.point_loads)
-      if (const std::string text = first_in_time(texts_of(load)); !text.empty())
-        return fmt::format("'{}' of '{}' {}", text, name, why);
-    return {};
-  });
-  check("body-force", [&p]() -> std::string {
-    const std::string text = first_in_time(p.body_force);
-    return text.empty() ? text : fmt::format("'{}' {}", text, why);
-  });
-  check("thermal-expansion", [&p]() -> std::string {
-    return p.expansion
-               ? "thermal strain cannot be multiplied by the load factor of 'load-stepping: {type: arc-length}'; "
-                 "use 'type: load'"
-               : "";
-  });
-  check("output", [&p]() -> std::string {
-    return p.output.energies ? "'energies' is not available with 'load-stepping: {type: arc-length}'" : "";
-  });
 }
 
 }  // namespace couplet::solid

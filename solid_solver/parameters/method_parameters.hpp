@@ -58,7 +58,5 @@ struct LoadStepping {
 };
 
 void declare(config::Section& section, LoadStepping& stepping);
-/// Rejects settings that are incompatible with the arc length, at the key to change.
-void check_load_stepping(config::Section& section, SolidParameters& parameters);
 
 }  // namespace couplet::solid

@@ -105,17 +105,16 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("modes", o.modes)
       .range(0, 1000)
       .doc(
-          "number of lowest free vibrations to compute (face-gradient: symmetric): for a dynamic analysis "
-          "at the start and unloaded, for a linear static one at the end, about the loaded equilibrium "
-          "whose stress and loads (as for buckling) stiffen or soften the body; modes.csv, and in 3-D modes.h5, which plate_modal "
-          "reads; 0: none");
+          "number of lowest free vibrations, 0: none; of the unloaded body at the start of a dynamic analysis, or of the loaded "
+          "equilibrium at the end of a linear static one, whose stress and loads stiffen or soften the body; written to modes.csv "
+          "and, in 3-D, to modes.h5, which plate_modal reads; requires 'face-gradient: symmetric'");
   s.value("buckling", o.buckling)
       .range(0, 1000)
       .doc(
           "number of lowest load factors at which the equilibrium of a linear static analysis buckles "
           "(face-gradient: symmetric), computed at the end: buckling.csv and the shapes in buckling.xdmf; "
           "pressures follow the surface; they and body forces are those of the place to which the body moves; other "
-          "loads keep their direction; 0: none; with 'analysis: "
+          "loads keep their direction; 0 means none; with 'analysis: "
           "buckling' 4");
 }
 
@@ -141,12 +140,12 @@ void declare_scene(config::Section& s, SolidParameters& p) {
           "own with a load or support, with `heat` also a thermal one; tie joins faces in groups of the mesh that have the same corners (within 1e-4 of their "
           "size), and refuses conditions on them; apart leaves them, as those of a crack");
   s.value("mesh-parameters", p.mesh_parameters)
-      .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
+      .doc("values, such as {n: 8}, for names that the .geo defines with DefineConstant");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
   s.choice("plane", p.plane,
            {{"strain", Plane::strain}, {"stress", Plane::stress}, {"axisymmetric", Plane::axisymmetric}})
       .doc(
-          "assumption of a 2-D scene; axisymmetric: a body of revolution about the y axis, x is the radius; edges on the axis x = 0 need 'type: symmetry'");
+          "assumption of a 2-D scene. axisymmetric: a body of revolution about the y axis, x is the radius; edges on the axis x = 0 need 'type: symmetry'");
   s.check(
       [&p] {
         return p.dimension == 3 && p.plane != Plane::strain ? "only for 2-dimensional scenes; remove this key"
@@ -160,9 +159,9 @@ void declare_scene(config::Section& s, SolidParameters& p) {
             {"modal", Analysis::modal},
             {"buckling", Analysis::buckling}})
       .doc(
-          "static neglects inertia; thermal conducts heat only; modal computes the free vibrations of 'output: "
-          "{modes: 10}', or the number given there, at the start: one step without loads is enough; buckling is static with 'output: {buckling: "
-          "4}', or the number given there, and a factor below 1 is its answer");
+          "dynamic: with inertia; static: without; thermal: heat conduction only; modal: the lowest free vibrations at the start, 10 or "
+          "as many as 'output.modes', for which one step without loads is enough; buckling: static, with the lowest factors by which "
+          "the loads buckle the body, 4 or as many as 'output.buckling'");
   if (p.analysis == Analysis::modal) {
     p.analysis = Analysis::dynamic;
     p.output.modes = 10;
@@ -284,6 +283,7 @@ void declare(config::Section& s, SolidParameters& p) {
       "solution-method", [&](config::Section& m) { declare(m, p.method); },
       "solution method for the equations of a step");
   declare_output(s, p);
+  check_heat(s, p);
   check_together(s, p);
   check_finite_strain(s, p);
   check_orthotropic(s, p);

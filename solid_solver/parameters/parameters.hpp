@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,7 +26,7 @@ struct SolidProbe {
 
 /// Quantity of interest, whose error the run estimates at its end.
 struct SolidQuantity {
-  std::vector<double> point;  // [m]; empty: where the equivalent stress is largest
+  std::vector<double> point;  // [m]; empty means where the equivalent stress is largest
   std::string field = "displacement";
   std::string patch{};    // of a heat flow
   std::string component;  // "x" of a displacement, "xx" of a stress; empty for an equivalent stress
@@ -77,13 +78,13 @@ struct SolidParameters {
   std::optional<contact::ContactParameters> contact;     // absent if the solid touches nothing
   std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty if none
   std::vector<double> gravity;                           // [m/s^2]; empty if none
-  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
+  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty means at rest
   time::TimeSchemeParameters time_scheme{.type = time::TimeScheme::automatic};  // see scheme_of()
   LoadStepping load_stepping;
   std::optional<SolidDamping> damping;
   std::optional<HeatParameters> heat;
   std::optional<config::ExpressionText> temperature;  // prescribed [K]; absent if solved for or unknown
-  std::optional<InterfaceData> interface_data;        // absent: forces only
+  std::optional<InterfaceData> interface_data;        // absent means forces only
   std::optional<ThermalExpansion> expansion;
   bool thermoelastic_coupling = false;
   std::optional<TimeStepControl> step_control;
@@ -111,6 +112,18 @@ inline elastic::LameConstants lame_constants(const SolidParameters& parameters) 
 /// True for a body of revolution; x is the radius.
 inline bool is_axisymmetric(const SolidParameters& p) {
   return p.dimension == 2 && p.plane == SolidParameters::Plane::axisymmetric;
+}
+
+inline bool is_plane_stress(const SolidParameters& p) {
+  return p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
+}
+
+/// Tests all conditions, including those of parts of patches.
+template <class Test>
+bool any_condition(const SolidParameters& p, const Test& test) {
+  return std::ranges::any_of(p.boundaries, [&](const auto& entry) {
+    return test(entry.second) || std::ranges::any_of(entry.second.parts, test);
+  });
 }
 
 /// True for large strain by the method of the thesis.

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "solid_solver/thermal/heat.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -217,24 +220,29 @@ double Heat::take_solution() {
   double change = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (Index c = 0; c < n_owned; ++c) {
     change = std::max(change, std::abs(unknowns_[c] - trial_.cells[c]));
-    trial_.cells[c] = unknowns_[c];
-    for (const double t : {state_.cells[c], trial_.cells[c]}) {
+    for (const double t : {state_.cells[c], unknowns_[c]}) {
       lowest = std::min(lowest, t);
       highest = std::max(highest, t);
     }
   }
-  const auto& faces = conduction_.flux_faces();
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    trial_.boundary[faces[i] - mesh_->n_interior] = unknowns_[n_owned + i];
-  const auto& known = conduction_.known_faces();
-  for (std::size_t i = 0; i < known.size(); ++i)
-    trial_.boundary[known[i] - mesh_->n_interior] = trial_.known[conduction_.known_points().size() + i];
-  mesh_->cells.update_ghosts(trial_.cells);
-  mesh_->boundary.update_ghosts(trial_.boundary);
-  conduction_.join_twins(trial_.boundary);
+  take(unknowns_, trial_);
   const double level = parallel::max(mesh_->comm, highest),
                range = level - parallel::min(mesh_->comm, lowest);
   return parallel::max(mesh_->comm, change) / std::max({range, 1e-3 * std::abs(level), 1e-300});
+}
+
+/// Sets cells and faces from the unknowns and from the known values of the state.
+void Heat::take(std::span<const double> unknowns, HeatState& state) const {
+  const Index n_owned = mesh_->cells.n_owned();
+  std::copy_n(unknowns.begin(), n_owned, state.cells.begin());
+  const auto &faces = conduction_.flux_faces(), &known = conduction_.known_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    state.boundary[faces[i] - mesh_->n_interior] = unknowns[n_owned + i];
+  for (std::size_t i = 0; i < known.size(); ++i)
+    state.boundary[known[i] - mesh_->n_interior] = state.known[conduction_.known_points().size() + i];
+  mesh_->cells.update_ghosts(state.cells);
+  mesh_->boundary.update_ghosts(state.boundary);
+  conduction_.join_twins(state.boundary);
 }
 
 /// R(T^{n+1}), required by the next step of the trapezoidal rule.
@@ -262,5 +270,131 @@ void Heat::set_inflow(std::span<const double> source) {
 }
 
 void Heat::accept_step() { std::swap(state_, trial_); }
+
+void Heat::visit(io::Archive& archive) {
+  archive.field(mesh::Entries::cells, "cell-temperature", state_.cells, 1);
+  archive.field(mesh::Entries::boundary, "face-temperature", state_.boundary, 1);
+  std::vector<double> points(mesh_->points.n_local(), 0), faces(mesh_->boundary.n_owned(), 0);
+  const auto each = [&](const auto& pass) {
+    std::size_t i = 0;
+    for (const Index v : conduction_.known_points()) pass(points[v], state_.known[i++]);
+    for (const Index f : conduction_.known_faces()) pass(faces[f - mesh_->n_interior], state_.known[i++]);
+  };
+  each([](double& field, double value) { field = value; });
+  archive.field(mesh::Entries::points, "known-temperature", points, 1);
+  archive.field(mesh::Entries::owned_boundary, "known-face-temperature", faces, 1);
+  each([](double field, double& value) { value = field; });
+  archive.field(mesh::Entries::owned_cells, "enthalpy", state_.enthalpy, 1);
+  archive.field(mesh::Entries::owned_cells, "enthalpy-before", state_.enthalpy_before, 1);
+  archive.field(mesh::Entries::owned_cells, "heat-inflow", state_.inflow, 1);
+  archive.common("heat-state", state_.time, state_.dt, state_.steps);
+}
+
+// Results from the temperature: values at points and faces, heat through patches, neglected effects.
+
+std::vector<double> Heat::point_temperature(const HeatState& state) const {
+  std::vector<double> points(mesh_->points.n_local());
+  conduction_.point_values(state.cells, state.boundary, state.known, points);
+  return points;
+}
+
+std::vector<double> Heat::face_temperature(const HeatState& state) const {
+  const std::vector<double> points = point_temperature(state);
+  std::vector<double> values(mesh_->n_flux_faces());
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f)
+    values[f] = conduction_.face_value(f, state.cells, state.boundary, points);
+  return values;
+}
+
+std::vector<double> Heat::face_heat() const {
+  std::vector<double> conductivity(mesh_->n_faces()), heat(mesh_->n_flux_faces());
+  set_conductivity(state_, conductivity);
+  conduction_.face_heat(conductivity, state_.cells, state_.boundary, point_temperature(state_), heat);
+  return heat;
+}
+
+std::vector<double> Heat::boundary_inflow() const {
+  const std::vector<double> heat = face_heat();
+  std::vector<double> inflow(mesh_->boundary.n_owned(), 0);
+  for (std::size_t b = 0; b < inflow.size(); ++b) {
+    const Index f = mesh_->n_interior + Index(b);
+    if (conduction_.condition(f) != fv::HeatCondition::symmetry)
+      inflow[b] = heat[f] / geometry_->face_area[f].norm();
+  }
+  return inflow;
+}
+
+std::vector<PatchHeat> Heat::patch_heat() const {
+  const std::vector<double> heat = face_heat();
+  std::vector<PatchHeat> result;
+  for (const mesh::Patch& patch : mesh_->patches) {
+    if (patch.bonded) continue;
+    double through = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      if (conduction_.condition(f) != fv::HeatCondition::symmetry) through += heat[f];
+    result.push_back({patch.name, parallel::sum(mesh_->comm, through)});
+  }
+  return result;
+}
+
+double Heat::stored_heat() const {
+  double heat = 0;
+  for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
+    heat += materials_[mesh_->cell_zone[c]].density * geometry_->volume[c] * state_.enthalpy[c];
+  return parallel::sum(mesh_->comm, heat);
+}
+
+HeatState Heat::answer(std::vector<double> sources, std::vector<double> known) const {
+  if (!is_steady() || properties_vary_ || state_.steps == 0)
+    throw Error("Only a steady temperature that was solved for, with constant conductivity, has a dual.");
+  HeatState answer;
+  answer.known = std::move(known);
+  conduction_.subtract_known({conductivity_, transfer_, capacity_, 1}, answer.known, sources);
+  std::vector<double> unknowns(sources.size(), 0);
+  solver_->solve(sources, unknowns);
+  answer.cells.assign(std::size_t(mesh_->cells.n_local()), 0);
+  answer.boundary.assign(std::size_t(mesh_->boundary.n_local()), 0);
+  take(unknowns, answer);
+  return answer;
+}
+
+// (C/dt + theta K) x = C/dt change; the next change is x by Euler, and 2 x - change by the trapezoidal rule.
+std::vector<double> Heat::next_change(std::span<const double> change) const {
+  std::vector<double> rhs(conduction_.n_unknowns(), 0), next(conduction_.n_unknowns(), 0);
+  for (std::size_t i = 0; i < capacity_.size(); ++i) rhs[i] = capacity_[i] * change[i];
+  solver_->solve(rhs, next);
+  next.resize(capacity_.size());
+  if (parameters_.scheme == HeatParameters::Scheme::trapezoidal)
+    for (std::size_t i = 0; i < next.size(); ++i) next[i] = 2 * next[i] - change[i];
+  return next;
+}
+
+std::vector<double> Heat::transfer() const {
+  std::vector<double> all = transfer_;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] *= geometry_->face_area[conduction_.flux_faces()[i]].norm();
+  return all;
+}
+
+// The pyramid-weighted mean of the face values differs from the center value 3/dim times as much as the mean
+// of a quadratic source in a regular cell.
+std::vector<double> Heat::source_missed() const {
+  std::vector<double> missed;
+  if (source_.is_zero()) return missed;
+  missed.assign(std::size_t(mesh_->cells.n_owned()), 0);
+  const mesh::Geometry& g = *geometry_;
+  const auto add = [&](Index c, Index f, const Vec3& shift) {
+    if (c >= mesh_->cells.n_owned()) return;
+    const Vec3 at = g.face_centre[f] - shift;
+    const double pyramid = std::abs(g.face_area[f].dot(at - g.cell_centre[c])) / mesh_->dim;
+    missed[std::size_t(c)] +=
+        mesh_->dim / 3. * pyramid * (source_(at, state_.time) - source_(g.cell_centre[c], state_.time));
+  };
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    add(mesh_->owner[f], f, Vec3::Zero());
+    if (f < mesh_->n_interior) add(mesh_->neighbour[f], f, mesh_->shift(f));
+  }
+  return missed;
+}
 
 }  // namespace couplet::solid

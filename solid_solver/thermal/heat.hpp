@@ -13,6 +13,10 @@
 #include "solid_solver/parameters/heat_parameters.hpp"
 #include "solid_solver/thermal/heat_boundaries.hpp"
 
+namespace couplet::io {
+class Archive;
+}
+
 namespace couplet::solid {
 
 /// Thermal properties of one material.
@@ -55,8 +59,8 @@ class Heat final {
   /// empty. Throws SolveFailure. Collective.
   void solve(const coupling::Step& step, std::span<const double> source = {});
   void accept_step();
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  /// Saves or loads the accepted state. Collective.
+  void visit(io::Archive& archive);
 
   const fv::ConductionOperator& conduction() const { return conduction_; }
   const HeatState& accepted() const { return state_; }
@@ -78,6 +82,10 @@ class Heat final {
   /// Heat stored in the whole solid relative to an arbitrary level [J]. Collective.
   double stored_heat() const;
 
+  /// Change [K] in a next step with the same loads, after an Euler or trapezoidal step that changed the owned
+  /// cells by `change`. Collective.
+  std::vector<double> next_change(std::span<const double> change) const;
+
   // Linear steady problem with constant conductivities, for other data: used by the dual problem.
 
   /// Conductivity in the last step, per local face [W/(m K)].
@@ -94,13 +102,13 @@ class Heat final {
   void start();
   /// Throws Error if a steady field is `is_missing` a temperature that determines its level.
   void require_level(bool is_missing) const;
-  std::pair<std::vector<double>, std::vector<double>> known_fields() const;
   Coefficients coefficients(double dt) const;
   std::vector<double> face_heat() const;  // through flux faces into their owners [W]
   void set_conductivity(const HeatState& state, std::span<double> conductivity) const;
   std::vector<double> sources(double t, std::span<const double> further) const;
   void assemble(const Coefficients& c, std::span<const double> source);
   double take_solution();
+  void take(std::span<const double> unknowns, HeatState& state) const;
   void set_inflow(std::span<const double> source);
 
   const mesh::Mesh* mesh_;

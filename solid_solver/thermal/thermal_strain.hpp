@@ -12,7 +12,6 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
 #include "common/fv/table.hpp"
-#include "common/io/fields/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/heat.hpp"
@@ -59,19 +58,14 @@ class ThermalStrain {
   void set_interface(const std::vector<Vec3>& face_centres, const std::vector<Index>& faces);
   void take_temperature(const std::vector<double>& faces);
   /// If wants_stress(), take_stress() receives that of the owned cells after each accepted step [Pa].
-  bool wants_stress() const { return coupled_; }
+  bool wants_stress() const { return parameters_.thermoelastic_coupling; }
   void take_stress(std::span<const Tensor3> stress);
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  /// Saves or loads the accepted state. Collective.
+  void visit(io::Archive& archive);
   /// Adds the thermal part of the stress of owned cells at the accepted time [Pa].
   void add_cell_stress(std::span<Tensor3> stress) const;
   /// Adds the thermal part of the stress of the local faces first, first + 1, ...
   void add_face_stress(Index first, std::span<Tensor3> stress) const;
-  /// Appends fields at the accepted time; their values are valid until the next call.
-  void add_fields(std::vector<io::OutputField>& fields);
-  /// Appends boundary fields at all local points, or (place "cells") at boundary faces of owned cells.
-  /// Collective.
-  void add_surface_fields(std::vector<io::OutputField>& fields);
   /// Lowest and highest temperature so far [K]. Collective.
   std::pair<double, double> temperatures_seen() const;
   /// Relative stiffening by thermoelastic coupling; 0 if unknown. Collective.
@@ -81,10 +75,22 @@ class ThermalStrain {
   const Heat* heat() const { return heat_.get(); }
   /// Temperature of all local points at the accepted time [K]. Collective.
   std::vector<double> point_temperature() const;
+  /// Likewise of all local cells.
+  std::vector<double> cell_temperature() const { return cell_temperature(time_, false); }
 
  private:
-  enum Places { at_faces, at_points, at_cells };  // groups of interface_
-  bool expands() const { return !expansion_.empty() && !is_large_; }
+  enum Places { at_faces, at_points, at_cells };  // groups of places at the interface
+  /// A material with its tables over temperature.
+  struct Material {
+    SolidMaterial constants;
+    std::optional<fv::Property> expansion, youngs_modulus, poissons_ratio;
+  };
+  bool is_given() const { return parameters_.interface_data && parameters_.interface_data->temperature; }
+  /// False at large strain, where the equilibrium takes expansion().
+  bool expands() const { return parameters_.expansion && !has_finite_strain(parameters_); }
+  double reference() const {
+    return parameters_.expansion ? parameters_.expansion->reference_temperature : 0;
+  }
   /// Temperatures of the flux faces at an end of the step: T^{n+1} of the trial, or accepted.
   std::vector<double> face_temperature(double t, bool trial) const;
   std::vector<double> given_at(Places places, bool trial) const;
@@ -94,7 +100,7 @@ class ThermalStrain {
   /// the face's own epsilon instead would give a spurious stress: at nu = 0.499 and T linear in x, 20 MPa in
   /// a stress-free body of 1 GPa. Collective.
   std::vector<double> stress_of(const std::vector<double>& strain) const;
-  bool by_cells() const { return elastic_->volume_by_cells() && !plane_stress_; }
+  bool by_cells() const { return elastic_->volume_by_cells() && !is_plane_stress(parameters_); }
   double modulus(Index cell) const;  // B
   double face_modulus(Index face) const;
   /// Means over the faces weighted by their pyramids, as for the displacement gradient of a cell; owned
@@ -107,33 +113,33 @@ class ThermalStrain {
   void choose_stiffness(double t);
 
   const mesh::Mesh* mesh_;
-  const mesh::Geometry* geometry_;
   const elastic::ElasticOperator* elastic_;
+  const SolidParameters parameters_;
+  std::vector<Material> materials_;
   std::unique_ptr<Heat> heat_;  // nullptr if prescribed
   std::optional<fv::Expression> prescribed_;
-  bool given_ = false;                                // at the interface
-  std::vector<Index> interface_faces_;                // as entries of the boundary
-  std::optional<InterfaceTemperature> interface_;     // once its position is known
-  std::vector<double> given_accepted_, given_trial_;  // at the interface faces needed here [K]
-  std::vector<fv::Property> expansion_;               // one per material; empty without thermal strain
-  double reference_ = 0;                              // [K]
-  bool plane_stress_ = false, is_large_ = false;      // is_large_: the equilibrium takes expansion()
-  SolidParameters parameters_;
-  std::vector<std::optional<fv::Property>> youngs_modulus_, poissons_ratio_;  // one per material
-  bool varies_ = false;                                                       // some of these vary
-  // Per local cell, of the accepted and the trial step; if varies_.
-  std::vector<elastic::LameConstants> lame_, lame_trial_;
-  std::vector<SolidMaterial> materials_;
-  bool coupled_ = false;
-  std::vector<double> dilation_, dilation_rate_;  // tr(eps) and its rate, per owned cell; when coupled
+  struct Given {
+    std::vector<Index> faces;                  // as entries of the boundary
+    std::optional<InterfaceTemperature> from;  // once its position is known
+    std::vector<double> accepted, trial;       // at the faces needed here [K]
+  } given_;                                    // at the interface
+  /// Per local cell, of the accepted and the trial step; empty if the constants do not vary.
+  struct Stiffness {
+    std::vector<elastic::LameConstants> accepted, trial;
+    bool varies = false;
+  } lame_;
+  struct Dilation {
+    std::vector<double> value, rate;  // tr(eps) and its rate, per owned cell
+  } dilation_;                        // with thermoelastic coupling
 
   coupling::Step step_;
-  double time_ = 0;                      // of the accepted state
-  std::vector<double> start_, end_;      // face temperatures at both ends of the step
-  std::vector<double> accepted_strain_;  // per flux face of the mesh, at the accepted time
-  std::vector<double> accepted_stress_;  // accepted_strain_ times B [Pa], see stress_of(); if by_cells()
-  std::vector<double> points_, cells_, inflow_;  // of the last fields written
-  double lowest_ = 0, highest_ = 0;              // temperatures seen on this rank
+  double time_ = 0;                  // of the accepted state
+  std::vector<double> start_, end_;  // face temperatures at both ends of the step
+  struct Accepted {
+    std::vector<double> strain;  // per flux face of the mesh
+    std::vector<double> stress;  // strain times B [Pa], see stress_of()
+  } accepted_;
+  std::pair<double, double> seen_{0, 0};  // lowest and highest temperature on this rank
 };
 
 }  // namespace couplet::solid

@@ -92,7 +92,7 @@ void expect_sound(const ModalModel& m) {
 
 void add_array(CraftedFile& file, const std::string& name, const std::vector<double>& values) {
   file.push_back(table("arrays/" + name, {values.size()}, values));
-  file.push_back(integers("layout/" + name, {1, 2}, {std::int64_t(values.size()), checksum(values)}));
+  file.push_back(integers("layout/" + name, {1}, {std::int64_t(values.size())}));
 }
 
 void add_field(CraftedFile& file, const std::string& name, std::size_t rows,
@@ -100,9 +100,7 @@ void add_field(CraftedFile& file, const std::string& name, std::size_t rows,
   const std::size_t width = rows == 0 ? 0 : values.size() / rows;
   file.push_back(width > 1 ? table("fields/" + name, {rows, width}, values)
                            : table("fields/" + name, {rows}, values));
-  file.push_back(integers(
-      "checks/" + name, {1, 3},
-      {std::int64_t(rows), std::int64_t(width), std::bit_cast<std::int64_t>(part_of_checksum(values, 0))}));
+  file.push_back(integers("checks/" + name, {1, 2}, {std::int64_t(rows), std::int64_t(width)}));
 }
 
 /// Of a coupler with two columns, and of a participant that saves one array.
@@ -121,7 +119,7 @@ CraftedFile checkpoint_file(const CheckpointStamp& stamp) {
   return file;
 }
 
-/// Checksums and lengths made to fit what the arrays have become.
+/// Lengths made to fit what the arrays have become.
 void recompute(CraftedFile& file) {
   for (CraftedValue& layout : file) {
     if (layout.path.starts_with("checks/")) {
@@ -129,8 +127,7 @@ void recompute(CraftedFile& file) {
       for (CraftedValue& field : file)
         if (field.path == name && field.size.size() == 2 && field.size[0] * field.size[1] < 100000) {
           field.values.resize(field.size[0] * field.size[1]);
-          layout.integers = {std::int64_t(field.size[0]), std::int64_t(field.size[1]),
-                             std::bit_cast<std::int64_t>(part_of_checksum(field.values, 0))};
+          layout.integers = {std::int64_t(field.size[0]), std::int64_t(field.size[1])};
         }
     }
     if (!layout.path.starts_with("layout/")) continue;
@@ -138,7 +135,7 @@ void recompute(CraftedFile& file) {
     for (CraftedValue& array : file)
       if (array.path == name && array.size.size() == 1 && array.size[0] < 100000) {
         array.values.resize(array.size[0]);
-        layout.integers = {std::int64_t(array.size[0]), checksum(array.values)};
+        layout.integers = {std::int64_t(array.size[0])};
       }
   }
 }

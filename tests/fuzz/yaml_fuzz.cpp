@@ -2,7 +2,7 @@
 // Broken cases through what --check does, in one process: see README.md.
 #include <regex>
 
-#include "common/app/case/questions.hpp"
+#include "common/app/case/case_file.hpp"
 #include "tests/fuzz/mutate.hpp"
 #include "tests/fuzz/program.hpp"
 

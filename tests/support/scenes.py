@@ -47,7 +47,7 @@ participants:
 """, duct_geo=DUCT)
 
 
-def folded(folder, fold=True):
+def folded(folder, fold=True, corner=""):
     """A strip of 4 by 3 cells; folded: two points of its left end lie in its corner."""
     nx, ny = 4, 3
     number = {(i, j): 1 + i + (nx + 1) * j for j in range(ny + 1) for i in range(nx + 1)}
@@ -60,14 +60,21 @@ def folded(folder, fold=True):
     mesh = "\n".join(["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "5", *(f'1 {k + 1} "{n}"' for k, n in enumerate(names)), '2 5 "strip"',
                       "$EndPhysicalNames", "$Nodes", str(len(nodes)), *nodes, "$EndNodes", "$Elements", str(len(elements)),
                       *(f"{k + 1} {e}" for k, e in enumerate(elements)), "$EndElements", ""])
-    return write(folder, """simulation: {end-time: 0.02 s, time-step: 0.01 s, output: {folder: out}}
+    motions = corner or 'left: {type: fixed}, right: {type: moving, motion: {translation: ["0.01*t", 0]}}, bottom: {type: slip}'
+    return write(folder, f"""simulation: {{end-time: 0.02 s, time-step: 0.01 s, output: {{folder: out}}}}
 participants:
   mover:
     program: mesh_mover
     mesh: m.msh
     dimension: 2
-    boundaries: {left: {type: fixed}, right: {type: moving, motion: {translation: ["0.01*t", 0]}}, bottom: {type: slip}, top: {type: slip}}
+    boundaries: {{{motions}, top: {{type: slip}}}}
 """, m_msh=mesh)
+
+
+def pushed_in(folder):
+    """The strip, whose lower left corner is pushed across the diagonal of its cell. The cell keeps a positive area."""
+    motion = '{type: moving, motion: {displacement: ["9*t*max(0, 1 - 4*x - 30*y)", "1.2*t*max(0, 1 - 4*x - 30*y)"]}}'
+    return folded(folder, False, f"left: {motion}, right: {{type: fixed}}, bottom: {motion}")
 
 
 WRONG_COUPLED = {"programs": ["coupler", "fluid_solver", "tests/toy_wall"], "id": "error-estimate"}

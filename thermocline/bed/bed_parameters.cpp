@@ -34,7 +34,7 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
       .doc("wall film coefficient, with wall-film: constant");
   as_film(s.value("film-coefficient", p.film_coefficient))
       .not_negative()
-      .doc("film between fluid and grains; 0: Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
+      .doc("film between fluid and grains; 0 means Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
 }
 
 std::string problem_of_profile(const BedParameters& p) {
@@ -45,7 +45,7 @@ std::string problem_of_profile(const BedParameters& p) {
 
 void declare_layer(config::Section& s, BedLayer& l) {
   as_length(s.value("height", l.height)).positive().required().doc("height");
-  s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of the fluid; 1: no filler");
+  s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of fluid; 1 if no filler");
   s.value("diameter", l.diameter)
       .unit("m")
       .plausible(1e-4, 1)
@@ -115,12 +115,12 @@ void declare(config::Section& section, BedParameters& p) {
       "layers", p.layers, [](config::Section& s, BedLayer& l) { declare_layer(s, l); }, "from the bottom up");
   section.value("shells", p.shells)
       .range(1, most_shells)
-      .doc("number of shells of equal volume in a grain; 1: linear driving force");
+      .doc("number of shells of equal volume in a grain; 1 gives the linear driving force model");
   section
       .choice("advection", p.advection,
               {{"upwind", Advection::upwind}, {"tvd", Advection::tvd}, {"implicit", Advection::implicit}})
       .doc(
-          "upwind: explicit, first order, as in the thesis; tvd: explicit, second order; implicit: "
+          "upwind: explicit, first order, as in the thesis. tvd: explicit, second order. implicit: "
           "upwind, any step");
   section.value("courant", p.courant)
       .range(1e-4, 0.95)

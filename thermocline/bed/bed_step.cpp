@@ -27,7 +27,7 @@ struct Range {
 
 }  // namespace
 
-GrainCells PackedBed::cells_of(const Operator& op, const BedGrid::Run& run) const {
+GrainCells PackedBed::cells_of(const BedOperator& op, const BedGrid::Run& run) const {
   return {op.rate.data(),
           op.share.data(),
           op.beta.data(),
@@ -37,26 +37,20 @@ GrainCells PackedBed::cells_of(const Operator& op, const BedGrid::Run& run) cons
           std::size_t(c_->grid.size())};
 }
 
-void PackedBed::solve(const Operator& op, double* fluid, const double* shells, double* to_shells,
-                      const double* extra, bool sums_are_known) {
-  for (std::size_t r = 0; r < c_->grid.runs.size(); ++r) {
-    if (sums_are_known)
-      gather_sums(cells_of(op, c_->grid.runs[r]), extra, fluid, work_.sums.data());
-    else
-      gather_grains(op.grains[r], cells_of(op, c_->grid.runs[r]), shells, extra, fluid, work_.sums.data());
-  }
+void PackedBed::solve(const BedOperator& op, double* fluid, const double* shells, double* to_shells,
+                      const double* extra) {
+  for (std::size_t r = 0; r < c_->grid.runs.size(); ++r)
+    gather_grains(op.grains[r], cells_of(op, c_->grid.runs[r]), shells, extra, fluid, work_.sums.data());
   op.matrix.solve(fluid);
   for (std::size_t r = 0; r < c_->grid.runs.size(); ++r)
     scatter_grains(op.grains[r], cells_of(op, c_->grid.runs[r]), shells, fluid, to_shells, work_.sums.data());
 }
 
-PackedBed::Stage PackedBed::explicit_terms(const double* t, double flux, double inlet, bool second_order) {
+double PackedBed::explicit_terms(const double* t, double flux, double inlet, bool second_order) {
   const int n = c_->grid.size();
-  Stage stage;
-  stage.outlet = inlet;
   if (flux == 0) {
     std::copy(source_.begin(), source_.end(), work_.extra.begin());
-    return stage;
+    return inlet;
   }
   const bool up = flux > 0;
   const double gc = flux * c_->fluid.specific_heat;
@@ -74,35 +68,32 @@ PackedBed::Stage PackedBed::explicit_terms(const double* t, double flux, double 
     }
   }
   for (int i = 0; i < n; ++i) work_.extra[i] = source_[i] + gc * (face[i] - face[i + 1]);
-  stage.outlet = up ? face[n] : face[0];
-  return stage;
+  return up ? face[n] : face[0];
 }
 
-PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux, double inlet,
-                                                bool second_order) {
+BedHeat PackedBed::first_order_step(const BedOperator& op, double flux, double inlet, bool second_order) {
   const int n = c_->grid.size();
-  Stage stage{inlet, 0};
+  double outlet = inlet;
   const double through_inlet = flux != 0 ? inlet_conductance(flux > 0) : 0;
   const int entry = flux > 0 ? 0 : n - 1, exit = flux > 0 ? n - 1 : 0;
   if (c_->advection == Advection::implicit) {
     std::copy(source_.begin(), source_.end(), work_.extra.begin());
     work_.extra[entry] += std::abs(flux) * c_->fluid.specific_heat * inlet;
   } else {
-    stage = explicit_terms(fluid_.data(), flux, inlet, second_order);
+    outlet = explicit_terms(fluid_.data(), flux, inlet, second_order);
   }
   work_.extra[entry] += through_inlet * inlet;
   if (!c_->melting.empty()) {
     solve_with_melting(op, work_.extra.data());
   } else {
-    solve(op, fluid_.data(), shell_.data(), shell_.data(), work_.extra.data(), work_.sums_of == op.number);
-    work_.sums_of = op.number;
+    solve(op, fluid_.data(), shell_.data(), shell_.data(), work_.extra.data());
   }
-  if (c_->advection == Advection::implicit && flux != 0) stage.outlet = fluid_[exit];
-  stage.conducted = through_inlet * (inlet - fluid_[entry]);
-  StepHeat heat;
-  heat.outlet = stage.outlet;
-  heat.by_flow = c_->area * prepared_.dt *
-                 (std::abs(flux) * c_->fluid.specific_heat * (inlet - stage.outlet) + stage.conducted);
+  if (c_->advection == Advection::implicit && flux != 0) outlet = fluid_[exit];
+  const double conducted = through_inlet * (inlet - fluid_[entry]);
+  BedHeat heat;
+  heat.outlet = outlet;
+  heat.by_flow =
+      c_->area * prepared_.dt * (std::abs(flux) * c_->fluid.specific_heat * (inlet - outlet) + conducted);
   return heat;
 }
 
@@ -116,7 +107,7 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
 ///
 /// L is eliminated: gamma dt L U1 = U1 - u and gamma dt L U2 = U2 - R2 with the right-hand side R2 of U2,
 /// hence u' = u + dt/2 (A(U1) + A(U2)) + (U1 - u + U2 - R2)/(2 gamma).
-bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
+bool PackedBed::second_order_step(double flux, double inlet, BedHeat& heat) {
   const std::size_t n = fluid_.size(), ns = shell_.size();
   const double gamma = prepared_.main.tau / prepared_.dt, carry = (1 - 2 * gamma) / gamma, half = 0.5 / gamma;
   const double through_inlet = flux != 0 ? inlet_conductance(flux > 0) : 0;
@@ -128,10 +119,9 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   };
   std::copy(fluid_.begin(), fluid_.end(), work_.fluid1.begin());
   only_inlet();
-  work_.sums_of = 0;
-  solve(prepared_.main, work_.fluid1.data(), shell_.data(), work_.shell1.data(), work_.extra.data(), false);
+  solve(prepared_.main, work_.fluid1.data(), shell_.data(), work_.shell1.data(), work_.extra.data());
   const double conducted1 = through_inlet * (inlet - work_.fluid1[entry]);
-  const Stage first = explicit_terms(work_.fluid1.data(), flux, inlet, true);
+  const double first = explicit_terms(work_.fluid1.data(), flux, inlet, true);
   // R2 in work_.fluid2, work_.shell2; work_.fluid1 contains the known part of u'.
   for (std::size_t i = 0; i < n; ++i) {
     const double a = prepared_.dt / capacity_[i] * work_.extra[i], l = work_.fluid1[i] - fluid_[i];
@@ -140,10 +130,9 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   }
   for (std::size_t i = 0; i < ns; ++i) work_.shell2[i] = shell_[i] + carry * (work_.shell1[i] - shell_[i]);
   only_inlet();
-  solve(prepared_.main, work_.fluid2.data(), work_.shell2.data(), work_.shell2.data(), work_.extra.data(),
-        false);
+  solve(prepared_.main, work_.fluid2.data(), work_.shell2.data(), work_.shell2.data(), work_.extra.data());
   const double conducted2 = through_inlet * (inlet - work_.fluid2[entry]);
-  const Stage second = explicit_terms(work_.fluid2.data(), flux, inlet, true);
+  const double second = explicit_terms(work_.fluid2.data(), flux, inlet, true);
   Range before{flux != 0 ? inlet : fluid_[0], flux != 0 ? inlet : fluid_[0]};
   before.add(fluid_.data(), n);
   before.add(shell_.data(), ns);
@@ -160,27 +149,26 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   if (!(after.low >= before.low - slack && after.high <= before.high + slack)) return false;
   fluid_.swap(work_.fluid1);
   shell_.swap(work_.shell1);
-  heat.outlet = 0.5 * (first.outlet + second.outlet);
+  heat.outlet = 0.5 * (first + second);
   heat.by_flow =
       c_->area * prepared_.dt *
       (std::abs(flux) * c_->fluid.specific_heat * (inlet - heat.outlet) + 0.5 * (conducted1 + conducted2));
   return true;
 }
 
-PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
+BedHeat PackedBed::step(double mass_flow, double inlet) {
   // The matrix of the implicit scheme depends on the flow.
   const double flux = mass_flow / c_->area;
   const bool other_inlet = c_->conducting_inlet && ((flux > 0) != (prepared_.mass_flow > 0) ||
                                                     (flux < 0) != (prepared_.mass_flow < 0));
   if ((c_->advection == Advection::implicit && mass_flow != prepared_.mass_flow) || other_inlet)
     prepare(prepared_.dt, mass_flow);
-  StepHeat heat;
+  BedHeat heat;
   ++steps_;
   if (c_->advection != Advection::tvd) {
     heat = first_order_step(prepared_.main, flux, inlet, false);
   } else if (!second_order_step(flux, inlet, heat)) {
-    if (!prepared_.fallback_is_built) build(prepared_.fallback, prepared_.dt);
-    prepared_.fallback_is_built = true;
+    if (prepared_.fallback.grains.empty()) build(prepared_.fallback, prepared_.dt);
     ++fallbacks_;
     heat = first_order_step(prepared_.fallback, flux, inlet, true);
   }
@@ -211,8 +199,9 @@ void PackedBed::linearise_melting(const BedGrid::Run& run, const PhaseChange& ph
 }
 
 /// GrainElimination with a capacity per shell and cell; adds to the fluid's rows.
-void PackedBed::eliminate_melting(const Operator& op, const BedGrid::Run& run, const Grains& grains,
-                                  const double* extra) {
+void PackedBed::eliminate_melting(const BedOperator& op, std::size_t r, const double* extra) {
+  const BedGrid::Run& run = c_->grid.runs[r];
+  const Grains& grains = c_->grains[r];
   const int n = c_->grid.size();
   for (int i = run.first; i < run.first + run.count; ++i) {
     double rest_inside = 1, inside = 0;  // 1 - beta and alpha of the shell further in
@@ -229,7 +218,8 @@ void PackedBed::eliminate_melting(const Operator& op, const BedGrid::Run& run, c
     const double g = grains.exchange(prepared_.film[i]), dz = c_->grid.dz[i];
     work_.melt.alpha[i] = (work_.melt.right[i] / op.tau + between * inside) / (own + g);
     work_.melt.beta[i] = g / (own + g);
-    work_.melt.diagonal[i] = work_.diagonal[i] - op.own_part[i] + own * work_.melt.beta[i] * dz;
+    work_.melt.diagonal[i] =
+        work_.diagonal[i] - op.grains[r].own * op.heat[i] + own * work_.melt.beta[i] * dz;
     fluid_[i] = op.rate[i] * fluid_[i] + extra[i] + g * dz * work_.melt.alpha[i];
   }
 }
@@ -255,7 +245,7 @@ double PackedBed::settle_melting(const BedGrid::Run& run, const PhaseChange& pha
   return worst;
 }
 
-void PackedBed::solve_with_melting(const Operator& op, const double* extra) {
+void PackedBed::solve_with_melting(const BedOperator& op, const double* extra) {
   constexpr int most_passes = 30;
   constexpr double close = 1e-6;  // [K]
   work_.fluid1 = fluid_, work_.shell1 = shell_;
@@ -270,7 +260,7 @@ void PackedBed::solve_with_melting(const Operator& op, const double* extra) {
         continue;
       }
       linearise_melting(run, *c_->melting[r]);
-      eliminate_melting(op, run, c_->grains[r], extra);
+      eliminate_melting(op, r, extra);
     }
     work_.melt.matrix.resize(c_->grid.size());
     work_.melt.matrix.factorise(work_.lower.data(), work_.melt.diagonal.data(), work_.upper.data());

@@ -23,7 +23,7 @@ struct ClosureParameters {
   double conductivity = 0;  ///< [W/(m K)], for Conduction::constant
   WallFilm wall_film = WallFilm::beek;
   double wall_coefficient = 0;  ///< [W/(m^2 K)], for WallFilm::constant
-  double film_coefficient = 0;  ///< between fluid and grains [W/(m^2 K)]; 0: Wakao's correlation
+  double film_coefficient = 0;  ///< between fluid and grains [W/(m^2 K)]; 0 means Wakao's correlation
 };
 
 /// Stagnant conductivity of a packed bed over that of its fluid; kappa = k_s/k_f (Zehner and Schluender

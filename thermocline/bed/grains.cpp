@@ -1,68 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/bed/grains.hpp"
 
-#include <array>
 #include <cmath>
-#include <type_traits>
 
 namespace couplet::thermocline {
-namespace {
-
-/// N shells, or e.n shells for N = 0.
-template <int N>
-[[gnu::always_inline]] inline void gather(const GrainElimination& e, const GrainCells& c,
-                                          const double* shells, const double* extra, double* fluid,
-                                          double* sums) {
-  const int shells_in_grain = N > 0 ? N : e.n;
-  constexpr int size = N > 0 ? N : most_shells;
-  std::array<double, size> weight;
-  for (int j = 0; j < shells_in_grain; ++j) weight[j] = e.weight[j];
-#pragma GCC ivdep
-  for (std::size_t i = c.first; i < c.last; ++i) {
-    double sum = 0;
-    for (int j = 0; j < shells_in_grain; ++j) sum += weight[j] * shells[j * c.n + i];
-    sums[i] = sum;
-    fluid[i] = c.rate[i] * fluid[i] + extra[i] + c.heat[i] * sum;
-  }
-}
-
-template <int N>
-[[gnu::always_inline]] inline void scatter(const GrainElimination& e, const GrainCells& c,
-                                           const double* shells, const double* fluid, double* to,
-                                           double* sums) {
-  const int shells_in_grain = N > 0 ? N : e.n;
-  constexpr int size = N > 0 ? N : most_shells;
-  std::array<double, size> weight, keep, pass, beta;
-  for (int j = 0; j < shells_in_grain; ++j)
-    weight[j] = e.weight[j], keep[j] = e.keep[j], pass[j] = e.pass[j], beta[j] = e.beta[j];
-#pragma GCC ivdep
-  for (std::size_t i = c.first; i < c.last; ++i) {
-    std::array<double, size> theta;
-    double inside = 0;
-    for (int j = shells_in_grain - 1; j >= 1; --j)
-      theta[j] = inside = keep[j] * shells[j * c.n + i] + pass[j] * inside;
-    double outside = c.share[i] * sums[i] + c.beta[i] * fluid[i];
-    double sum = 0;
-    sum += weight[0] * outside;
-    to[i] = outside;
-    for (int j = 1; j < shells_in_grain; ++j) {
-      to[j * c.n + i] = outside = theta[j] + beta[j] * outside;
-      sum += weight[j] * outside;
-    }
-    sums[i] = sum;
-  }
-}
-
-/// Calls f with the number of shells as a compile-time constant if it is one of N, which unrolls the loops;
-/// otherwise with 0.
-template <int... N, typename F>
-[[gnu::always_inline]] inline void with_shells(int n, F&& f) {
-  const bool known = ((n == N && (f(std::integral_constant<int, N>{}), true)) || ...);
-  if (!known) f(std::integral_constant<int, 0>{});
-}
-
-}  // namespace
-
 Grains::Grains(const Filler& filler, double porosity, double diameter, int shells)
     : n(shells),
       capacity((1 - porosity) * filler.volumetric() / shells),
@@ -113,12 +54,12 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
 [[gnu::target_clones("avx2", "default")]] void gather_grains(const GrainElimination& e, const GrainCells& c,
                                                              const double* shells, const double* extra,
                                                              double* fluid, double* sums) {
-  with_shells<1, 2, 3, 4, 5, 6, 8>(
-      e.n, [&](auto n) __attribute__((always_inline)) { gather<n()>(e, c, shells, extra, fluid, sums); });
-}
-
-[[gnu::target_clones("avx2", "default")]] void gather_sums(const GrainCells& c, const double* extra,
-                                                           double* fluid, const double* sums) {
+  for (std::size_t i = c.first; i < c.last; ++i) sums[i] = e.weight[0] * shells[i];
+  for (int j = 1; j < e.n; ++j) {
+    const double *shell = shells + j * c.n, weight = e.weight[j];
+#pragma GCC ivdep
+    for (std::size_t i = c.first; i < c.last; ++i) sums[i] += weight * shell[i];
+  }
 #pragma GCC ivdep
   for (std::size_t i = c.first; i < c.last; ++i)
     fluid[i] = c.rate[i] * fluid[i] + extra[i] + c.heat[i] * sums[i];
@@ -126,23 +67,22 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
 
 [[gnu::target_clones("avx2", "default")]] void scatter_grains(const GrainElimination& e, const GrainCells& c,
                                                               const double* shells, const double* fluid,
-                                                              double* to, double* sums) {
-  with_shells<1, 2, 3, 4, 5, 6, 8>(
-      e.n, [&](auto n) __attribute__((always_inline)) { scatter<n()>(e, c, shells, fluid, to, sums); });
-}
-
-[[gnu::target_clones("avx2", "default")]] void exchange_rows(const Grains& grains, double own, double tau,
-                                                             std::size_t n, const double* capacity,
-                                                             const double* film, const double* dz,
-                                                             const ExchangeRows& rows) {
-  const double area = grains.area, inner = 1 / grains.surface;
+                                                              double* to, const double* sums) {
+  // From the inside, `to` becomes alpha_j of each shell; from the surface, its temperature.
+  for (int j = e.n - 1; j >= 1; --j) {
+    const double *shell = shells + j * c.n, keep = e.keep[j], pass = e.pass[j];
+    double* own = to + j * c.n;
+    const double* inside = j + 1 < e.n ? own + c.n : shell;  // pass is 0 in the innermost shell
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < n; ++i) {
-    // Film and outer half shell in series; none without a film.
-    const double h = film[i], g = h > 0 ? 1 / (1 / (h * area) + inner) : 0;
-    const double share = 1 / (own + g), beta = g * share, heat = beta * dz[i], rate = capacity[i] / tau;
-    rows.rate[i] = rate, rows.share[i] = share, rows.beta[i] = beta, rows.heat[i] = heat;
-    rows.diagonal[i] = rate + own * heat;  // g (1 - beta), in a form that does not cancel for large g
+    for (std::size_t i = c.first; i < c.last; ++i) own[i] = keep * shell[i] + pass * inside[i];
+  }
+#pragma GCC ivdep
+  for (std::size_t i = c.first; i < c.last; ++i) to[i] = c.share[i] * sums[i] + c.beta[i] * fluid[i];
+  for (int j = 1; j < e.n; ++j) {
+    const double *outside = to + (j - 1) * c.n, beta = e.beta[j];
+    double* own = to + j * c.n;
+#pragma GCC ivdep
+    for (std::size_t i = c.first; i < c.last; ++i) own[i] += beta * outside[i];
   }
 }
 

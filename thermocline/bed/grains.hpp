@@ -56,22 +56,8 @@ struct GrainCells {
 /// the processor at run time. Uses no fused operations, so that results are identical on all processors.
 void gather_grains(const GrainElimination& e, const GrainCells& c, const double* shells, const double* extra,
                    double* fluid, double* sums);
-/// Updates the fluid only, with the sums left by scatter_grains().
-void gather_sums(const GrainCells& c, const double* extra, double* fluid, const double* sums);
 /// Computes the shells at the new time from the new fluid temperature and the old sums; `to` may be `shells`.
-/// `sums` become those of the new shells.
 void scatter_grains(const GrainElimination& e, const GrainCells& c, const double* shells, const double* fluid,
-                    double* to, double* sums);
-
-// Matrix rows of the bed, branch-free loops over the cells of a layer.
-
-struct ExchangeRows {
-  /// Initial diagonal, as in PackedBed::Operator.
-  double *rate, *share, *beta, *heat, *diagonal;
-};
-/// Rows of the fluid after eliminating a layer's grains over the step `tau` [s], in n cells. `capacity`: eps
-/// rho c dz [J/(m^2 K)]; `film` [W/(m^2 K)]; `dz` [m].
-void exchange_rows(const Grains& grains, double own, double tau, std::size_t n, const double* capacity,
-                   const double* film, const double* dz, const ExchangeRows& rows);
+                    double* to, const double* sums);
 
 }  // namespace couplet::thermocline

@@ -11,8 +11,8 @@
 
 namespace couplet::thermocline {
 
-PackedBed::Constants::Constants(const BedParameters& p, const Fluid& its_fluid, const Filler& filler,
-                                double diameter)
+BedConstants::BedConstants(const BedParameters& p, const Fluid& its_fluid, const Filler& filler,
+                           double diameter)
     : grid(p.layers, p.cells),
       fluid(its_fluid),
       area(0.25 * std::numbers::pi * diameter * diameter),
@@ -40,7 +40,7 @@ PackedBed::Constants::Constants(const BedParameters& p, const Fluid& its_fluid, 
 }
 
 PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& filler, double diameter)
-    : c_(std::make_shared<const Constants>(p, fluid, filler, diameter)), capacity_(c_->capacity) {
+    : c_(std::make_shared<const BedConstants>(p, fluid, filler, diameter)), capacity_(c_->capacity) {
   const std::size_t n = c_->grid.z.size(), all_shells = n * c_->shells;
   for (auto* v : {&fluid_, &source_, &prepared_.film, &prepared_.conductivity, &prepared_.wall, &work_.extra,
                   &work_.sums, &work_.lower, &work_.diagonal, &work_.upper, &work_.resistance})
@@ -55,7 +55,6 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
     for (auto* v : {&work_.melt.capacity, &work_.melt.right, &work_.melt.alpha, &work_.melt.beta})
       v->assign(all_shells, 0.0);
     work_.melt.diagonal.assign(n, 0.0);
-    prepared_.main.own_part.assign(n, 0.0);
   }
   std::vector<double> start(n, p.initial_temperature);
   if (!p.profile_z.empty()) {
@@ -69,7 +68,6 @@ void PackedBed::set_temperature(std::span<const double> temperature) {
   std::copy(temperature.begin(), temperature.end(), fluid_.begin());
   for (int j = 0; j < c_->shells; ++j)
     std::copy(temperature.begin(), temperature.end(), shell_.begin() + std::size_t(j) * c_->grid.size());
-  work_.sums_of = 0;
   follow_density();
 }
 
@@ -111,7 +109,7 @@ void PackedBed::prepare(double dt, double mass_flow) {
   }
   // SDIRK of order 2 needs gamma = 1 - 1/sqrt(2); see second_order_step.
   build(prepared_.main, c_->advection == Advection::tvd ? dt * (1 - std::numbers::sqrt2 / 2) : dt);
-  prepared_.fallback_is_built = false;
+  prepared_.fallback.grains.clear();
 }
 
 double PackedBed::inlet_conductance(bool upward) const {
@@ -119,11 +117,10 @@ double PackedBed::inlet_conductance(bool upward) const {
   return c_->conducting_inlet ? 2 * prepared_.conductivity[i] / c_->grid.dz[i] : 0;
 }
 
-void PackedBed::build(Operator& op, double tau) {
+void PackedBed::build(BedOperator& op, double tau) {
   const int n = c_->grid.size();
   const bool same_tau = op.tau == tau && !op.grains.empty();
   op.tau = tau;
-  work_.sums_of = 0;
   for (auto* v : {&op.rate, &op.share, &op.beta, &op.heat}) v->resize(n);
   if (!same_tau) {
     op.grains.clear();
@@ -131,17 +128,17 @@ void PackedBed::build(Operator& op, double tau) {
   }
   for (const BedGrid::Run& run : c_->grid.runs) {
     const std::size_t l = &run - c_->grid.runs.data();
-    const int i = run.first;
-    if (c_->grains[l].area > 0)
-      exchange_rows(c_->grains[l], op.grains[l].own, tau, std::size_t(run.count), &capacity_[i],
-                    &prepared_.film[i], &c_->grid.dz[i],
-                    {&op.rate[i], &op.share[i], &op.beta[i], &op.heat[i], &work_.diagonal[i]});
-    else  // no grains: what stands for them has the fluid's temperature
-      for (int k = i; k < i + run.count; ++k)
-        work_.diagonal[k] = op.rate[k] = capacity_[k] / tau, op.share[k] = op.heat[k] = 0, op.beta[k] = 1;
+    const double own = op.grains[l].own;
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      op.rate[i] = capacity_[i] / tau;
+      const double g = c_->grains[l].exchange(prepared_.film[i]);
+      // Without grains, what stands for them has the fluid's temperature.
+      op.share[i] = c_->grains[l].area > 0 ? 1 / (own + g) : 0;
+      op.beta[i] = c_->grains[l].area > 0 ? g * op.share[i] : 1;
+      op.heat[i] = g * op.share[i] * c_->grid.dz[i];
+      work_.diagonal[i] = op.rate[i] + own * op.heat[i];  // g (1 - beta), which does not cancel for large g
+    }
   }
-  if (!op.own_part.empty())
-    for (int i = 0; i < n; ++i) op.own_part[i] = work_.diagonal[i] - op.rate[i];
   double *a = work_.lower.data(), *b = work_.diagonal.data(), *c = work_.upper.data();
   for (int i = 0; i < n; ++i) work_.resistance[i] = c_->grid.dz[i] / (2 * prepared_.conductivity[i]);
   conduction_rows(n, work_.resistance.data(), a, c);
@@ -260,7 +257,6 @@ void PackedBed::mix_inversions() {
 }
 
 void PackedBed::resume() {
-  work_.sums_of = 0;
   follow_density();
   if (prepared_.dt == 0) return;
   // The walls use the coefficients of the last steps, not those of the current temperatures.

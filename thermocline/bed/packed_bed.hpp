@@ -15,52 +15,72 @@
 
 namespace couplet::thermocline {
 
+/// I - tau L with L conduction and exchange (and advection if implicit): matrix and grain factors.
+struct BedOperator {
+  double tau = 0;            // [s]
+  std::vector<double> rate;  // eps rho c dz/tau [W/(m^2 K)]
+  // With g = exchange(film) and sum = sum_j weight_j theta_j of the old grains, theta_0 = share sum + beta
+  // T, and the fluid receives heat sum from them.
+  std::vector<double> share, beta, heat;  // 1/(own + g), g/(own + g), g dz/(own + g)
+  std::vector<GrainElimination> grains;
+  Tridiagonal matrix;
+};
+
+/// Constants of a run, shared by all copies of the bed.
+struct BedConstants {
+  BedConstants(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
+  BedGrid grid;
+  Fluid fluid;
+  double area;
+  int shells;
+  Advection advection;
+  double courant;
+  bool conducting_inlet;
+  // One entry per run, the adjacent cells of one layer.
+  std::vector<LayerClosure> closures;
+  std::vector<Grains> grains;
+  std::vector<std::optional<PhaseChange>> melting;  // empty if no layer melts
+  std::vector<double> capacity;  // eps rho c dz of the cells at the fluid's constant density [J/(m^2 K)]
+  double heat_capacity = 0;      // [J/K]
+  double limit = std::numeric_limits<double>::infinity();  // smallest eps rho dz [kg/m^2]
+};
+
+/// Coefficients and matrices of the steps after prepare().
+struct PreparedBed {
+  double dt = 0, mass_flow = 0;                  // [s], [kg/s]
+  std::vector<double> film, conductivity, wall;  // per cell
+  BedOperator main;
+  BedOperator fallback;  // at first order, without grains until a step needs it
+};
+
+/// Rows of layers that melt: shells times cells, of the diagonal cells. Empty if no layer melts.
+struct MeltingRows {
+  std::vector<double> capacity, right, alpha, beta, diagonal;
+  Tridiagonal matrix;
+};
+
+/// Work vectors that a step overwrites before reading.
+struct BedWork {
+  std::vector<double> extra, face, fluid1, fluid2, shell1, shell2;
+  std::vector<double> sums;                                // of the shells, weighted, per cell
+  std::vector<double> lower, diagonal, upper, resistance;  // of a matrix during assembly
+  MeltingRows melt;
+};
+
+/// Heat of one step of the bed.
+struct BedHeat {
+  double outlet = 0;     ///< mean temperature of the outflow [K]; that of the inlet at rest
+  double by_flow = 0;    ///< enthalpy in minus out, and conduction through the inlet [J]
+  double by_source = 0;  ///< [J]
+};
+
 /// Fluid and filler of the tank (5.7, 5.8), one-dimensional in z. One step of the fluid solves
 ///   rho eps c dT/dt = d/dz(k_eff dT/dz) - G c dT/dz - h_v (T - T_surface) + source
 /// with explicit (optionally implicit) advection and implicit conduction and exchange. The grains are
 /// eliminated cell by cell, leaving a tridiagonal system. Coefficients are those at the start of a block of
 /// steps (prepare()).
 class PackedBed {
-  /// I - tau L with L conduction and exchange (and advection if implicit): matrix and grain factors.
-  struct Operator {
-    Operator(int name) : number(name) {}
-    int number;                // 1 for the scheme itself, 2 for the fallback
-    double tau = 0;            // [s]
-    std::vector<double> rate;  // eps rho c dz/tau [W/(m^2 K)]
-    // With g = exchange(film) and sum = sum_j weight_j theta_j of the old grains, theta_0 = share sum + beta
-    // T, and the fluid receives heat sum from them.
-    std::vector<double> share, beta, heat;  // 1/(own + g), g/(own + g), g dz/(own + g)
-    std::vector<double> own_part;           // diagonal contribution of the grains; only if layers melt
-    std::vector<GrainElimination> grains;
-    Tridiagonal matrix;
-  };
-
  public:
-  /// Constants of a run, shared by all copies of the bed.
-  struct Constants {
-    Constants(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
-    BedGrid grid;
-    Fluid fluid;
-    double area;
-    int shells;
-    Advection advection;
-    double courant;
-    bool conducting_inlet;
-    // One entry per run, the adjacent cells of one layer.
-    std::vector<LayerClosure> closures;
-    std::vector<Grains> grains;
-    std::vector<std::optional<PhaseChange>> melting;  // empty if no layer melts
-    std::vector<double> capacity;  // eps rho c dz of the cells at the fluid's constant density [J/(m^2 K)]
-    double heat_capacity = 0;      // [J/K]
-    double limit = std::numeric_limits<double>::infinity();  // smallest eps rho dz [kg/m^2]
-  };
-  /// Coefficients and matrices of the steps after prepare().
-  struct Prepared {
-    double dt = 0, mass_flow = 0;                  // [s], [kg/s]
-    std::vector<double> film, conductivity, wall;  // per cell
-    Operator main{1}, fallback{2};
-    bool fallback_is_built = false;
-  };
   PackedBed(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
 
   const BedGrid& grid() const { return c_->grid; }
@@ -71,17 +91,12 @@ class PackedBed {
   double largest_step(double mass_flow) const;
   /// Prepares film, conductivity and factorization for steps of this length at this flow.
   void prepare(double dt, double mass_flow);
-  const Prepared& prepared() const { return prepared_; }
+  const PreparedBed& prepared() const { return prepared_; }
   /// Heat received by the fluid of each cell from walls, ullage and ground in the following steps [W].
   void set_source(std::span<const double> source);
 
-  struct StepHeat {
-    double outlet = 0;     ///< mean temperature of the outflow [K]; that of the inlet at rest
-    double by_flow = 0;    ///< enthalpy in minus out, and conduction through the inlet [J]
-    double by_source = 0;  ///< [J]
-  };
   /// Performs a step of the prepared length. mass_flow > 0: upward.
-  StepHeat step(double mass_flow, double inlet_temperature);
+  BedHeat step(double mass_flow, double inlet_temperature);
 
   /// Heat relative to a uniform temperature [J].
   double energy(double reference) const;
@@ -126,41 +141,25 @@ class PackedBed {
   void set_temperature(std::span<const double> temperature);
 
  private:
-  struct Stage {
-    /// Temperature of the outflow; conduction through the inlet face [W/m^2].
-    double outlet = 0, conducted = 0;
-  };
-  void build(Operator& op, double tau);
-  /// Solves (I - tau L) x = (fluid, shells) + tau extra. `to_shells` may be `shells`. `sums_are_known`:
-  /// work_.sums belong to `shells` and this operator, from the last step.
-  void solve(const Operator& op, double* fluid, const double* shells, double* to_shells, const double* extra,
-             bool sums_are_known);
-  GrainCells cells_of(const Operator& op, const BedGrid::Run& run) const;
+  void build(BedOperator& op, double tau);
+  /// Solves (I - tau L) x = (fluid, shells) + tau extra. `to_shells` may be `shells`.
+  void solve(const BedOperator& op, double* fluid, const double* shells, double* to_shells,
+             const double* extra);
+  GrainCells cells_of(const BedOperator& op, const BedGrid::Run& run) const;
   /// Solves a step of a bed with melting layers, in place.
-  void solve_with_melting(const Operator& op, const double* extra);
+  void solve_with_melting(const BedOperator& op, const double* extra);
   void linearise_melting(const BedGrid::Run& run, const PhaseChange& phase);
-  void eliminate_melting(const Operator& op, const BedGrid::Run& run, const Grains& grains,
-                         const double* extra);
+  void eliminate_melting(const BedOperator& op, std::size_t run, const double* extra);
   double settle_melting(const BedGrid::Run& run, const PhaseChange& phase);
-  /// Work vectors that a step overwrites before reading, except `sums`.
-  struct Work {
-    std::vector<double> extra, face, fluid1, fluid2, shell1, shell2;
-    std::vector<double> sums;                                // of the shells after the last step
-    int sums_of = 0;                                         // operator of `sums`; 0 if none
-    std::vector<double> lower, diagonal, upper, resistance;  // of a matrix during assembly
-    struct Melting {
-      std::vector<double> capacity, right, alpha, beta, diagonal;  // shells times cells; the last one: cells
-      Tridiagonal matrix;
-    } melt;  // empty if no layer melts
-  };
-  /// Advection and sources [W/m^2] at the given fluid temperatures.
-  Stage explicit_terms(const double* fluid, double flux, double inlet, bool second_order);
-  StepHeat first_order_step(const Operator& op, double flux, double inlet, bool second_order);
-  bool second_order_step(double flux, double inlet, StepHeat& heat);
+  /// Sets work_.extra to advection and sources [W/m^2] at the given fluid temperatures. Returns the
+  /// temperature of the outflow.
+  double explicit_terms(const double* fluid, double flux, double inlet, bool second_order);
+  BedHeat first_order_step(const BedOperator& op, double flux, double inlet, bool second_order);
+  bool second_order_step(double flux, double inlet, BedHeat& heat);
   double inlet_conductance(bool upward) const;
   void follow_density();
 
-  std::shared_ptr<const Constants> c_;
+  std::shared_ptr<const BedConstants> c_;
   // State.
   std::vector<double> fluid_, shell_;  // [K]; all cells of a shell are contiguous
   std::vector<double> settled_;        // fluid temperature for capacity_; only with a real density
@@ -168,8 +167,8 @@ class PackedBed {
   // Conditions of the following steps.
   std::vector<double> source_;  // [W/m^2]
   double source_rate_ = 0;      // largest |source|/capacity [K/s]
-  Prepared prepared_;
-  Work work_;
+  PreparedBed prepared_;
+  BedWork work_;
   long steps_ = 0, fallbacks_ = 0;
 };
 

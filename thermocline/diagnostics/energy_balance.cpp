@@ -35,10 +35,42 @@ class EnergyBalance final : public TankDiagnostic {
   }
 };
 
+/// Boundaries of the tank without heat loss because an element is missing.
+class NeglectedLosses final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void conclude(diagnostics::Report& report) override {
+    const TankParameters& p = view_.parameters();
+    const ElsewhereParameters elsewhere = p.elsewhere.value_or(ElsewhereParameters{});
+    const bool has_side = p.insulation || elsewhere.insulation;
+    std::string tight;
+    for (const auto& [there, name] : {std::pair{has_side, "side (insulation)"},
+                                      {p.insulation && p.ullage, "roof (insulation and ullage)"},
+                                      {p.ground || elsewhere.ground, "bottom (ground)"}})
+      if (!there) tight += fmt::format("{}{}", tight.empty() ? "" : ", ", name);
+    if (!tight.empty())
+      report.sentences.push_back(fmt::format("no heat loss through neglected elements: {}", tight));
+    if (!view_.model.shell() || has_side) return;
+    const Rings& rings = *view_.model.setup().rings;
+    double area = 0, sum = 0;
+    for (int i = 0; i < rings.size(); ++i)
+      area += rings.surface(i), sum += rings.surface(i) * view_.model.shell()->temperature()[i];
+    const double wall = sum / area, height = rings.z.back() + rings.dz.back() / 2;
+    const Film film = side_film({}, wall, p.diameter, height, view_.weather.at(view_.time()));
+    report.sentences.push_back(fmt::format("the bare side, at {:.0f} degC now, would lose {:.3g} MW",
+                                           celsius(wall),
+                                           1e-6 * area * film.coefficient * (wall - film.reference)));
+  }
+};
+
 }  // namespace
 
 Made energy_balance(const TankView& view, const Seen& seen) {
   return std::make_shared<EnergyBalance>(view, seen);
+}
+
+Made surroundings(const TankView& view, const Seen& seen) {
+  return std::make_shared<NeglectedLosses>(view, seen);
 }
 
 }  // namespace couplet::thermocline

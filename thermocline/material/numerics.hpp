@@ -56,6 +56,11 @@ class Ramps {
       slope = next;
     }
   }
+  double operator()(double t) const {
+    double value = 0;
+    values(&t, &value, 1);
+    return value;
+  }
   /// Values at n temperatures.
   void values(const double* t, double* value, std::size_t n) const;
   /// Means between two temperatures; the value where they are (nearly) equal.

@@ -203,11 +203,11 @@ void declare_custom(config::Section& s, FluidParameters& p) {
   as_temperature(s.value("temperature", p.temperature)).required().doc("temperatures of the following lists");
   declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
   declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
-  as_temperature(s.value("lowest", p.lowest)).doc("freezing point: below it a warning");
+  as_temperature(s.value("lowest", p.lowest)).doc("freezing point, below which the run warns");
   s.value("highest", p.highest)
       .unit("K")
       .plausible(70, 1e4)
-      .doc("boiling or decomposition point: above it a warning");
+      .doc("boiling or decomposition point, above which the run warns");
 }
 
 }  // namespace
@@ -250,7 +250,9 @@ void declare(config::Section& section, FluidParameters& p) {
 }
 
 void declare(config::Section& s, Filler& f) {
-  as_density(s.value("density", f.density))
+  s.value("density", f.density)
+      .unit("kg/m^3")
+      .plausible(50, 25000)
       .positive()
       .doc("density of the grains; the defaults are those of quartzite");
   as_specific_heat(s.value("specific-heat", f.specific_heat)).positive().doc("specific heat of the grains");
@@ -288,7 +290,7 @@ void declare(config::Section& section, SteelParameters& p) {
     s.value("highest", p.highest)
         .unit("K")
         .plausible(70, 1e4)
-        .doc("maximum service temperature of the metal: above it a warning");
+        .doc("maximum service temperature of the metal, above which the run warns");
     as_temperature(s.value("temperature", p.temperature))
         .required()
         .doc("temperatures of the following lists");
@@ -313,7 +315,7 @@ void declare(config::Section& s, InsulatorParameters& p) {
   as_temperature(s.value("temperature", p.temperature))
       .doc("temperatures of 'conductivity'; absent for a constant");
   as_conductivity(s.value("conductivity", p.conductivity))
-      .doc("piecewise linear; absent: a wired mineral-wool mat, 0.040 at 50 degC to 0.163 at 500 degC");
+      .doc("piecewise linear; default: a wired mineral-wool mat, 0.040 at 50 degC to 0.163 at 500 degC");
   s.check(
       [&]() -> std::string {
         if (p.conductivity.empty() && p.temperature.empty()) return "";

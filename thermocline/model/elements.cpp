@@ -232,7 +232,6 @@ void declare(config::Section& s, GroundElementParameters& p) {
   declare_surroundings(s, p.initial_temperature, p.ambient,
                        "temperature of the tank's bottom; the ground "
                        "starts steady");
-  s.check([&p] { return slip_in_ground(p.ground); }, "ground");
 }
 
 void declare(config::Section& s, BlanketElementParameters& p) {
@@ -244,7 +243,6 @@ void declare(config::Section& s, BlanketElementParameters& p) {
   declare_surroundings(s, p.initial_temperature, p.ambient,
                        "temperature of the wall; the blanket starts "
                        "steady");
-  s.check([&p] { return slip_in_insulation(p.insulation, p.diameter); }, "insulation");
 }
 
 void declare(config::Section& section, ElementParameters& p) {

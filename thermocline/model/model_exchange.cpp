@@ -198,7 +198,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Weath
       prepared = true;
     }
     s.dt = bed_.prepared().dt;
-    const PackedBed::StepHeat heat = bed_.step(m, s.flow.inlet_temperature);
+    const BedHeat heat = bed_.step(m, s.flow.inlet_temperature);
     s.outlet_temperature = heat.outlet;
     ledger_.flow += heat.by_flow;
     ledger_.bed += heat.by_flow + heat.by_source;

@@ -47,7 +47,7 @@ struct TankOutput {
 /// Keys of `participants.<name>`; each optional member is an effect.
 struct TankParameters {
   double diameter = 0;       ///< inner [m]
-  double exchange_step = 0;  ///< longest step between exchanges [s]; 0: that of the simulation
+  double exchange_step = 0;  ///< longest step between exchanges [s]; 0 means that of the simulation
   FluidParameters fluid;
   Filler filler;
   BedParameters bed;

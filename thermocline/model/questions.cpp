@@ -9,21 +9,6 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Sentence about a number in a wrong unit: "<what> is <value> <unit><why>", and how to write it.
-std::string slip(const std::string& what, double value, const std::string& unit, const std::string& why,
-                 const char* other) {
-  return fmt::format("{} is {:g} {}{}. A number without a unit is in {}; write '{:g} {}' if that is intended",
-                     what, value, unit, why, unit == "m" ? "meters" : unit, value, other);
-}
-
-/// `whose`: for example "any solid's".
-std::string slip_in_heat(double specific_heat, const char* whose) {
-  constexpr double least = 100;  // [J/(kg K)]
-  return specific_heat < least ? slip("specific-heat", specific_heat, "J/(kg K)",
-                                      fmt::format(", less than {}", whose), "kJ/(kg K)")
-                               : "";
-}
-
 /// Empty if this temperature is plausible.
 std::string forgotten_unit(const std::string& what, double kelvin_given, const Fluid& fluid) {
   const double as_celsius = kelvin(kelvin_given);
@@ -66,90 +51,6 @@ void ask_about_schedule(const FlowParameters& flow, const TankModel& model, std:
 }
 
 }  // namespace
-
-std::string slip_in_bed(const BedParameters& bed, double diameter) {
-  constexpr double largest_grain = 1;         // [m]
-  constexpr double least_latent_heat = 1000;  // [J/kg]; what melts takes a hundred times as much
-  for (std::size_t i = 0; i < bed.layers.size(); ++i) {
-    const BedLayer& layer = bed.layers[i];
-    if (const std::string slip = layer.filler ? slip_in_filler(*layer.filler) : ""; !slip.empty())
-      return fmt::format("layers[{}].filler.{}", i, slip);
-    const double most = std::min(diameter, largest_grain);
-    if (layer.porosity < 1 && layer.diameter >= most)
-      return slip(
-          fmt::format("layers[{}].diameter", i), layer.diameter, "m",
-          fmt::format(": expected grains in a tank of {:g} m to be smaller than {:g} m", diameter, most),
-          "mm");
-    if (layer.melting && layer.melting->latent_heat > 0 && layer.melting->latent_heat < least_latent_heat)
-      return slip(fmt::format("layers[{}].melting.latent-heat", i), layer.melting->latent_heat, "J/kg",
-                  ", less than the sensible heat of one kelvin", "kJ/kg");
-  }
-  return "";
-}
-
-std::string slip_in_tank(const BedParameters& bed, double diameter) {
-  constexpr double largest = 300;  // [m]
-  double height = 0;
-  for (const BedLayer& layer : bed.layers) height += layer.height;
-  if (diameter <= largest && height <= largest) return "";
-  return fmt::format(
-      "a bed {:g} m high in a tank of {:g} m: expected {:g} m at most. A number without a unit is in meters",
-      height, diameter, largest);
-}
-
-std::string slip_in_filler(const Filler& f) {
-  constexpr double lightest = 50, heaviest = 25000;  // SI; a conductivity may be as large as one likes
-  if (f.density < lightest || f.density > heaviest)
-    return slip("density", f.density, "kg/m^3", fmt::format(": expected {:g} to {:g}", lightest, heaviest),
-                "kg/l");
-  return slip_in_heat(f.specific_heat, "any solid's");
-}
-
-std::string slip_in_fluid(const FluidParameters& p, Advection advection) {
-  if (p.type != FluidParameters::Type::custom) return "";
-  constexpr double lightest_liquid = 50;  // [kg/m^3]
-  if (std::string slip = slip_in_heat(p.specific_heat, "any fluid's"); !slip.empty()) return slip;
-  if (p.density >= lightest_liquid || advection == Advection::implicit) return "";
-  return slip("density", p.density, "kg/m^3", ", that of a gas, which needs bed.advection: implicit", "kg/l");
-}
-
-std::string slip_in_plates(const ShellParameters& shell, double diameter) {
-  constexpr double thinnest_wall = 0.1;  // of the diameter; beyond it the wall is no shell
-  for (std::size_t i = 0; i < shell.plates.size(); ++i)
-    if (shell.plates[i].thickness > thinnest_wall * diameter)
-      return slip(
-          fmt::format("plates[{}].thickness", i), shell.plates[i].thickness, "m",
-          fmt::format(" in a tank of {:g} m: a shell is at most a tenth of the diameter thick", diameter),
-          "mm");
-  return "";
-}
-
-std::string slip_in_insulation(const InsulationParameters& insulation, double diameter) {
-  // A small tank may have insulation thicker than its radius [m].
-  const double most = std::max(1.0, diameter / 2);
-  if (insulation.thickness <= most) return "";
-  return slip("thickness", insulation.thickness, "m",
-              fmt::format(" around a tank of {:g} m: expected {:g} m at most", diameter, most), "cm");
-}
-
-std::string slip_in_ground(const GroundParameters& ground) {
-  constexpr double thickest_foundation = 10;  // [m]
-  for (std::size_t i = 0; i < ground.layers.size(); ++i)
-    if (const GroundLayer& layer = ground.layers[i];
-        layer.material != "soil" && layer.thickness > thickest_foundation)
-      return slip(fmt::format("layers[{}].thickness", i), layer.thickness, "m",
-                  fmt::format(" of {}: expected at most {:g} m, except for soil", layer.material,
-                              thickest_foundation),
-                  "cm");
-  return "";
-}
-
-std::string slip_in_plant(const PlantParameters& plant) {
-  constexpr double smallest_block = 1000;  // [W]
-  if (plant.electric_power >= smallest_block) return "";
-  return slip("electric-power", plant.electric_power, "W",
-              fmt::format(": expected at least {:g} W", smallest_block), "MW");
-}
 
 std::string forgotten_unit_of_bed(const TankParameters& p) {
   const Fluid fluid = make_fluid(p.fluid);

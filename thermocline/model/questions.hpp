@@ -32,16 +32,4 @@ std::string season_without_dates(const TankParameters& parameters);
 /// full name of the key.
 void require_sun(double absorptance, const Weather& weather, const std::string& key);
 
-// Checks for impossible numbers, such as a wrong unit (10 for 10 mm). Each returns the sentence of a refusal
-// with the number, or nothing.
-
-std::string slip_in_tank(const BedParameters& bed, double diameter);
-std::string slip_in_fluid(const FluidParameters& fluid, Advection advection);
-std::string slip_in_filler(const Filler& filler);
-std::string slip_in_bed(const BedParameters& bed, double diameter);
-std::string slip_in_plates(const ShellParameters& shell, double diameter);
-std::string slip_in_insulation(const InsulationParameters& insulation, double diameter);
-std::string slip_in_ground(const GroundParameters& ground);
-std::string slip_in_plant(const PlantParameters& plant);
-
 }  // namespace couplet::thermocline

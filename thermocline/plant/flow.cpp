@@ -238,7 +238,7 @@ Flow PlantControl::decide(double t, double t_top, double t_bottom, const Ambient
   flow.mass_flow = flows.tank_flow;
   flow.inlet_temperature =
       flows.mode == PlantMode::charge ? plant_.parameters().hot : plant_.parameters().cold;
-  // At rest, the bed could otherwise take a long step past sunrise.
+  // Otherwise the bed at rest could take a long step past sunrise.
   constexpr double longest_without_a_look = 120;  // [s]
   flow.until = std::min(t + longest_without_a_look, plant_.load_until(t));
   return flow;

@@ -74,7 +74,7 @@ struct FlowParameters {
 void declare(config::Section& section, FlowParameters& parameters);
 /// Returns why the rows of a schedule are invalid, or nothing.
 std::string problem_of_rows(const FlowParameters& parameters);
-/// `specific_heat`: of the fluid [J/(kg K)].
+/// `specific_heat`: specific heat of the fluid [J/(kg K)].
 std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters, double specific_heat);
 
 /// Flow from a schedule. Labels: number of the row (from 1) while it flows, 0 at rest.

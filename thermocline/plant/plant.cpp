@@ -78,8 +78,8 @@ void declare_control(config::Section& s, PlantParameters& p) {
             {"block", PlantParameters::CutOffAt::block}})
       .doc(
           "mixed: the cut-off applies to the inflow of field or block, where the tank's flow has been "
-          "mixed with that of the other; outlet: to the tank outlet; field: mixed for charging, outlet "
-          "for discharging; block: the other way round");
+          "mixed with that of the other. outlet: to the tank outlet. field: mixed for charging, outlet "
+          "for discharging. block: the other way round");
   as_difference(s.value("restart", p.restart))
       .positive()
       .doc(
@@ -131,8 +131,8 @@ std::string problem_of_day(const std::vector<double>& values, bool share) {
 
 void declare(config::Section& s, CalendarRule& r) {
   s.value("days", r.days)
-      .doc("names of weekdays in English, or weekdays (monday to friday), weekend; absent: every day");
-  s.value("from", r.from).doc("first day of the season, MM-DD of the weather; absent: all year");
+      .doc("names of weekdays in English, or weekdays (monday to friday), weekend; default: every day");
+  s.value("from", r.from).doc("first day of the season, MM-DD of the weather; default: all year");
   s.value("to", r.to).doc("its last day, MM-DD; it may lie in the next year");
   s.value("load", r.load).doc("share of electric-power, one value or 24");
   s.value("tariff", r.tariff).doc("electricity price per MWh, one value or 24");
@@ -217,7 +217,7 @@ void declare(config::Section& s, PlantParameters& p) {
   s.value("field-efficiency", p.field_efficiency)
       .range(0.01, 1)
       .required()
-      .doc("heat collected per direct radiation");
+      .doc("collected heat per direct irradiation of the field");
   as_temperature(s.value("hot", p.hot))
       .required()
       .doc("outlet temperature of the solar field and, by design, of the charged tank");
@@ -259,7 +259,7 @@ double Plant::load_until(double t) const {
   return (std::floor(t / seconds_an_hour + clock_rounding) + 1) * seconds_an_hour;
 }
 
-/// The store rests: the field supplies the block, up to its demand.
+/// The tank rests. The field supplies the block up to its demand.
 PlantFlows Plant::idle(double field_heat, double load) const {
   PlantFlows f;
   f.field_heat = field_heat;

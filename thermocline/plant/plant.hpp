@@ -10,8 +10,8 @@ namespace couplet::thermocline {
 
 /// Load and tariff for certain days: one value, or 24 for the hours.
 struct CalendarRule {
-  std::vector<std::string> days;  ///< monday ... sunday, weekdays, weekend; empty: all days
-  std::string from, to;           ///< MM-DD, inclusive; `to` may be in the next year; empty: all year
+  std::vector<std::string> days;  ///< monday ... sunday, weekdays, weekend; empty means all days
+  std::string from, to;           ///< MM-DD, inclusive; `to` may be in the next year; empty means all year
   std::vector<double> load, tariff;
 };
 void declare(config::Section& section, CalendarRule& rule);
@@ -96,7 +96,7 @@ struct PlantFlows {
 ///   m_C = (Q_SF - Q_PB) / (c (T_hot - T_C)),   m_D = (Q_PB - Q_SF) / (c (T_D - T_cold)).
 class Plant {
  public:
-  /// `specific_heat`: of the fluid [J/(kg K)].
+  /// `specific_heat`: specific heat of the fluid [J/(kg K)].
   Plant(const PlantParameters& parameters, double specific_heat);
 
   /// Flows of a step with initial outlet temperatures `top` and `bottom` [K]. `before`: mode of the previous

@@ -97,7 +97,7 @@ void declare(config::Section& s, ReportParameters& p) {
       .unit("day")
       .plausible(1, 1e4)
       .not_negative()
-      .doc("on this day after the start, hourly profiles are written; absent: none");
+      .doc("on this day after the start, hourly profiles are written; default: none");
   as_difference(s.value("thickness-margin", p.thickness_margin))
       .positive()
       .doc(

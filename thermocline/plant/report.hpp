@@ -122,7 +122,7 @@ struct EconomicsParameters {
   double block = 0;                         ///< per kilowatt of the power block's electric output [1/kW]
   double fixed = 0;                         ///< independent of the size of the plant
   double steel = 0, filler = 0, fluid = 0;  ///< [1/kg]
-  std::optional<double> capsules;           ///< of melting layers; absent: as filler [1/kg]
+  std::optional<double> capsules;           ///< of melting layers; default: that of the filler [1/kg]
   double pump = 0;                          ///< per kilowatt of the pump's or fan's largest power [1/kW]
   double insulation = 0, foundation = 0;    ///< per square meter of wall and roof, of ground [1/m^2]
   double operation = 0.02;                  ///< per year, share of the capital
@@ -282,8 +282,8 @@ class DayReport final {
 
 /// Thickness of the thermocline [m], equation 5.30 of [thesis]: the height between the critical temperatures
 /// `cold` and `hot`. If one has left the bed, it is extrapolated with the mean gradient of the remaining part
-/// (if both have, of the whole bed). `z`: cell centers, upward. `height`: of the bed [m]. `temperature`: per
-/// cell, all temperatures in the same unit. Empty if the whole bed is hot or cold.
+/// (if both have, of the whole bed). `z`: cell centers, upward. `height`: height of the bed [m].
+/// `temperature`: temperature of each cell, all in the same unit. Empty if the whole bed is hot or cold.
 std::optional<double> thermocline_thickness(std::span<const double> z, double height,
                                             std::span<const double> temperature, double cold, double hot);
 

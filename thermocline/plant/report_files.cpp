@@ -103,7 +103,7 @@ void declare(config::Section& s, EconomicsParameters& p) {
   s.value("filler", p.filler).not_negative().doc("price per kilogram of the grains");
   s.value("capsules", p.capsules)
       .not_negative()
-      .doc("price per kilogram of capsules, the grains of phase-change layers; absent: as filler");
+      .doc("price per kilogram of capsules, the grains of phase-change layers; default: that of filler");
   s.value("pump", p.pump)
       .not_negative()
       .doc("price per kilowatt of pump or fan, by the largest power in the run");

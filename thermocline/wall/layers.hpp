@@ -16,52 +16,71 @@ struct ColumnLayer {
   int cells = 1;
 };
 
-/// Plane conduction through layers, from the inside (the tank) to the outside: roof, cover, foundation and
-/// soil. Implicit, with conductivities at the old temperature.
-class Column {
+/// Conduction through layers from the inside (the tank) to the outside, in strips side by side that do not
+/// exchange heat. Implicit, with conductivities at the old temperature, all strips together cell by cell.
+class Layers {
+ public:
+  /// Sets the steady profile between the surface temperatures.
+  void set_steady(std::span<const double> inside, double outside);
+  double energy(double reference) const;  ///< [J]
+  /// Mean temperature of the outer surface [K].
+  double outer_surface(const Film& outside) const;
+  /// Cell by cell from the innermost, then by strip [K].
+  std::vector<double>& temperature() { return temperature_; }
+  const std::vector<double>& temperature() const { return temperature_; }
+
+ protected:
+  /// `lengths`: of the strips [m]; the area [m^2] of a plane one. All other data are per length.
+  explicit Layers(std::span<const double> lengths) : length_(lengths.begin(), lengths.end()) {}
+  /// Adds a cell outside the others. `inwards`, `outwards`: conductances of its halves over the conductivity.
+  void add_cell(double inwards, double outwards, double capacity);
+  /// Adds the material of the cells since the last call, at the end with the outer surface.
+  void add_material(const Insulator& material, double outer_surface);
+  /// Performs a step with a film inside, and a heat flow `power` into the inner cell. Sets the heat flow into
+  /// each strip [W] and returns the heat lost outside [J]. An infinite coefficient prescribes the surface
+  /// temperature; 0 is an insulated side.
+  double advance(double dt, std::span<const double> inside, double coefficient, double power,
+                 const Film& outside, std::span<double> into);
+  void find_conductivity();
+
+  struct Material {
+    std::size_t cells;
+    Ramps conductivity;
+  };
+  std::vector<Material> materials_;
+  std::vector<double> length_;
+  std::vector<double> shape_;     // conductances of the half cells over the conductivity, 2 per cell
+  std::vector<double> capacity_;  // of each cell
+  double outer_surface_ = 0;
+  std::vector<double> temperature_, k_, up_, inner_, in_;
+};
+
+/// Plane layers in one strip: roof, cover, foundation and soil.
+class Column final : public Layers {
  public:
   Column(const std::vector<ColumnLayer>& layers, double area);
 
-  /// Performs a step with a film on each side. An infinite coefficient prescribes the surface temperature; 0
-  /// is an insulated side.
   struct Heat {
     double inner = 0, outer = 0;  ///< into the inner side, out of the outer side [J]
   };
+  /// Performs a step with a film on each side, or with a given heat flow into the inner side [W].
   Heat step(double dt, const Film& inner, const Film& outer);
-  /// Performs a step with a given heat flow into the inner side [W].
   Heat step(double dt, double inner_power, const Film& outer);
 
   /// Response to a heat flow into the inner surface over a step of dt, as coefficient (T_surface - reference)
-  /// [W/m^2] with the final surface temperature. Does not change the state.
+  /// [W/m^2] with the final surface temperature. Does not change the temperatures.
   Film inner_response(double dt, const Film& outer);
 
-  /// Sets the steady profile between two surface temperatures.
-  void set_steady(double inner, double outer);
-  double energy(double reference) const;  ///< [J]
-  /// Conductance of the inner and the outer half cell [W/(m^2 K)].
+  void set_steady(double inner, double outer) { Layers::set_steady({&inner, 1}, outer); }
+  /// Conductance of the inner half cell [W/(m^2 K)].
   double inner_conductance() const;
-  double outer_conductance() const;
   double inner_capacity() const { return capacity_.front(); }  ///< of the inner cell [J/(m^2 K)]
   double inner_temperature() const { return temperature_.front(); }
-  /// Temperature of the outer surface for the film of the last step [K].
-  double outer_surface(const Film& outer) const;
-  double area() const { return area_; }
-
-  std::vector<double>& temperature() { return temperature_; }
-  const std::vector<double>& temperature() const { return temperature_; }
+  double area() const { return length_.front(); }
   const std::vector<double>& centre() const { return x_; }  ///< depth of the cells [m]
 
  private:
-  void fill(double dt, const Film& outer);
-  Heat advance(double dt, double inner_conductance, double inner_reference, double inner_power,
-               const Film& outer);
-
-  double area_;
-  std::vector<Table> conductivity_;  // per layer
-  std::vector<int> layer_;
-  std::vector<double> x_, dx_, capacity_, temperature_;
-  std::vector<double> k_, resistance_, a_, b_, c_, r_;
-  Tridiagonal matrix_;
+  std::vector<double> x_;
 };
 
 struct InsulationParameters {
@@ -72,35 +91,15 @@ struct InsulationParameters {
   OutsideParameters outside;
 };
 
-/// Radial conduction through the insulation around the tank, with a column of `cells` nodes per ring of the
-/// wall. Implicit, all rings together node by node.
-class Insulation {
+/// Insulation around the tank, with a strip per ring of the wall.
+class Insulation final : public Layers {
  public:
   /// `dz`: heights of the rings [m]. `radius`: inner radius of the insulation.
   Insulation(const InsulationParameters& parameters, std::span<const double> dz, double radius);
 
   /// Performs a step of dt at constant inside temperatures. Sets the heat flow from each ring [W] and returns
   /// the heat lost outside [J].
-  double step(double dt, std::span<const double> inside, const Film& outside,
-              std::vector<double>& from_rings);
-  void set_steady(std::span<const double> inside, double outside);
-  double energy(double reference) const;  ///< [J]
-  /// Mean temperature of the outer surface [K].
-  double outer_surface(const Film& outside) const;
-  std::vector<double>& temperature() { return temperature_; }
-  const std::vector<double>& temperature() const { return temperature_; }
-
- private:
-  Table conductivity_;
-  Ramps ramps_;  // of conductivity_
-  int cells_;
-  std::size_t rings_;
-  std::vector<double> dz_;
-  std::vector<double> shape_;     // 2 pi/ln(r_out/r_in) of the half cells, 2 per node [1]
-  std::vector<double> capacity_;  // per height, for each node [J/(m K)]
-  double outer_circumference_;
-  std::vector<double> temperature_;  // by node from the innermost, then by ring [K]
-  std::vector<double> k_, up_, inner_, in_, nothing_;
+  double step(double dt, std::span<const double> inside, const Film& outside, std::span<double> from_rings);
 };
 
 void declare(config::Section& section, InsulationParameters& parameters);

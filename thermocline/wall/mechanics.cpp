@@ -1,36 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/wall/mechanics.hpp"
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/base/error.hpp"
 
 namespace couplet::thermocline {
-namespace {
-
-/// Symmetric positive definite matrix with two off-diagonals per side: L D L^T without pivoting.
-struct Pentadiagonal {
-  std::vector<double> diagonal, next, second;  // a_ii, a_i,i+1, a_i,i+2
-  explicit Pentadiagonal(std::size_t n) : diagonal(n, 0.0), next(n, 0.0), second(n, 0.0) {}
-
-  void solve(std::vector<double>& x) {
-    const std::size_t n = diagonal.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      const double d = diagonal[i], b = next[i] / d, c = second[i] / d;
-      if (i + 1 < n) diagonal[i + 1] -= b * next[i], next[i + 1] -= b * second[i], x[i + 1] -= b * x[i];
-      if (i + 2 < n) diagonal[i + 2] -= c * second[i], x[i + 2] -= c * x[i];
-      next[i] = b, second[i] = c;
-    }
-    for (std::size_t i = n; i-- > 0;) {
-      x[i] /= diagonal[i];
-      if (i + 1 < n) x[i] -= next[i] * x[i + 1];
-      if (i + 2 < n) x[i] -= second[i] * x[i + 2];
-    }
-  }
-};
-
-}  // namespace
 
 double rankine_active(const Filler& filler) {
   const double s = std::sin(filler.friction_angle);
@@ -152,41 +130,39 @@ WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const
                          std::span<const double> temperature) {
   const std::size_t n = rings.z.size();
   const double a = rings.diameter / 2, nu = steel.poissons_ratio;
-  std::vector<double> modulus(n), free(n), w(n), support(n), stiffness(n);
-  Pentadiagonal matrix(n);
+  std::vector<double> modulus(n), free(n), stiffness(n);
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd w(n);
   const double start = steel.thermal_strain(temperature[0]);
   for (std::size_t i = 0; i < n; ++i) {
     const double e = rings.thickness[i];
     modulus[i] = steel.youngs_modulus(temperature[i]);
     free[i] = steel.thermal_strain(temperature[i]) - start;
-    support[i] = modulus[i] * e / (a * a) * rings.dz[i];
+    const double support = modulus[i] * e / (a * a) * rings.dz[i];
     stiffness[i] = modulus[i] * e * e * e / (12 * (1 - nu * nu));
-    matrix.diagonal[i] = support[i];
-    w[i] = support[i] * a * (hoop[i] / modulus[i] + free[i]);
+    entries.emplace_back(i, i, support);
+    w[i] = support * a * (hoop[i] / modulus[i] + free[i]);
   }
   // Minimizes 1/2 sum D (w'')^2 dz + 1/2 sum E e/a^2 (w - w_m)^2 dz, w'' at inner rings from three values.
-  struct Curvature {
-    double before, here, after;
-  };
-  std::vector<Curvature> curvature(n, {0, 0, 0});
+  std::vector<std::array<double, 3>> curvature(n, {0, 0, 0});
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double below = rings.z[i] - rings.z[i - 1], above = rings.z[i + 1] - rings.z[i],
                  both = below + above;
-    const Curvature c{2 / (below * both), -2 / (below * above), 2 / (above * both)};
-    const double s = stiffness[i] * 0.5 * both;
-    curvature[i] = c;
-    matrix.diagonal[i - 1] += s * c.before * c.before, matrix.diagonal[i] += s * c.here * c.here;
-    matrix.diagonal[i + 1] += s * c.after * c.after;
-    matrix.next[i - 1] += s * c.before * c.here, matrix.next[i] += s * c.here * c.after;
-    matrix.second[i - 1] += s * c.before * c.after;
+    curvature[i] = {2 / (below * both), -2 / (below * above), 2 / (above * both)};
+    for (std::size_t p = 0; p < 3; ++p)
+      for (std::size_t q = 0; q < 3; ++q)
+        entries.emplace_back(i + p - 1, i + q - 1,
+                             stiffness[i] * 0.5 * both * curvature[i][p] * curvature[i][q]);
   }
-  matrix.solve(w);
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  w = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(w).eval();
   WallBending result{std::vector<double>(n), std::vector<double>(n, 0.0)};
   for (std::size_t i = 0; i < n; ++i) {
     result.hoop[i] = modulus[i] * (w[i] / a - free[i]);
     if (i == 0 || i + 1 == n) continue;
-    const Curvature& c = curvature[i];
-    const double bent = c.before * w[i - 1] + c.here * w[i] + c.after * w[i + 1];
+    const auto& [before, here, after] = curvature[i];
+    const double bent = before * w[i - 1] + here * w[i] + after * w[i + 1];
     // With outward curvature (w'' > 0) the outer face is in compression.
     result.axial[i] = -6 * stiffness[i] * bent / (rings.thickness[i] * rings.thickness[i]);
   }

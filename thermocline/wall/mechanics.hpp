@@ -13,7 +13,7 @@ struct InnerPressure {
   std::vector<double> fluid;     ///< p_f = p_ullage + rho_f g depth (5.13); that of the ullage above the bed
   std::vector<double> vertical;  ///< p_v of the buoyant grains (5.14-5.16)
 };
-/// `temperature`: of the fluid per bed cell, if its density depends on it; else empty.
+/// `temperature`: temperature of the fluid in each bed cell; empty if its density does not depend on it.
 InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid& fluid, const Filler& filler,
                              double ullage_gauge, std::span<const double> temperature = {});
 

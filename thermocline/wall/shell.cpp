@@ -169,7 +169,7 @@ void declare(config::Section& section, ShellParameters& p) {
       "plates", p.plates,
       [](config::Section& s, Plate& l) {
         as_length(s.value("height", l.height)).positive().required().doc("height");
-        as_thickness(s.value("thickness", l.thickness)).positive().required().doc("thickness");
+        s.value("thickness", l.thickness).unit("m").plausible(1e-4, 1).positive().required().doc("thickness");
       },
       "from the bottom up; the last one continues to the top");
   section.value("roof-pressure", p.roof_pressure)

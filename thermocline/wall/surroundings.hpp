@@ -73,8 +73,8 @@ class Ullage {
     double roof_surface = 0;                               // [K]
     double wall_coefficient = 0;  // d(from_wall)/d(wall temperature) per area of the wall [W/(m^2 K)]
   };
-  /// Performs a step of dt at given surface temperatures [K] and updates the gas. `roof_conductance`: from
-  /// the roof surface to its first cell [W/K], 0 without an insulated roof.
+  /// Performs a step of dt at given surface temperatures [K] and updates the gas. `roof_conductance`:
+  /// conductance from the roof surface to its first cell [W/K], 0 without an insulated roof.
   Heat step(double dt, double liquid, double wall, double roof_cell, double roof_conductance,
             double air_pressure);
   double gas_temperature() const { return gas_; }

@@ -189,7 +189,7 @@ void declare_period(config::Section& s, WeatherParameters& p) {
   s.value("to", p.to)
       .doc(
           "after this day, MM-DD, the weather repeats from that of 'from'; it may lie in the next year; "
-          "absent: the year (or the file) repeats");
+          "default: the year (or the file) repeats");
   s.check([&] { return wrong_date(p.from); }, "from");
   s.check([&] { return p.to.empty() ? "" : wrong_date(p.to); }, "to");
 }
@@ -235,9 +235,9 @@ void declare_smooth_days(config::Section& s, WeatherParameters& p) {
       .plausible(1e5, 5e7)
       .required()
       .doc("mean daily direct normal irradiation of the 12 months, for example 7.2 kWh/m^2");
-  s.value("form-n", d.n).doc("n of (1 - |2 t/T|^n)^p, one value or 12: 1 a peak, 2 round, large: a box");
-  s.value("form-p", d.p).doc("p of the same expression: small: steep sides, large: a narrow bell");
-  s.value("day-length", d.length).doc("T over the time from sunrise to sunset, one value or 12");
+  s.value("form-n", d.n).doc("n of (1 - |2 t/T|^n)^p, one value or 12: 1 is a peak, 2 is round, 9 is a box");
+  s.value("form-p", d.p).doc("p of the same expression: the sides are steep if it is small");
+  s.value("day-length", d.length).doc("T divided by the time from sunrise to sunset, one value or 12");
   for (const char* name : {"daily-sums", "form-n", "form-p", "day-length"})
     s.check(
         [&d, name] {
@@ -247,7 +247,7 @@ void declare_smooth_days(config::Section& s, WeatherParameters& p) {
         },
         name);
   s.value("air", p.file)
-      .doc("a weather file for air, wind, humidity and pressure; absent: the following keys");
+      .doc("a weather file for air, wind, humidity and pressure; default: the following keys");
   declare_air(s, p.sky);
   declare_period(s, p);
 }

@@ -88,7 +88,7 @@ class Client:
         if (everyone[0::4] != HELLO).any() or (everyone[1::4] != VERSION).any():
             others = sorted(set(everyone[1::4].tolist()) - {VERSION})
             self._end("a process of the job speaks another protocol" +
-                      (f": version {others[0]}, this client version {VERSION}" if others else ""))
+                      (f": version {others[0]}, but this client uses version {VERSION}" if others else ""))
         world.Split(MPI.UNDEFINED, world.rank)
         number = os.environ.get("COUPLET_PART") or world.Get_attr(MPI.APPNUM) or 0
         fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank), f"{os.getpid()}@{socket.gethostname()}"]

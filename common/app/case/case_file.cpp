@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "common/app/case/case_roles.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/fv/expression.hpp"
@@ -53,10 +52,10 @@ void list_expected(const config::Document& document, CaseFile& result) {
       throw Error("{}: '{}': {}.", config::where(document, "participants"), name, problem);
     const auto program = config::text_of(document, "participants." + name + ".program");
     if (!program)
-      result.errors.push_back(
-          fmt::format("{}: the key 'program' is missing: the program that runs this participant, for "
-                      "example solid_solver.",
-                      config::where(document, "participants." + name)));
+      result.errors.push_back(fmt::format(
+          "{}: the key 'program' is missing. It names the program that runs this participant, for "
+          "example solid_solver.",
+          config::where(document, "participants." + name)));
     result.expected.push_back({name, program.value_or("?")});
   }
 }

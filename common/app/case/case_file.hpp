@@ -38,4 +38,47 @@ diagnostics::CaseScene scene_of(const CommandLine& command_line, const CaseFile&
 /// Declares the section that this program reads: its own keys and, for a participant, `program`.
 config::Section::Declare section_of(const Program& program);
 
+/// Case in the format of a checkpoint's `keys.txt`: lines "path = value", and "path: content = digest" for
+/// each file that a value names.
+std::string case_keys(const config::Document& document, const std::filesystem::path& case_folder);
+
+/// Differences between a case and the one that wrote a checkpoint.
+struct KeyChanges {
+  std::vector<std::string> harmless;  ///< location and duration: times, outputs, names
+  std::vector<std::string> physics;   ///< everything else
+};
+KeyChanges changes_between(const std::string& then, const std::string& now);
+
+/// Reports the changes of the case since the checkpoint in this folder. Throws Error if they change the
+/// solution, unless there is `consent` (--restart-with-changes).
+void judge_changes(const std::filesystem::path& checkpoint, const std::string& now, bool consent);
+
+/// Problems of the roles in a coupled case: unknown participants, participants without a role, programs that
+/// cannot play theirs (see roles.hpp). Every program of a job finds the same ones, at its roll call and by
+/// --check. `expected` holds all participants of the case.
+std::vector<std::string> problems_of_roles(const config::Document& document,
+                                           const std::vector<Expected>& expected);
+
+/// Compares the wall mass per area that a fluid assumes at an interface with the density times thickness of
+/// the plate behind it. A much larger value indicates a wrong unit, and the coupling would diverge.
+std::vector<std::string> doubts_of_wall_mass(const config::Document& document);
+
+/// Copies height, direction and opening of a fluid's gap to the coupled structure with `contact.gap`, whose
+/// seat it is. The document then behaves as if they were set in `contact`. Returns missing or duplicate
+/// settings.
+std::vector<std::string> share_seats(config::Document& document);
+
+/// Problems that --check finds in the files of a participant without running it: a missing or damaged mesh,
+/// patches that only the mesh or only `boundaries` has, `mesh-parameters` that the .geo does not define, and
+/// other missing files. Names computed in a .geo are not checked.
+std::vector<std::string> problems_of_files(const config::Document& document, const std::string& participant,
+                                           const std::filesystem::path& case_folder);
+
+/// Reason why --restart could not continue from its folder, for --check: no complete set, no file of this
+/// program, wrong digests, or another case. Empty if it could, or without --restart.
+std::string problem_of_restart(const CommandLine& command_line, const CaseFile& file, bool is_coupler);
+
+/// Answers --check, --docs, --schema and --print-config without MPI. Returns the exit code.
+int answer(const CommandLine& command_line, const Program& program);
+
 }  // namespace couplet::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/case/case_roles.hpp"
+#include "common/app/case/case_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -105,7 +105,7 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
   app.add_flag("--explain", flags.explain,
                "print the effects of the scene, their costs and the launch line; runs nothing");
   app.add_flag("--effects", flags.effects, "print the list of all effects as Markdown");
-  app.add_flag("-v,--verbose", flags.verbose, "every rank logs more");
+  app.add_flag("-v,--verbose", flags.verbose, "log more, on every rank");
   app.add_flag("-q,--quiet", flags.quiet, "log warnings and errors only");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/case/questions.hpp"
+#include "common/app/case/case_file.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,6 @@
 #include <optional>
 #include <sstream>
 
-#include "common/app/case/case_file.hpp"
-#include "common/app/case/case_keys.hpp"
 #include "common/app/case/roll_call.hpp"
 #include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"

@@ -23,7 +23,7 @@ struct Attendant {
   bool named = false;         ///< --participant was given
   int application = 0;        ///< index of its part of the mpirun command (MPI_APPNUM)
   int world_rank = 0;
-  std::string process;              ///< "PID@MACHINE"; empty: not told
+  std::string process;              ///< "PID@MACHINE"; empty if unknown
   std::vector<std::string> errors;  ///< in its own part of the configuration
 };
 

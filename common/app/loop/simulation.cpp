@@ -14,11 +14,11 @@ void declare_fields(config::Section& s, io::FieldChoice& f) {
   s.value("every", f.every)
       .range(0, 1000000)
       .doc(
-          "fields in the volume at each n-th output only; surfaces, samples and the interface at each; 0: no fields in the "
+          "fields in the volume at each n-th output only; surfaces, samples and the interface at each; 0 means no fields in the "
           "volume");
   s.value("compression", f.compression)
       .range(0, 9)
-      .doc("level of compression (deflate) of fields in the volume: 0 none, 1 quick, 9 small");
+      .doc("compression (deflate) of fields in the volume, from 0 (none) and 1 (fast) to 9 (small)");
   s.optional_section<io::FieldChoice::Box>(
       "box", f.box,
       [](config::Section& b, io::FieldChoice::Box& box) {
@@ -34,7 +34,7 @@ void declare_fields(config::Section& s, io::FieldChoice& f) {
             },
             "to");
       },
-      "volume fields only of cells that start in this box; absent: all cells");
+      "volume fields only of cells that start in this box; default: all cells");
 }
 
 void declare_files(config::Section& section, SimulationParameters& p) {
@@ -56,7 +56,7 @@ void declare_files(config::Section& section, SimulationParameters& p) {
             .unit("s")
             .plausible(1e-12, 1e10)
             .not_negative()
-            .doc("time between field outputs; 0: only start and end");
+            .doc("time between field outputs; 0 for start and end only");
         s.value("steps", p.output_steps)
             .doc("steps.csv: step, iterations, error, energy and wall time of each accepted step");
         declare_fields(s, p.fields);
@@ -69,7 +69,7 @@ void declare_files(config::Section& section, SimulationParameters& p) {
             .unit("s")
             .plausible(1e-12, 1e10)
             .not_negative()
-            .doc("time between checkpoints; 0: only at the end of the run");
+            .doc("time between checkpoints; 0 means only at the end of the run");
         s.value("keep", p.checkpoints_kept).range(1, 1000000).doc("number of latest checkpoints to keep");
       },
       "files for --restart");
@@ -101,6 +101,11 @@ void declare(config::Section& section, SimulationParameters& p) {
           "ids of findings (docs/findings.md) to accept: they are logged, but neither end the run with exit "
           "code 4 nor make it fail with --strict");
   section.check([&]() -> std::string { return diagnostics::unknown_ids(p.accept); }, "accept");
+  section.value("neglected-share", p.neglected_share)
+      .range(0, 1)
+      .doc(
+          "share of the result from which a neglected effect matters: below it the run says 'justified', from it on "
+          "'matters' (docs/findings.md)");
   section.choice("effects", p.choose_effects, {{"as-given", false}, {"auto", true}})
       .doc(
           "auto: dimension, inertia, turbulence model and viscous treatment that the case does not set are "
@@ -116,7 +121,7 @@ void declare(config::Section& section, SimulationParameters& p) {
       .doc(
           "the job ends and names the culprit when one of its processes shows no sign of life for this long "
           "(an iteration of a solver, a phase of a step, or processor time during meshing, factorization "
-          "and file output); 0: never");
+          "and file output); 0 means never");
   declare_files(section, p);
   section.check(
       [&]() -> std::string {

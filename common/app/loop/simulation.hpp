@@ -15,8 +15,9 @@ struct SimulationParameters {
   double end_time = 0, time_step = 0;  // [s]
   int max_step_halvings = 6;           // halvings of a failed step
   std::vector<std::string> accept;     // ids of findings that do not cause exit code 4
+  double neglected_share = 0.05;       // of the result, from which a neglected effect matters
   std::string output_folder = "out";   // relative to the YAML's folder unless absolute
-  double output_interval = 0;          // [s]; 0: only at the start and the end
+  double output_interval = 0;          // [s]; 0 means only at the start and at the end
   bool output_steps = true;            // steps.csv
   io::FieldChoice fields;              // volume fields
   double checkpoint_interval = 0;      // [s]; 0 for only at the end

@@ -94,7 +94,7 @@ int run(int argc, char** argv) {
   CLI::App* of_file = app.add_subcommand("cut", "writes a mesh (.msh, .geo, .inp, ...) as a cut mesh");
   of_file->add_option("file", words.file)->required();
   of_file->add_option("--parameter", assignments, "NAME=VALUE of the .geo; repeatable");
-  CLI::App* of_box = app.add_subcommand("box", "writes a box, each rank its block");
+  CLI::App* of_box = app.add_subcommand("box", "writes a box, of which each rank makes its block");
   of_box->add_option("--cells", words.cells, "hexahedra along x, y, z")->required();
   of_box->add_option("--length", words.length, "[m]");
   of_box->add_flag("--tetrahedra", words.tetrahedra, "cuts each hexahedron into six");
@@ -102,16 +102,16 @@ int run(int argc, char** argv) {
     writer->add_option("-o,--output", words.output, "the cut mesh, .h5")->required();
   CLI::App* opening = app.add_subcommand("open", "opens a mesh as the programs do; prints time and memory");
   opening->add_option("file", words.file)->required();
-  opening->add_flag("--solid", words.solid, "as solid_solver does, which extrapolates to the surface");
+  opening->add_flag("--solid", words.solid, "as solid_solver opens it, for stresses at the surface");
   for (CLI::App* reader : {of_file, opening})
-    reader->add_option("--dimension", words.dimension, "of the mesh (3)")->check(CLI::Range(2, 3));
+    reader->add_option("--dimension", words.dimension, "dimension of the mesh")->check(CLI::Range(2, 3));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   if (!*opening && words.output.extension() != ".h5")
-    throw Error("The cut mesh '{}' must be named .h5, by which programs know it.", words.output.string());
+    throw Error("The name of a cut mesh must end in .h5; found '{}'.", words.output.string());
   words.parameters = parameters_of(assignments);
   (*of_file ? cut : *of_box ? box : open)(MPI_COMM_WORLD, words);
   return 0;

@@ -161,7 +161,7 @@ void watch_waits() {
 
 namespace {
 
-/// Minimum processor share of a busy process since its last sign.
+/// Smallest share of processor time since its last sign of life for which a process counts as busy.
 constexpr double least_share = 1e-3, least_seconds = 0.02;
 
 bool is_coupler(const Slot& slot) { return std::string_view(slot.participant) == "coupler"; }

@@ -108,7 +108,7 @@ class Listener {
  private:
   /// Processor time of a process during long work, and the time of its last increase.
   struct Work {
-    double seconds = 0, since = 0;  // since 0: no long work
+    double seconds = 0, since = 0;  // since = 0 means no long work
   };
   void hear(int i);
   bool is_asleep(int i) const;
@@ -116,7 +116,7 @@ class Listener {
   void speak(bool any_asleep, bool any_busy) const;
 
   double patience_, period_, last_look_, started_;
-  std::vector<double> asleep_since_;  // 0: awake
+  std::vector<double> asleep_since_;  // 0 means awake
   std::vector<Work> work_;
 };
 

@@ -23,13 +23,13 @@ COUPLET_PROCESSOR_CLONES void deform_pass(finite::Group& group, std::size_t firs
                  : finite::deform_loop<3>(group, first, at, found);
 }
 COUPLET_PROCESSOR_CLONES void stress_pass(finite::Group& group, const finite::Values& at) {
-  if (group.law->has_second_invariant())
+  if (group.law->has_second_invariant)
     group.dim == 2 ? finite::stress_loop<2, true>(group, at) : finite::stress_loop<3, true>(group, at);
   else
     group.dim == 2 ? finite::stress_loop<2, false>(group, at) : finite::stress_loop<3, false>(group, at);
 }
 COUPLET_PROCESSOR_CLONES void tangent_pass(const finite::Group& group, const finite::Values& at) {
-  if (group.law->has_second_invariant())
+  if (group.law->has_second_invariant)
     group.dim == 2 ? finite::tangent_loop<2, true>(group, at) : finite::tangent_loop<3, true>(group, at);
   else
     group.dim == 2 ? finite::tangent_loop<2, false>(group, at) : finite::tangent_loop<3, false>(group, at);
@@ -41,7 +41,7 @@ COUPLET_PROCESSOR_CLONES void volume_pass(const finite::Group& group, const fini
 }  // namespace
 
 FiniteKernel::FiniteKernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                           std::vector<const FiniteLaw*> of_materials, bool plane_stress)
+                           std::vector<FiniteLaw> of_materials, bool plane_stress)
     : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(of_materials)) {
   const SharedFaces shared = shared_faces(mesh, rows);
   if (parallel::any(mesh.comm, shared.n_mine > 0))
@@ -55,7 +55,7 @@ FiniteKernel::FiniteKernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
       static_cast<FaceGroup&>(group) =
           make_group(mesh, rows, shared, i == 0 ? nullptr : &edges_->edges(), takes);
       group.dim = mesh.dim;
-      group.law = laws_[m];
+      group.law = &laws_[m];
       group.states.resize(group.blocks.size());
       if (plane_stress && mesh.dim == 2) group.set_plane_stress();
     }

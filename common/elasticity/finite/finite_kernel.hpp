@@ -21,11 +21,11 @@ namespace couplet::elastic {
 /// Triangles share 0.9 of their energy with their edges (SharedEdges). The rest is as in SymmetricKernel.
 class FiniteKernel {
  public:
-  /// `of_materials` has one law per material or one in total, kept by reference like mesh and rows.
+  /// `of_materials` has one law per material or one in total. Keeps references to mesh and rows.
   /// `plane_stress` selects a sheet in 2-D (finite_places.hpp). It excludes a volume ratio per cell, follower
   /// pressures and set_start(). Collective.
-  FiniteKernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
-               std::vector<const FiniteLaw*> of_materials, bool plane_stress = false);
+  FiniteKernel(const mesh::Mesh& mesh, const ElasticOperator& rows, std::vector<FiniteLaw> of_materials,
+               bool plane_stress = false);
   ~FiniteKernel();
   /// Sets the density of the local cells [kg/m^3]. Without it there is no mass.
   void set_density(std::span<const double> of_cells) { space_.set_density(of_cells); }
@@ -118,13 +118,13 @@ class FiniteKernel {
               std::span<double> result);
   finite::Values values();
   const FiniteLaw& law_of(Index cell) const {
-    return *laws_[laws_.size() == 1 ? 0 : std::size_t(mesh_.material_of(cell))];
+    return laws_[laws_.size() == 1 ? 0 : std::size_t(mesh_.material_of(cell))];
   }
 
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   SymmetricSpace space_;
-  std::vector<const FiniteLaw*> laws_;
+  const std::vector<FiniteLaw> laws_;
   std::vector<finite::Group> groups_;
   finite::Group elsewhere_;  // other ranks' faces at owned cells: only F, for one volume ratio per cell
   std::unique_ptr<FiniteEdges> edges_;  // nullptr without triangular faces in 3-D

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "common/elasticity/elasticity.hpp"
@@ -28,17 +29,13 @@ struct BulkOf {
 
 /// Hyperelastic isotropic law: energy per undeformed volume as a function of the invariants. Stress and
 /// tangent are derived in finite_strain.hpp, so a law consists only of its derivatives.
-class FiniteLaw {
- public:
-  virtual ~FiniteLaw() = default;
+struct FiniteLaw {
   /// Evaluates W for many states at once, with or without its bulk part U(J).
-  virtual void evaluate(std::span<const Invariants> at, bool with_bulk, std::span<Energy> energy) const = 0;
+  std::function<void(std::span<const Invariants> at, bool with_bulk, std::span<Energy> energy)> evaluate;
   /// Part that depends only on J and becomes infinite as nu approaches 1/2.
-  virtual BulkOf<double> bulk(double j) const = 0;
-  /// Returns false for laws such as Saint Venant-Kirchhoff, whose pressure is not a function of J.
-  virtual bool has_bulk() const = 0;
-  /// Returns true if W depends on I2.
-  virtual bool has_second_invariant() const = 0;
+  std::function<BulkOf<double>(double j)> bulk;
+  bool has_bulk;              ///< false for Saint Venant-Kirchhoff, whose pressure is not a function of J
+  bool has_second_invariant;  ///< true if W depends on I2
 };
 
 }  // namespace couplet::elastic

@@ -3,9 +3,8 @@
 
 #include <span>
 
-#include "common/elasticity/finite/finite_edges.hpp"
 #include "common/elasticity/finite/finite_places.hpp"
-#include "common/elasticity/symmetric/symmetric_blocks.hpp"
+#include "common/elasticity/symmetric/shared_edges.hpp"
 
 /// Loops of FiniteKernel over faces of one material, four at a time.
 namespace couplet::elastic::finite {

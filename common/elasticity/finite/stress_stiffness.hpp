@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "common/elasticity/symmetric/shared_edges.hpp"
 #include "common/elasticity/symmetric/surface_pressure.hpp"
-#include "common/elasticity/symmetric/symmetric_blocks.hpp"
 
 namespace couplet::elastic {
 

@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/solve/rigid_coarse_space.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/parallel/collective.hpp"
@@ -16,6 +16,9 @@ namespace {
 
 using Block = Eigen::Matrix<double, 6, 6>;
 
+// Fraction of the largest diagonal entry for modes that move no cell (the spin of a single row of cells),
+// whose row would be empty.
+constexpr double floor_of_diagonal = 1e-10;
 // Limits lambda, because nearly incompressible strains between aggregates would lock the coarse space.
 constexpr double most_lambda_over_mu = 3;
 
@@ -26,6 +29,40 @@ Vec3 mode(int m, int dim, const Vec3& arm) {
   return Vec3::Unit(m - dim).cross(arm);
 }
 
+/// Partitions positions into nearly equal parts 0 .. n - 1 by repeated bisection along the longest side.
+std::vector<Index> bisect(std::span<const Vec3> places, int n_parts) {
+  std::vector<Index> order(places.size()), part(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  struct Piece {
+    std::size_t first, last;
+    int part, n;
+  };
+  std::vector<Piece> open{{0, places.size(), 0, n_parts}};
+  while (!open.empty()) {
+    const Piece piece = open.back();
+    open.pop_back();
+    if (piece.n <= 1) {
+      for (std::size_t i = piece.first; i < piece.last; ++i) part[order[i]] = piece.part;
+      continue;
+    }
+    Vec3 lower = Vec3::Constant(std::numeric_limits<double>::max()), upper = -lower;
+    for (std::size_t i = piece.first; i < piece.last; ++i) {
+      lower = lower.cwiseMin(places[order[i]]);
+      upper = upper.cwiseMax(places[order[i]]);
+    }
+    int axis = 0;
+    (upper - lower).maxCoeff(&axis);
+    const int half = piece.n / 2;
+    const std::size_t middle = piece.first + (piece.last - piece.first) * half / piece.n;
+    std::nth_element(
+        order.begin() + piece.first, order.begin() + middle, order.begin() + piece.last,
+        [&](Index a, Index b) { return std::pair(places[a][axis], a) < std::pair(places[b][axis], b); });
+    open.push_back({piece.first, middle, piece.part, half});
+    open.push_back({middle, piece.last, piece.part + half, piece.n - half});
+  }
+  return part;
+}
+
 void sum_over_ranks(MPI_Comm comm, std::span<double> values) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
 }
@@ -33,11 +70,12 @@ void sum_over_ranks(MPI_Comm comm, std::span<double> values) {
 }  // namespace
 
 CurrentRigidModes::CurrentRigidModes(const mesh::Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
-                                     std::vector<double> node_inertia)
+                                     std::vector<double> node_inertia, bool symmetric)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
       modes_(mesh.dim == 2 ? 3 : 6),
+      symmetric_(symmetric),
       inertia_(std::move(node_inertia)),
       number_{fv::number_nodes(mesh, rows.unknown_faces()), {}} {
   for (Index i = 0; i < n_node_places(mesh); ++i)
@@ -214,7 +252,8 @@ void CurrentRigidModes::add_correction(std::span<const double> r, std::span<doub
   if (!factors_ || factors_->info() != Eigen::Success) return;
   const int dim = mesh_.dim;
   Eigen::VectorXd coarse = Eigen::VectorXd::Zero(Index(centre_.size()) * modes_);
-  for (std::size_t i = 0; i < arm_.size(); ++i) {
+  const std::size_t n_rows = symmetric_ ? arm_.size() : std::size_t(mesh_.cells.n_owned());
+  for (std::size_t i = 0; i < n_rows; ++i) {
     Vec3 force = Vec3::Zero();
     for (int a = 0; a < dim; ++a) force[a] = r[i * dim + a];
     force = free_part(i, force);

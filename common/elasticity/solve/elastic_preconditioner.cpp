@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/solve/compact_rows.hpp"
-#include "common/elasticity/symmetric/symmetric_diagonal.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
 
 namespace couplet::elastic {
 namespace {
@@ -38,6 +37,117 @@ double stiffness_across(const LameConstants& lame, const fv::FaceLine& line) {
   return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
 
+/// Two-point rows of the owned cells. Boundary faces and bonds to other ranks are only on the diagonal.
+class CompactRows {
+ public:
+  using Lanes = linalg::ComponentMultigrid::Lanes;
+
+  CompactRows(const mesh::Mesh& mesh, const ElasticOperator& rows, double boundary_factor,
+              VolumeStrain left_out)
+      : mesh_(mesh),
+        geometry_(rows.geometry()),
+        rows_(rows),
+        boundary_factor_(boundary_factor),
+        left_out_(left_out) {}
+
+  linalg::ComponentMultigrid::Rows make(std::span<const double> inertia);
+
+ private:
+  bool owned(Index c) const { return c < mesh_.cells.n_owned(); }
+  /// |S| / (d . n) [mu + (mu + lambda) n_c^2] per component.
+  Lanes coefficient(Index f) const;
+  /// Contribution of a boundary face to the diagonal of its cell.
+  Lanes boundary_diagonal(Index f) const;
+  /// Both sides of a bonded face in series.
+  Lanes bond(Index f) const;
+  template <class Take>
+  void visit_couplings(const Take& take) const;
+
+  const mesh::Mesh& mesh_;
+  const mesh::Geometry& geometry_;
+  const ElasticOperator& rows_;
+  double boundary_factor_;
+  VolumeStrain left_out_;
+};
+
+CompactRows::Lanes CompactRows::coefficient(Index f) const {
+  const LameConstants lame = part_of_faces(face_lame(mesh_, rows_, f), left_out_);
+  const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
+  const double scale = line.area * line.inverse_dn;
+  Lanes k{};
+  for (int c = 0; c < mesh_.dim; ++c) {
+    const double nc = line.normal[c];
+    k[c] = static_cast<float>(scale * (lame.mu + (lame.mu + lame.lambda) * nc * nc));
+  }
+  return k;
+}
+
+CompactRows::Lanes CompactRows::bond(Index f) const {
+  const Lanes here = coefficient(f), there = coefficient(mesh_.n_interior + mesh_.twin[f - mesh_.n_interior]);
+  Lanes k{};
+  for (int c = 0; c < mesh_.dim; ++c)
+    k[c] = static_cast<float>(boundary_factor_) * here[c] * there[c] / (here[c] + there[c]);
+  return k;
+}
+
+CompactRows::Lanes CompactRows::boundary_diagonal(Index f) const {
+  Lanes k = coefficient(f);
+  const fv::FaceLine line = fv::face_line(mesh_, geometry_, f);
+  const BoundaryRow& row = rows_.at(f);
+  if (row.shared) return bond(f);
+  for (int c = 0; c < mesh_.dim; ++c) {
+    const double known = row.known(c, c), spring = line.area * row.spring(c, c);
+    const double whole = (row.mirrored ? 1 : boundary_factor_) * k[c];
+    // Spring and half cell in series.
+    k[c] = static_cast<float>(whole * (known + (1 - known) * spring / (whole + spring)));
+  }
+  return k;
+}
+
+template <class Take>
+void CompactRows::visit_couplings(const Take& take) const {
+  for (Index f = 0; f < mesh_.n_interior; ++f) take(mesh_.owner[f], mesh_.neighbour[f], f);
+  if (mesh_.twin.empty()) return;
+  for (const Index f : rows_.unknown_faces()) {
+    if (!rows_.at(f).shared) continue;
+    const Index other = mesh_.owner[mesh_.n_interior + mesh_.twin[f - mesh_.n_interior]];
+    if (owned(other)) take(mesh_.owner[f], other, f);
+  }
+}
+
+linalg::ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
+  const Index n = mesh_.cells.n_owned();
+  linalg::ComponentMultigrid::Rows result;
+  result.offset.assign(n + 1, 0);
+  visit_couplings([&](Index a, Index b, Index) {
+    if (owned(a)) ++result.offset[a + 1];
+    if (owned(b)) ++result.offset[b + 1];
+  });
+  for (Index c = 0; c < n; ++c) result.offset[c + 1] += result.offset[c];
+  result.index.resize(result.offset.back());
+  result.value.resize(result.offset.back());
+  std::vector<Index> next(result.offset.begin(), result.offset.end() - 1);
+  visit_couplings([&](Index a, Index b, Index f) {
+    const Lanes k = f < mesh_.n_interior ? coefficient(f) : bond(f);
+    for (const auto& [row, column] : {std::pair{a, b}, {b, a}}) {
+      if (!owned(row)) continue;
+      result.index[next[row]] = column;
+      result.value[next[row]++] = -k;
+    }
+  });
+  Lanes unused{};
+  for (int c = mesh_.dim; c < linalg::ComponentMultigrid::lanes; ++c) unused[c] = 1;
+  result.diagonal.assign(n, unused);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Lanes k = f < mesh_.n_interior ? coefficient(f) : boundary_diagonal(f);
+    if (owned(mesh_.owner[f])) result.diagonal[mesh_.owner[f]] += k;
+    if (f < mesh_.n_interior && owned(mesh_.neighbour[f])) result.diagonal[mesh_.neighbour[f]] += k;
+  }
+  for (std::size_t c = 0; c < inertia.size(); ++c)
+    for (int a = 0; a < mesh_.dim; ++a) result.diagonal[c][a] += static_cast<float>(inertia[c]);
+  return result;
+}
+
 }  // namespace
 
 ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows,
@@ -45,8 +155,6 @@ ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const Elast
     : mesh_(&mesh),
       geometry_(&rows.geometry()),
       rows_(&rows),
-      inertia_(inertia.begin(), inertia.end()),
-      between_(options.between),
       is_symmetric_(options.scheme == FaceGradientScheme::symmetric),
       left_out_(options.without_cells_bulk ? rows.volume_strain() : VolumeStrain::faces) {
   // On the boundary the corrected gradient contains 2 (u_B - u_P).
@@ -60,10 +168,6 @@ ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const Elast
                          : multigrid_cycle(std::move(compact), of_cycle);
   find_face_rows(boundary_factor, options.node_inertia);
   if (is_symmetric_) add_true_diagonal(options.node_inertia);
-  if (options.n_aggregates > 0 && !is_symmetric_)
-    coarse_ = std::make_unique<RigidCoarseSpace>(mesh, rows, inertia, options.n_aggregates);
-  if (!coarse_) between_ = nullptr;
-  if (between_) left_.resize(rows.n_unknowns()), smooth_.resize(rows.n_unknowns());
 }
 
 void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<const double> node_inertia) {
@@ -153,12 +257,6 @@ void ElasticPreconditioner::solve_faces(std::span<const double> r, std::span<dou
   }
 }
 
-void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> z) {
-  const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * mesh_->dim;
-  cycle_(r.first(n_cells), z.first(n_cells), mesh_->dim);
-  solve_faces(r, z);
-}
-
 /// Applies [1, C^T] before the cycle and [1; C] after it, and adds the diagonal of K.
 void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::span<double> z) {
   const int dim = mesh_->dim;
@@ -180,19 +278,9 @@ void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::spa
 
 void ElasticPreconditioner::apply(std::span<const double> r, std::span<double> z) {
   if (is_symmetric_) return smooth_symmetric(r, z);
-  if (!between_) {
-    smooth(r, z);
-    if (coarse_) coarse_->add_correction(r, z);
-    return;
-  }
-  std::fill(z.begin(), z.end(), 0.0);
-  coarse_->add_correction(r, z);
-  between_->apply(z, {}, left_);
-  for (std::size_t i = 0; i < left_.size(); ++i) left_[i] = r[i] - left_[i];
-  const std::size_t dim = mesh_->dim;
-  for (std::size_t i = 0; i < inertia_.size() * dim; ++i) left_[i] -= inertia_[i / dim] * z[i];
-  smooth(left_, smooth_);
-  for (std::size_t i = 0; i < smooth_.size(); ++i) z[i] += smooth_[i];
+  const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * mesh_->dim;
+  cycle_(r.first(n_cells), z.first(n_cells), mesh_->dim);
+  solve_faces(r, z);
 }
 
 }  // namespace couplet::elastic

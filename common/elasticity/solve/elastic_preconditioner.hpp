@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/elasticity/elastic_kernel.hpp"
-#include "common/elasticity/solve/rigid_coarse_space.hpp"
 #include "common/linalg/component_multigrid.hpp"
 
 namespace couplet::elastic {
@@ -17,16 +16,11 @@ using ComponentCycle = std::function<void(std::span<const double> b, std::span<d
 
 /// Matrix-free preconditioner of diag(inertia) + A. It applies a multigrid cycle to the two-point flux of
 /// each component with coefficient |S| / (d . n) [mu + (mu + lambda) n_c^2] (diagonal of the compact block
-/// operator). Unknowns of faces follow from u_B = K_B^-1 (r_B + C u_P). Rigid motions of aggregates are
-/// optionally added or applied first.
+/// operator). Unknowns of faces follow from u_B = K_B^-1 (r_B + C u_P).
 class ElasticPreconditioner {
  public:
   struct Options {
     FaceGradientScheme scheme = FaceGradientScheme::thesis;
-    int n_aggregates = 0;  ///< of the rigid coarse space, or 0
-    /// Operator of the thesis, kept by reference, to apply the coarse space before the cycle. One more
-    /// application saves a third of the iterations. With nullptr both corrections are added.
-    const ElasticKernel* between = nullptr;
     /// Inertia of the unknown nodes (owned cells, then faces) for the symmetric operator [N/m], or empty.
     std::span<const double> node_inertia = {};
     /// Preconditions the symmetric operator without the bulk modulus of cells, for the mixed form.
@@ -41,7 +35,6 @@ class ElasticPreconditioner {
 
   /// Computes z = M^-1 r. Collective.
   void apply(std::span<const double> r, std::span<double> z);
-  const RigidCoarseSpace* coarse_space() const { return coarse_.get(); }
 
  private:
   /// Face unknown u_B = inverse r_B + cell u_P (+ other u_P' across a bonded face).
@@ -52,22 +45,17 @@ class ElasticPreconditioner {
   void find_face_rows(double boundary_factor, std::span<const double> node_inertia);
   void add_true_diagonal(std::span<const double> node_inertia);
   void solve_faces(std::span<const double> r, std::span<double> z) const;
-  void smooth(std::span<const double> r, std::span<double> z);
   void smooth_symmetric(std::span<const double> r, std::span<double> z);
 
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   const ElasticOperator* rows_;
-  std::vector<double> inertia_;
-  const ElasticKernel* between_;
   bool is_symmetric_;
   VolumeStrain left_out_;         // faces: the preconditioner is that of the whole operator
   std::vector<double> gathered_;  // for the symmetric form, like the next
   std::vector<float> inverse_diagonal_;
   ComponentCycle cycle_;
   std::vector<FaceRow> face_rows_;
-  std::unique_ptr<RigidCoarseSpace> coarse_;
-  std::vector<double> left_, smooth_;  // for the multiplicative form
 };
 
 }  // namespace couplet::elastic

@@ -8,7 +8,6 @@ namespace couplet::elastic {
 namespace {
 
 // Tensor indices of xx, yy, zz, xy, yz, xz, and in 2-D of xx, yy, xy.
-constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
 constexpr int entry[2][6] = {{0, 1, 3, 0, 0, 0}, {0, 1, 2, 3, 4, 5}};
 
 }  // namespace
@@ -95,7 +94,7 @@ inline void SymmetricKernel::stress_of(const Group& group, std::size_t i, const 
   constexpr int n = D == 3 ? 6 : 3;
   Four strain[n], s[n] = {};
   for (int k = 0; k < n; ++k) {
-    const int a = first[entry[D - 2][k]], b = second[entry[D - 2][k]];
+    const int a = first_index[entry[D - 2][k]], b = second_index[entry[D - 2][k]];
     strain[k] = k < D ? g[a][b] : g[a][b] + g[b][a];
   }
   for (int a = 0, at = 0; a < n; ++a)
@@ -105,7 +104,7 @@ inline void SymmetricKernel::stress_of(const Group& group, std::size_t i, const 
       if (b != a) s[b] += c * strain[a];
     }
   for (int k = 0; k < n; ++k) {
-    const int a = first[entry[D - 2][k]], b = second[entry[D - 2][k]];
+    const int a = first_index[entry[D - 2][k]], b = second_index[entry[D - 2][k]];
     stress[a][b] = stress[b][a] = s[k];
   }
 }
@@ -157,8 +156,8 @@ inline void SymmetricKernel::shared_first_loop() {
     const Four scale = blocks::wide(sharing_.volumes[i].whole) * (SharedEdges::share / 6);
     Four strain[6];
     for (int k = 0; k < 6; ++k) {
-      lanes::store<3>(kept_[i].stress[k], sharing_.own * stress[first[k]][second[k]]);
-      strain[k] = scale * (g[first[k]][second[k]] + g[second[k]][first[k]]);
+      lanes::store<3>(kept_[i].stress[k], sharing_.own * stress[first_index[k]][second_index[k]]);
+      strain[k] = scale * (g[first_index[k]][second_index[k]] + g[second_index[k]][first_index[k]]);
     }
     const Four xyz[3] = {strain[0], strain[1], strain[2]}, rest[3] = {strain[3], strain[4], strain[5]};
     Four low[4], high[4];
@@ -184,8 +183,8 @@ inline void SymmetricKernel::shared_second_loop() {
         const auto& edges = sharing_.edges[i][std::size_t(j)];
         of_edges[j] = edges_->at(edges[0])[k] + edges_->at(edges[1])[k] + edges_->at(edges[2])[k];
       }
-      stress[first[k]][second[k]] = blocks::wide(kept_[i].stress[k]) + weight * of_edges;
-      stress[second[k]][first[k]] = stress[first[k]][second[k]];
+      stress[first_index[k]][second_index[k]] = blocks::wide(kept_[i].stress[k]) + weight * of_edges;
+      stress[second_index[k]][first_index[k]] = stress[first_index[k]][second_index[k]];
     }
     add_pressure_of_cells<3>(sharing_, i, stress);
     blocks::push<3>(sharing_.blocks[i], stress, forces);

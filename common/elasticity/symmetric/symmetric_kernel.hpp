@@ -7,7 +7,6 @@
 
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/symmetric/shared_edges.hpp"
-#include "common/elasticity/symmetric/symmetric_blocks.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
 namespace couplet::elastic {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/parallel/collective.hpp"
@@ -292,6 +294,207 @@ linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOpera
   assembly.add_supports();
   if (!inertia.empty()) assembly.add_mass(1, inertia);
   return assembly.matrix(rows.n_unknowns() / std::size_t(mesh.dim));
+}
+
+namespace {
+
+// Block entries are xx, yy, zz, then xy, yz, xz.
+constexpr int block_size = 6, diagonal_size = 3;
+
+class Sum {
+ public:
+  Sum(const mesh::Mesh& mesh, const ElasticOperator& rows, VolumeStrain without)
+      : mesh_(mesh),
+        rows_(rows),
+        without_(without),
+        gradient_(std::size_t(n_node_places(mesh)), Vec3::Zero()),
+        cells_(std::size_t(mesh.cells.n_local()) * diagonal_size, 0),
+        boundary_(std::size_t(mesh.boundary.n_local()) * block_size, 0) {}
+
+  void add_face(Index f);
+  SymmetricDiagonal finish();
+
+ private:
+  void add(Index node, const Vec3& b) {
+    if (gradient_[node].isZero(0)) nodes_.push_back(node);
+    gradient_[node] += b;
+  }
+  void add_vertex(Index v, const Vec3& c) {
+    if (rows_.constraints().is_fixed(v)) return;
+    const auto nodes = rows_.vertices().nodes(v);
+    const auto weights = rows_.vertices().weights(v);
+    for (std::size_t i = 0; i < nodes.size(); ++i) add(nodes[i], weights[i] * c);
+  }
+  void add_squares(double volume, const LameConstants& lame);
+
+  const mesh::Mesh& mesh_;
+  const ElasticOperator& rows_;
+  VolumeStrain without_;
+  std::vector<Vec3> gradient_;  // of each local node: G = sum u b^T on the current face
+  std::vector<Index> nodes_;    // nodes with nonzero gradient_
+  std::vector<double> cells_, boundary_;
+};
+
+void Sum::add_face(Index f) {
+  const FaceRows face = symmetric_rows(mesh_, rows_, f);
+  const Index first_point = n_node_places(mesh_);
+  const bool mirrored = rows_.mirrored(f);
+  for (const FaceRows::Row& row : face.all())
+    if (row.place >= first_point)
+      add_vertex(row.place - first_point, row.b);
+    else if (!mirrored)
+      add(row.place, row.b);
+  if (mirrored) {
+    // The mirror image moves like the cell except across the plane: G = -2 n (n . u) s^T.
+    const LameConstants lame = part_of_faces(rows_.lame(mesh_.owner[f]), without_);
+    const Vec3& s = face.row[1].b;
+    for (int a = 0; a < 3; ++a)
+      cells_[std::size_t(mesh_.owner[f]) * diagonal_size + a] +=
+          4 * face.volume * (lame.lambda + 2 * lame.mu) * s[a] * s[a];
+  }
+  add_squares(face.volume, part_of_faces(face_lame(mesh_, rows_, f), without_));
+}
+
+/// Adds V [(lambda + mu) b b^T + mu b.b I] of each node.
+void Sum::add_squares(double volume, const LameConstants& lame) {
+  const double mu = volume * lame.mu, both = volume * (lame.lambda + lame.mu);
+  for (const Index node : nodes_) {
+    const Vec3 b = gradient_[node];
+    gradient_[node].setZero();
+    const double even = mu * b.squaredNorm();
+    const bool is_cell = node < mesh_.cells.n_local();
+    double* to = is_cell ? cells_.data() + std::size_t(node) * diagonal_size
+                         : boundary_.data() + std::size_t(node - mesh_.cells.n_local()) * block_size;
+    for (int a = 0; a < 3; ++a) to[a] += even + both * b[a] * b[a];
+    if (is_cell) continue;
+    for (int a = 0; a < 3; ++a) to[3 + a] += both * b[a == 1 ? 1 : 0] * b[a == 0 ? 1 : 2];
+  }
+  nodes_.clear();
+}
+
+SymmetricDiagonal Sum::finish() {
+  mesh_.cells.add_to_owners(cells_, diagonal_size);
+  mesh_.boundary.add_to_owners(boundary_, block_size);
+  mesh_.boundary.update_ghosts(boundary_, block_size);  // other sides of bonded faces
+  SymmetricDiagonal result;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    for (int a = 0; a < mesh_.dim; ++a) result.cells.push_back(cells_[std::size_t(c) * diagonal_size + a]);
+  for (const Index f : rows_.unknown_faces()) {
+    const auto block_of = [&](Index b) {
+      const double* v = boundary_.data() + std::size_t(b) * block_size;
+      Tensor3 block;
+      block << v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2];
+      return block;
+    };
+    const Index b = f - mesh_.n_interior;
+    result.faces.push_back(block_of(b));
+    if (rows_.at(f).shared) result.faces.back() += block_of(mesh_.twin[b]);
+  }
+  return result;
+}
+
+}  // namespace
+
+SymmetricDiagonal symmetric_diagonal(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                     VolumeStrain without) {
+  Sum sum(mesh, rows, without);
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+    if (mesh.owner[f] < mesh.cells.n_owned()) sum.add_face(f);  // otherwise another rank adds it
+  return sum.finish();
+}
+
+bool TiedMatrix::suits(const mesh::Mesh& mesh) {
+  return !parallel::any(mesh.comm, !mesh.neighbour_shift.empty());
+}
+
+TiedMatrix::TiedMatrix(const mesh::Mesh& mesh, const ElasticOperator& rows, const EnergyParts& parts)
+    : mesh_(mesh),
+      rows_(rows),
+      n_nodes_(std::size_t(mesh.cells.n_owned()) + rows.unknown_faces().size()),
+      matrix_(assemble(parts)) {
+  const std::size_t n = (n_nodes_ + 2 * points_.size()) * std::size_t(mesh.dim);
+  from_.resize(n);
+  to_.resize(n);
+  n_ties_ = parallel::sum(mesh.comm, GlobalIndex(points_.size()) * mesh.dim);
+}
+
+/// Numbers nodes, points and multipliers. Collective.
+void TiedMatrix::number_all() {
+  for (Index v = 0; v < mesh_.points.n_owned(); ++v)
+    if (!rows_.constraints().is_fixed(v) && !rows_.vertices().nodes(v).empty()) points_.push_back(v);
+  number_ = {fv::number_nodes(mesh_, rows_.unknown_faces()),
+             std::vector<GlobalIndex>(std::size_t(mesh_.points.n_local()), -1)};
+  // Points and multipliers of lower ranks shift the node numbers of each rank.
+  struct Rank {
+    GlobalIndex first_node, shift;
+  };
+  const auto n_points = GlobalIndex(points_.size());
+  const Rank here{parallel::exclusive_scan(mesh_.comm, GlobalIndex(n_nodes_)),
+                  2 * parallel::exclusive_scan(mesh_.comm, n_points)};
+  const std::vector<Rank> ranks = parallel::all_gather(mesh_.comm, std::vector<Rank>{here});
+  for (GlobalIndex& n : number_.node) {
+    if (n < 0) continue;
+    const auto after = std::ranges::upper_bound(ranks, n, {}, &Rank::first_node);
+    n += std::prev(after)->shift;
+  }
+  const GlobalIndex first_point = here.first_node + here.shift + GlobalIndex(n_nodes_);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    number_.point[std::size_t(points_[i])] = first_point + GlobalIndex(i);
+  mesh_.points.update_ghosts(std::span<GlobalIndex>(number_.point));
+  first_multiplier_ = first_point + n_points;
+}
+
+/// Adds the ties u_V = F_V sum_i w_i u_i, times `tie_`.
+void TiedMatrix::add_ties(Assembly& assembly) const {
+  const auto both = [&](GlobalIndex i, GlobalIndex j, const Tensor3& block) {
+    assembly.add(i, j, block);
+    assembly.add(j, i, block.transpose());
+  };
+  const Numbering of_nodes{number_.node, {}};
+  FaceTerms means(mesh_, rows_, of_nodes);
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const GlobalIndex multiplier = first_multiplier_ + GlobalIndex(k);
+    both(multiplier, number_.point[points_[k]], tie_ * Tensor3::Identity());
+    for (const FaceTerm& t : means.of_point(points_[k])) both(multiplier, t.block, -tie_ * t.b[0] * t.turn);
+  }
+}
+
+linalg::SparseMatrix TiedMatrix::assemble(const EnergyParts& parts) {
+  number_all();
+  Assembly assembly(mesh_, rows_, number_);
+  assembly.add_faces(parts, 1 - SharedEdges::share);
+  assembly.add_edges(parts);
+  assembly.add_volumes(parts);
+  if (parts.stiffness != 0) assembly.add_supports();
+  if (parts.stress != 0) assembly.add_places(parts.stress, parts.prestress->loads);
+  if (parts.mass != 0) assembly.add_mass(parts.mass, parts.density);
+  tie_ = assembly.mean_diagonal();
+  add_ties(assembly);
+  return assembly.matrix(n_nodes_ + 2 * points_.size());
+}
+
+/// Multiplies by A. The ties give the vertices, and their transpose returns the forces.
+void TiedMatrix::apply(std::span<const double> x, std::span<double> y) {
+  const std::size_t dim = std::size_t(mesh_.dim), n = n_nodes_ * dim, m = points_.size() * dim;
+  std::ranges::fill(from_, 0);
+  std::ranges::copy(x, from_.begin());
+  matrix_.multiply(from_, to_);
+  for (std::size_t i = 0; i < m; ++i) from_[n + i] = -to_[n + m + i] / tie_;
+  matrix_.multiply(from_, to_);
+  std::ranges::copy(std::span(to_).first(n), y.begin());
+  std::ranges::fill(from_, 0);
+  for (std::size_t i = 0; i < m; ++i) from_[n + m + i] = -to_[n + i] / tie_;
+  matrix_.multiply(from_, to_);
+  for (std::size_t i = 0; i < n; ++i) y[i] += to_[i];
+}
+
+void TiedMatrix::factorise() { factors_ = std::make_unique<linalg::SymmetricFactors>(matrix_); }
+
+void TiedMatrix::solve(std::span<const double> x, std::span<double> y) {
+  std::ranges::fill(from_, 0);
+  std::ranges::copy(x, from_.begin());
+  factors_->solve(from_, to_);
+  std::ranges::copy(std::span(to_).first(y.size()), y.begin());
 }
 
 }  // namespace couplet::elastic

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/elasticity/joined_vertices.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
-#include "common/elasticity/wrench.hpp"
 
 namespace couplet::elastic {
 

@@ -4,30 +4,28 @@
 // from them gradients of boundary nodes; all vertices; and faces with the middles of their edges.
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "common/base/processor_clones.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/elastic_rows.hpp"
-#include "common/elasticity/thesis/elastic_corrected_face.hpp"
 #include "common/elasticity/thesis/elastic_corrections.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::elastic {
 namespace least_squares {
 
-template <int D, bool Corrected>
-class LeastSquaresKernel final : public ElasticKernel::LeastSquares {
+template <int D>
+class LeastSquaresKernel {
  public:
-  LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows);
+  LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows, bool is_corrected);
 
-  void apply(std::span<const double> unknowns, std::span<const double> known,
-             std::span<double> result) override;
+  void apply(std::span<const double> unknowns, std::span<const double> known, std::span<double> result);
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      const ElasticKernel::TakeGradient& take, Index first, Index end) override;
+                      const ElasticKernel::TakeGradient& take, Index first, Index end);
   void point_values(std::span<const double> unknowns, std::span<const double> known,
-                    std::span<double> points) override;
+                    std::span<double> points);
 
   [[gnu::always_inline]] inline void find_cell_gradients();
   [[gnu::always_inline]] inline void find_boundary_gradients();
@@ -48,6 +46,7 @@ class LeastSquaresKernel final : public ElasticKernel::LeastSquares {
   template <class Take>
   [[gnu::always_inline]] inline void set_record(Index node, const Vec3& place, const Take& row);
 
+  const bool is_corrected_;
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
@@ -66,22 +65,24 @@ class LeastSquaresKernel final : public ElasticKernel::LeastSquares {
   std::vector<double> records_, points_;
 };
 
-template <int D, bool Corrected>
-LeastSquaresKernel<D, Corrected>::LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh),
+template <int D>
+LeastSquaresKernel<D>::LeastSquaresKernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                          bool is_corrected)
+    : is_corrected_(is_corrected),
+      mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
       nodes_(mesh, rows),
       boundary_(mesh, rows),
       vertices_(mesh, rows),
-      plain_points_(Corrected ? plain_points(mesh, rows, vertices_.free) : vertices_.free),
+      plain_points_(is_corrected ? plain_points(mesh, rows, vertices_.free) : vertices_.free),
       lame_(mesh, rows),
       records_(record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
       points_(record_space<D>(mesh.points.n_local()), 0.0) {
   const mesh::Geometry& geometry = rows.geometry();
   faces_.reserve(n_faces_with_force(mesh));
   for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, geometry, f));
-  if (!Corrected) return;
+  if (!is_corrected) return;
   gradients_.emplace(mesh, rows);
   mirrors_ = mirror_vertices(mesh, rows, vertices_.free);
   if constexpr (D == 3) {
@@ -104,17 +105,12 @@ LeastSquaresKernel<D, Corrected>::LeastSquaresKernel(const mesh::Mesh& mesh, con
   }
 }
 
-template <int D>
-using Corrected = LeastSquaresKernel<D, true>;
-template <int D>
-using Published = LeastSquaresKernel<D, false>;
-
 // Loops over cells and vertices for values and gradients.
 
 /// Sets the gradient rows and q of a node at `place`.
-template <int D, bool Corrected>
+template <int D>
 template <class Take>
-inline void LeastSquaresKernel<D, Corrected>::set_record(Index node, const Vec3& place, const Take& row) {
+inline void LeastSquaresKernel<D>::set_record(Index node, const Vec3& place, const Take& row) {
   Lane<D> q = load<D>(nodes_[node]);
   Rows<D> gradient;
   for (int i = 0; i < D; ++i) {
@@ -124,8 +120,8 @@ inline void LeastSquaresKernel<D, Corrected>::set_record(Index node, const Vec3&
   store_record<D>(cell(node), q, gradient);
 }
 
-template <int D, bool Corrected>
-inline void LeastSquaresKernel<D, Corrected>::find_cell_gradients() {
+template <int D>
+inline void LeastSquaresKernel<D>::find_cell_gradients() {
   const Index* offset = gradients_->offset.data();
   const Index* node = gradients_->node.data();
   const float* weight = gradients_->weight.data();
@@ -169,8 +165,8 @@ inline void LeastSquaresKernel<D, Corrected>::find_cell_gradients() {
   }
 }
 
-template <int D, bool Corrected>
-inline void LeastSquaresKernel<D, Corrected>::find_vertices(std::span<const Index> points) {
+template <int D>
+inline void LeastSquaresKernel<D>::find_vertices(std::span<const Index> points) {
   for (const Index v : points) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
@@ -189,8 +185,8 @@ inline void LeastSquaresKernel<D, Corrected>::find_vertices(std::span<const Inde
 }
 
 // Interpolates u = sum w u_i, exact for linear fields.
-template <int D, bool Corrected>
-inline void LeastSquaresKernel<D, Corrected>::find_plain_vertices() {
+template <int D>
+inline void LeastSquaresKernel<D>::find_plain_vertices() {
   for (const Index v : plain_points_) {
     const auto index = rows_.vertices().nodes(v);
     const auto weight = rows_.vertices().weights(v);
@@ -201,8 +197,8 @@ inline void LeastSquaresKernel<D, Corrected>::find_plain_vertices() {
 }
 
 // Averages the gradient and its mirror image on a symmetry plane: G - NG - GN + 2 NGN with N = n n^T.
-template <int D, bool Corrected>
-void LeastSquaresKernel<D, Corrected>::mirror_vertex_gradients() {
+template <int D>
+void LeastSquaresKernel<D>::mirror_vertex_gradients() {
   for (const MirrorVertex& mirror : mirrors_) {
     double* here = vertex(mirror.point);
     for (const Vec3& normal : mirror.normals) {
@@ -219,14 +215,10 @@ void LeastSquaresKernel<D, Corrected>::mirror_vertex_gradients() {
 }
 
 // The middle value is L^2/8 u'' below the trapezoidal one, the mean L^2/12 u''.
-template <int D, bool Corrected>
-inline Surface<D> LeastSquaresKernel<D, Corrected>::around(Index f) {
+template <int D>
+inline Surface<D> LeastSquaresKernel<D>::around(Index f) {
   const CorrectedFace& face = faces_[f];
   const auto corners = mesh_.face_points[f];
-  if constexpr (D == 3 && !Corrected)
-    return plain_surface(
-        face, corners,
-        geometry_.points.data(), [&](Index v) __attribute__((always_inline)) { return load<3>(vertex(v)); });
   const auto value = [&](int e, const Lane<D>& edge) __attribute__((always_inline)) {
     const double* first = vertex(corners[e]);
     if constexpr (D == 2) {
@@ -235,6 +227,7 @@ inline Surface<D> LeastSquaresKernel<D, Corrected>::around(Index f) {
       constexpr double below[]{0, 1.0 / 8, 1.0 / 12};
       const double* second = vertex(corners[e + 1 < std::ssize(corners) ? e + 1 : 0]);
       Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
+      if (face.edges == 0) return here;
       const Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
       for (int a = 0; a < D; ++a) here -= part[a] * (row_of<D>(second, a) - row_of<D>(first, a));
       return here;
@@ -243,13 +236,13 @@ inline Surface<D> LeastSquaresKernel<D, Corrected>::around(Index f) {
   return surface<D>(face, corners, geometry_.points.data(), value);
 }
 
-template <int D, bool Corrected>
-inline Lane<D> LeastSquaresKernel<D, Corrected>::inner(Index f, const Rows<D>& grad) {
+template <int D>
+inline Lane<D> LeastSquaresKernel<D>::inner(Index f, const Rows<D>& grad) {
   const CorrectedFace& face = faces_[f];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const Vec3 &from = geometry_.cell_centre[p], to = geometry_.cell_centre[n] + mesh_.shift(f);
   Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
-  if (Corrected && face.curved != 0) {
+  if (is_corrected_ && face.curved != 0) {
     const double *here = cell(p), *there = cell(n);
     const Vec3& centre = geometry_.face_centre[f];
     for (int i = 0; i < D; ++i)
@@ -259,25 +252,25 @@ inline Lane<D> LeastSquaresKernel<D, Corrected>::inner(Index f, const Rows<D>& g
 }
 
 // d . grad u = 2 (u_B - u_P) - d . G_P on the boundary; without corrections u_B - u_P.
-template <int D, bool Corrected>
-inline Lane<D> LeastSquaresKernel<D, Corrected>::outer(Index f, const Rows<D>& grad) {
+template <int D>
+inline Lane<D> LeastSquaresKernel<D>::outer(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
   const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
-  if (!Corrected) return normal_derivative<D>(faces_[f], d, across, grad);
+  if (!is_corrected_) return normal_derivative<D>(faces_[f], d, across, grad);
   return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
 }
 
 // The mirrored difference is already central.
-template <int D, bool Corrected>
-inline Lane<D> LeastSquaresKernel<D, Corrected>::at_symmetry(Index f, const Rows<D>& grad) {
+template <int D>
+inline Lane<D> LeastSquaresKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = geometry_.face_centre[f] - geometry_.cell_centre[p];
   return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
 }
 
-template <int D, bool Corrected>
-inline void LeastSquaresKernel<D, Corrected>::find_boundary_gradients() {
+template <int D>
+inline void LeastSquaresKernel<D>::find_boundary_gradients() {
   for (const Index f : open_faces_) {
     if (f >= mesh_.n_flux_faces()) break;
     const CorrectedFace& face = faces_[f];
@@ -299,9 +292,8 @@ inline void LeastSquaresKernel<D, Corrected>::find_boundary_gradients() {
   }
 }
 
-template <int D, bool Corrected>
-inline void LeastSquaresKernel<D, Corrected>::collect_forces(std::span<const double> known,
-                                                             std::span<double> result) {
+template <int D>
+inline void LeastSquaresKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
   nodes_.clear_forces();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Surface<D> here = around(f);
@@ -328,49 +320,46 @@ namespace {
 // them.
 using Fields = std::span<const double>;
 
-COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<3>& kernel) { kernel.find_cell_gradients(); }
-COUPLET_PROCESSOR_CLONES void cells_pass(Corrected<2>& kernel) { kernel.find_cell_gradients(); }
-COUPLET_PROCESSOR_CLONES void boundary_pass(Corrected<3>& kernel) { kernel.find_boundary_gradients(); }
-COUPLET_PROCESSOR_CLONES void boundary_pass(Corrected<2>& kernel) { kernel.find_boundary_gradients(); }
-COUPLET_PROCESSOR_CLONES void vertices_pass(Corrected<3>& kernel, std::span<const Index> points) {
+COUPLET_PROCESSOR_CLONES void cells_pass(LeastSquaresKernel<3>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void cells_pass(LeastSquaresKernel<2>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void boundary_pass(LeastSquaresKernel<3>& kernel) {
+  kernel.find_boundary_gradients();
+}
+COUPLET_PROCESSOR_CLONES void boundary_pass(LeastSquaresKernel<2>& kernel) {
+  kernel.find_boundary_gradients();
+}
+COUPLET_PROCESSOR_CLONES void vertices_pass(LeastSquaresKernel<3>& kernel, std::span<const Index> points) {
   kernel.find_vertices(points);
 }
-COUPLET_PROCESSOR_CLONES void vertices_pass(Corrected<2>& kernel, std::span<const Index> points) {
+COUPLET_PROCESSOR_CLONES void vertices_pass(LeastSquaresKernel<2>& kernel, std::span<const Index> points) {
   kernel.find_vertices(points);
 }
-COUPLET_PROCESSOR_CLONES void plain_pass(Corrected<3>& kernel) { kernel.find_plain_vertices(); }
-COUPLET_PROCESSOR_CLONES void plain_pass(Corrected<2>& kernel) { kernel.find_plain_vertices(); }
-COUPLET_PROCESSOR_CLONES void plain_pass(Published<3>& kernel) { kernel.find_plain_vertices(); }
-COUPLET_PROCESSOR_CLONES void plain_pass(Published<2>& kernel) { kernel.find_plain_vertices(); }
-COUPLET_PROCESSOR_CLONES void faces_pass(Corrected<3>& kernel, Fields known, std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void plain_pass(LeastSquaresKernel<3>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void plain_pass(LeastSquaresKernel<2>& kernel) { kernel.find_plain_vertices(); }
+COUPLET_PROCESSOR_CLONES void faces_pass(LeastSquaresKernel<3>& kernel, Fields known,
+                                         std::span<double> result) {
   kernel.collect_forces(known, result);
 }
-COUPLET_PROCESSOR_CLONES void faces_pass(Corrected<2>& kernel, Fields known, std::span<double> result) {
-  kernel.collect_forces(known, result);
-}
-COUPLET_PROCESSOR_CLONES void faces_pass(Published<3>& kernel, Fields known, std::span<double> result) {
-  kernel.collect_forces(known, result);
-}
-COUPLET_PROCESSOR_CLONES void faces_pass(Published<2>& kernel, Fields known, std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void faces_pass(LeastSquaresKernel<2>& kernel, Fields known,
+                                         std::span<double> result) {
   kernel.collect_forces(known, result);
 }
 
 }  // namespace
 
 /// Computes node records and vertices before the loop over faces.
-template <int D, bool Corrected>
-void LeastSquaresKernel<D, Corrected>::prepare(std::span<const double> unknowns,
-                                               std::span<const double> known) {
+template <int D>
+void LeastSquaresKernel<D>::prepare(std::span<const double> unknowns, std::span<const double> known) {
   nodes_.fill<D>(unknowns, known);
-  if constexpr (Corrected) find_gradients(known);
+  if (is_corrected_) find_gradients(known);
   plain_pass(*this);
   vertices_.constrain<D>(points_, record<D>, known);
   mirror_vertex_gradients();
 }
 
 /// Computes gradients of cells and boundary nodes, and the vertices that use them.
-template <int D, bool Corrected>
-void LeastSquaresKernel<D, Corrected>::find_gradients(std::span<const double> known) {
+template <int D>
+void LeastSquaresKernel<D>::find_gradients(std::span<const double> known) {
   cells_pass(*this);
   const std::span<double> all(records_);
   const std::size_t n_cells = mesh_.cells.n_local();
@@ -390,18 +379,16 @@ void LeastSquaresKernel<D, Corrected>::find_gradients(std::span<const double> kn
   vertices_pass(*this, vertices_.free);
 }
 
-template <int D, bool Corrected>
-void LeastSquaresKernel<D, Corrected>::apply(std::span<const double> unknowns, std::span<const double> known,
-                                             std::span<double> result) {
+template <int D>
+void LeastSquaresKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
+                                  std::span<double> result) {
   prepare(unknowns, known);
   faces_pass(*this, known, result);
 }
 
-template <int D, bool Corrected>
-void LeastSquaresKernel<D, Corrected>::face_gradients(std::span<const double> unknowns,
-                                                      std::span<const double> known,
-                                                      const ElasticKernel::TakeGradient& take, Index first,
-                                                      Index end) {
+template <int D>
+void LeastSquaresKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                                           const ElasticKernel::TakeGradient& take, Index first, Index end) {
   prepare(unknowns, known);
   for (Index f = first; f < end; ++f) {
     const Surface<D> here = around(f);
@@ -421,23 +408,33 @@ void LeastSquaresKernel<D, Corrected>::face_gradients(std::span<const double> un
   }
 }
 
-template <int D, bool Corrected>
-void LeastSquaresKernel<D, Corrected>::point_values(std::span<const double> unknowns,
-                                                    std::span<const double> known, std::span<double> points) {
+template <int D>
+void LeastSquaresKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
+                                         std::span<double> points) {
   prepare(unknowns, known);
   vertices_.visit([&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); });
 }
 
+namespace {
+
+template <int D>
+ElasticKernel::LeastSquares functions(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                      bool is_corrected) {
+  const auto kernel = std::make_shared<LeastSquaresKernel<D>>(mesh, rows, is_corrected);
+  return {.apply = [=](Fields u, Fields known, std::span<double> result) { kernel->apply(u, known, result); },
+          .point_values = [=](Fields u, Fields known,
+                              std::span<double> points) { kernel->point_values(u, known, points); },
+          .face_gradients = [=](Fields u, Fields known, const ElasticKernel::TakeGradient& take, Index first,
+                                Index end) { kernel->face_gradients(u, known, take, first, end); }};
+}
+
+}  // namespace
 }  // namespace least_squares
 
-std::unique_ptr<ElasticKernel::LeastSquares> make_least_squares_kernel(const mesh::Mesh& mesh,
-                                                                       const ElasticOperator& rows,
-                                                                       bool is_corrected) {
-  using namespace least_squares;
-  if (mesh.dim == 2 && is_corrected) return std::make_unique<Corrected<2>>(mesh, rows);
-  if (mesh.dim == 2) return std::make_unique<Published<2>>(mesh, rows);
-  if (is_corrected) return std::make_unique<Corrected<3>>(mesh, rows);
-  return std::make_unique<Published<3>>(mesh, rows);
+ElasticKernel::LeastSquares make_least_squares_kernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
+                                                      bool is_corrected) {
+  return mesh.dim == 2 ? least_squares::functions<2>(mesh, rows, is_corrected)
+                       : least_squares::functions<3>(mesh, rows, is_corrected);
 }
 
 }  // namespace couplet::elastic

@@ -8,7 +8,7 @@
 
 #include "common/mesh/mesh.hpp"
 
-/// Writes the XDMF 2 index of an HDF5 series: plain text, replaced as a whole at each output.
+/// Writes the XDMF 3 index of an HDF5 series as plain text. The file is replaced at each output.
 namespace couplet::io::xdmf {
 
 /// XDMF number of a cell type in a mixed topology, whose points are in VTK order.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/distributed/block_faces.hpp"
+#include "common/mesh/distributed/surroundings.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""to_deck.py MESH DECK writes a universal file (.unv), MED or Exodus file as an input deck. Part of the programs (foreign.cpp), which run it in
+"""to_deck.py MESH DECK writes a universal file (.unv), MED or Exodus file as an input deck. Part of the programs (gmsh.cpp), which run it in
 their sandbox; prints what it leaves out. Needs h5py for MED and for Exodus in HDF5 (netCDF-4), nothing otherwise."""
 import array, itertools, struct, sys
 # Cells: dimension and numbers of nodes by family, the first of which are the corners. Faces of Exodus, by corners from 0.

@@ -292,7 +292,7 @@ class MshReader {
     }
   }
 
-  /// Tags are the physical group (0: none; negative: reversed), elementary entity, then partitions.
+  /// Tags are the physical group (0 means none, a negative one is reversed), elementary entity, then partitions.
   void find_element_22(const MshType& type, int n_tags, std::size_t place, std::size_t head, bool follows) {
     ElementRun e{&type, 0, {}, 1, place, head + std::size_t(std::max(0, n_tags)), sizeof(int)};
     for (int t = 0; t < n_tags; ++t) {

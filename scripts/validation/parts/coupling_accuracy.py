@@ -162,10 +162,3 @@ def other(job, case):
     text = ", ".join(f"{a} to {b}: {off}" for a, b, off, _ in found)
     return (f"{text} of the largest value; uninterrupted runs on other ranks: {max(float(r) for *_, r in found):.2g}",
             len(found) == 4 and all(float(off) <= max(TOLERANCE, float(r)) for *_, off, r in found))
-
-
-# -- light ------------------------------------------------------------------------------------------------------------
-def fewer(job, case, keys, more):
-    """Passes per step with the further keys are at most those without."""
-    alone, own = (job.case(case, (*keys, *extra)).passes().mean() for extra in ((), more))
-    return f"{own:.2f} with them, {alone:.2f} without", bool(own <= alone)

@@ -3,12 +3,17 @@
 report on the atlas of stability."""
 import csv
 import json
+import math
 import pathlib
 import re
 import sys
 import tempfile
 
 import atlas
+import yaml
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[3] / "benchmarks"))
+import ablation  # noqa: E402
 
 FOAM = "solidDisplacementFoam"
 # Part of a study that is run (--only: the sizes that a busy machine allows), its quantity, and the largest error of each program's best run.
@@ -49,7 +54,7 @@ def beside(job, name):
 
 
 def scenes(job):
-    """Each with a second run that has the effect, or a closed form (tests/cli/budget)."""
+    """Each case has a second run with the effect, or a closed form (tests/cli/budget)."""
     done = job.run([sys.executable, job.root / "tests/cli/budget/run.py", job.build / "bin", job.root / "configs", "all"], 900)
     good, bad = (re.findall(rf"^{word} +(.*?):", done.stdout, re.M) for word in ("ok", "FAILED"))
     near = re.findall(r"^ok +.*share ([\d.e+-]+), truth ([\d.e+-]+) \(near\)", done.stdout, re.M)
@@ -167,6 +172,87 @@ def all_studies(job):
     good, all_ = estimates.inside(judged) + estimates.inside(coarse), len(judged) + len(coarse)
     return (f"{good} of {all_} runs ({100 * good / all_:.0f} %): {estimates.inside(judged)} of {len(judged)} with a clear reference, {estimates.inside(coarse)} of "
             f"{len(coarse)} whose reference is too coarse; beyond: {', '.join(lines)}"), good >= 0.85 * all_
+
+
+# -- new cases ---------------------------------------------------------------------------------------------------------
+FRESH = pathlib.Path(__file__).resolve().parents[1] / "estimates"
+
+
+def fresh_run(job, one, n, name):
+    """Numbers of a case of estimates/cases.yaml at one size, and the estimated error of its run."""
+    folder, names = job.scratch / f"fresh-{name.replace(' ', '-').replace(':', '').replace(',', '')}-{n}", {"n": n, "root": str(job.root)}
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in FRESH.glob("*.geo"):
+        (folder / file.name).write_text(file.read_text())
+    text = re.sub(r'"<([^">]+)>"', lambda m: json.dumps(eval(m[1], {}, names)), json.dumps(one["case"]))  # expressions of our own file
+    (folder / "case.yaml").write_text(text.replace("<root>", names["root"]))
+    reports = ablation.launch(job.build / "bin", folder / "case.yaml", [], folder / "out")
+    if "profile" in one:
+        return ablation.profile(one["profile"])(folder / "out"), ablation.estimated(reports, "all")
+    file, *columns = one["read"]
+    with open(folder / "out" / file, newline="") as rows:
+        last = list(csv.DictReader(rows))[-1]
+    at = lambda column: float(next(v for k, v in last.items() if k.startswith(column)))
+    return [at(column) - one.get("beyond", 0) for column in columns], ablation.estimated(reports, "all")
+
+
+def fresh(job, least=(0.75, 0.92), only=""):
+    """Estimates of runs of problems that no estimator was developed on, beside their true errors."""
+    ratios, lines = [], []
+    for name, one in yaml.safe_load((FRESH / "cases.yaml").read_text()).items():
+        if only not in name:
+            continue
+        found = []
+        for n in one["sizes"]:
+            values, estimate = fresh_run(job, one, n, name)
+            truth = ablation.distance(values, [t - one.get("beyond", 0) for t in one["truth"]])
+            found.append((estimate or 0) / truth if truth else math.nan)
+        ratios += found
+        lines.append(f"{name} {', '.join(f'{r:.2g}' for r in found)}")
+    near = [sum(1 / f <= r <= f for r in ratios) / len(ratios) for f in (2, 3)]
+    return (f"{near[0]:.0%} of {len(ratios)} within 2, {near[1]:.0%} within 3, the least {min(ratios):.2g}; estimate over truth: {'; '.join(lines)}",
+            near[0] >= least[0] and near[1] >= least[1] and min(ratios) >= 0.2)
+
+
+TARGETS = {  # case of estimates/cases.yaml: two targets of its first number
+    "sheet of triangles that is sheared at its end": ("1%", "0.3%"), "beam under its weight, held at both ends": ("2%", "0.5%"),
+    "thick pipe as a body of revolution": ("0.5%", "0.1%"), "cube that is sheared": ("3%", "1.5%"), "strip that heat bends": ("2%", "0.5%"),
+    "bar that swings along itself": ("2%", "0.5%"), "curved bar that is pulled at its end": ("2%", "0.5%"), "lid over a layer that starts": ("2%", "1%"),
+    "pressure drop of a channel": ("2%", "1%"), "curved rubber that bends far": ("2%", "0.5%")}
+
+
+def fresh_targets(job):
+    """Targets of --for-error on the cases of estimates: met where the true error is at most 1.1 times the target."""
+    good, lines = 0, []
+    for name, one in yaml.safe_load((FRESH / "cases.yaml").read_text()).items():
+        for target in TARGETS.get(name, ()):
+            folder, settings = job.scratch / f"target-{name.replace(' ', '-').replace(',', '')}-{target[:-1]}", {}
+
+            def filled(node, path=(), one=one, settings=settings):
+                """The case at its middle size; `settings`: its keys that depend on the size."""
+                if isinstance(node, dict):
+                    return {key: filled(value, (*path, key)) for key, value in node.items()}
+                if isinstance(node, str) and (found := re.fullmatch("<(.+)>", node)):
+                    settings[".".join(path)] = f"<={found[1]}>"
+                    return eval(found[1], {}, {"n": one["sizes"][1]})
+                return node
+            folder.mkdir(parents=True, exist_ok=True)
+            for file in FRESH.glob("*.geo"):
+                (folder / file.name).write_text(file.read_text())
+            (file, column, *_), case = one["read"], filled(one["case"])
+            fresh_run(job, one, one["sizes"][0], name)
+            with open(next(job.scratch.glob(f"fresh-{name.replace(' ', '-').replace(',', '')}-*/out/{file}"))) as table:
+                head = next(h for h in next(csv.reader(table)) if h.startswith(column))
+            case["study"] = {"axes": {"mesh": {"sizes": one["sizes"], "set": settings}}, "quantities": {"q": {"probe": head}}}
+            (folder / "case.yaml").write_text(json.dumps(case))
+            done = job.run([sys.executable, job.root / "scripts/couplet", "study", folder / "case.yaml", f"--build={job.build}", f"--out={folder}/out", f"--for-error={target}"])
+            files = list(folder.glob("out/for-error-*.json"))
+            result = json.loads(files[0].read_text()) if files else {}
+            share = abs(result["value"] / one["truth"][0] - 1) / result["target"] if "value" in result else math.nan
+            met = done.returncode == 0 and share <= 1.1
+            good += met
+            lines.append(f"{name} {target}: {share:.2g} of it at size {result.get('size', 0):g}, before it {result.get('before', 0) / (result.get('seconds') or 1):.1f} times" + ("" if met else " (not met)"))
+    return f"{good} of {len(lines)} met: {'; '.join(lines)}", good >= 0.95 * len(lines)
 
 
 # -- positions on the atlas --------------------------------------------------------------------------------------------

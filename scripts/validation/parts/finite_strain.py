@@ -160,7 +160,8 @@ def growth(job):
 
 
 def segregated(job):
-    """The updated-Lagrangian method against table 3.6 of the thesis (meshes 1 and 2), in one load step (total Lagrangian) and in four, and Newton's time on the same mesh."""
+    """Compares the segregated method in one load step (total Lagrangian) and in four (updated Lagrangian) with [thesis, table 3.6], and its time with that of
+    Newton's method on the same meshes."""
     words, agrees, factor = [], True, 0
     aitken = (".solution-method={type: segregated, acceleration: aitken, max-iterations: 40000, relative-tolerance: 1e-6}",)
     for n, wanted in ((2, 0.3922), (4, 0.4206)):

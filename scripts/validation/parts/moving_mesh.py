@@ -14,7 +14,7 @@ MOTIONS = {
 
 
 def move(job, motion, method, form, chi, volumes, more=(), steps=50, end=1, timeout=900):
-    """Results of the mover on its own, rows of quality.csv, and whether it came to the end. `motion`: of the plate."""
+    """Results of the mover on its own, rows of quality.csv, and whether it came to the end. `motion`: motion of the plate."""
     try:
         results, valid = job.case("moving-mesh", (
             f"simulation.end-time={end}", f"simulation.time-step={end / steps}", f"simulation.output.interval={end}", "simulation.max-step-halvings=0",

@@ -181,7 +181,7 @@ def beam(length, shape):
 
 
 def body(case, column, text, sizes, finest, places, keys=()):
-    """`text`: of the mesh with r cells, 3 r / 2 and 3 r / 4."""
+    """Returns the arguments of a comparison on meshes of `sizes` and `finest`. `text`: mesh key; {r}, {t} and {z} become r, 3 r / 2 and 3 r / 4 cells."""
     *meshes, fine = (text.format(r=r, t=3 * r // 2, z=3 * r // 4) for r in (*sizes, finest))
     return case, column, meshes, fine.replace("shape: 1", "shape: 0"), places, keys
 

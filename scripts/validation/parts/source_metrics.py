@@ -84,7 +84,7 @@ def judging(job, most):
 
 
 def judging_words(job):
-    """Words in names of files and classes."""
+    """Words that names of files and classes must not contain."""
     text = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items()).lower()
     found = [word for word in JUDGING_WORDS if word in text]
     return f"{len(found)} beside diagnostic and finding: {', '.join(found) or 'none'}", not found

@@ -66,7 +66,7 @@ WRONG = {
     "    minimise: cost\n": "variables: one to four are needed",
     "    minimise: cost\n    maximise: heat\n" + ONE: "give either 'minimise' or 'maximise'",
     "    minimise: cost\n    variables: {diameter: {from: 2, to: 1}}\n": "diameter: 'from' and 'to' must be numbers, the first below the second",
-    "    minimise: cost\n    variables: {diameter: {from: 1 m, to: 2 m}}\n": "the unit stands in 'unit'",
+    "    minimise: cost\n    variables: {diameter: {from: 1 m, to: 2 m}}\n": "give the unit in 'unit'",
     "    minimise: cost\n    variables: {diameter: {from: true, to: 2}}\n": "'from' and 'to' must be numbers",
     "    minimise: cost\n    variables: {diameter: {from: 1, to: .inf}}\n": "'from' and 'to' must be numbers",
     "    minimise: cost\n    variables: {diameter: {from: 1, to: 2, unit: 5}}\n": "diameter.unit: expected a text",

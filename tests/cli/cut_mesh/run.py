@@ -112,7 +112,7 @@ Physical Curve("around") = {1, 2, 3, 4}; Physical Surface("inside") = {1};
 """)
     cut = call(bin_, "mesh", "cut", folder / "strip.geo", "--dimension", 2, "--parameter", "n=7")
     check("a .geo is meshed with its parameters", cut.returncode == 0 and "49 cells" in cut.stdout, cut.stdout + cut.stderr)
-    for words, said in ((("box", "-o", folder / "box.h5"), "--cells NX NY NZ"), (("cut",), "SOURCE is missing"), (("cut", folder / "strip.geo", "-o", folder / "strip.mesh"), "must be named .h5"),
+    for words, said in ((("box", "-o", folder / "box.h5"), "--cells NX NY NZ"), (("cut",), "SOURCE is missing"), (("cut", folder / "strip.geo", "-o", folder / "strip.mesh"), "must end in .h5"),
                         (("cut", folder / "strip.geo", "--dimension", 2, "--parameter", "m=7"), "'m'"), (("cut", folder / "no.msh"), "does not exist"),
                         (("box", "--cells", 0, 1, 1, "-o", folder / "box.h5"), "1 to 1000000 cells"), (("open", folder / "strip.h5"), "2-dimensional")):
         wrong = call(bin_, "mesh", *words)

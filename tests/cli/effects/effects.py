@@ -29,9 +29,6 @@ flap, cantilever = root / "configs/perpendicular-flap/case.yaml", root / "config
 text = ask("fluid_solver", flap, "--explain")
 assert effects(text)["mesh motion"] and effects(text)["coupling load"] and not effects(text)["turbulence model"], text
 assert re.search(rf"^whole case: +couplet run {re.escape(str(flap))}$", text, re.M), text
-text = ask("coupler", flap, "--explain")
-assert effects(text)["iteration of pressure and structure"] and effects(text)["guards that stop"], text
-assert not effects(ask("coupler", flap, "--explain", "--set", "coupling.scheme=explicit"))["relaxation by Aitken"]
 text = ask("solid_solver", cantilever, "--explain")
 assert "couplet run" not in text and "mesh_mover" not in text, text
 
@@ -55,7 +52,7 @@ with tempfile.TemporaryDirectory() as folder:
                           f"simulation.output.folder={folder}", "--set", "simulation.end-time=0.01", "--set",
                           "simulation.time-step=0.01"], capture_output=True, text=True, timeout=100)
     assert out.returncode == 0, out.stdout + out.stderr
-    assert re.search(r"effects: .*neglected: .*turbulence model", out.stdout), out.stdout
+    assert re.search(r"effects: .*off: .*turbulence model", out.stdout), out.stdout
 
 # What a run leaves out is judged while it runs: a traction that grows for ten steps passes the limit of the linear theory
 # in its midst, that is said once, with the time; --strict=effects makes it the
@@ -109,7 +106,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert out.returncode == 0 and "auto: analysis: static" in out.stdout and "auto: dimension: 3" in out.stdout, out.stdout + out.stderr
 
 # Every program lists its cards.
-for program in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler"):
+for program in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal"):
     rows = [line for line in ask(program, "--effects").splitlines() if line.startswith("| ")]
     assert len(rows) >= 4, (program, rows)
 print("effects: as expected")

@@ -72,7 +72,7 @@ def strict():
     check("--strict=all is refused", code == 2 and "--strict=effects" in text, (code, text[-200:]))
     slow = [*pulled[:2], "participants.solid.boundaries.tip.value=[1e3, 0, 0]"]
     code, _, found = run("solid_solver", "cantilever", "--strict=effects", sets=slow)
-    check("a small load passes --strict=effects", code == 0 and all(f["severity"] == "note" for f in found["solid"].values()), (code, found))
+    check("a small load passes --strict=effects", code == 0 and all(f["severity"] == "note" or f["accepted"] for f in found["solid"].values()), (code, found))
 
 
 def stress():
@@ -99,6 +99,8 @@ def scenes_():
     check("a folded mesh does not run in the mover alone", code != 0 and "folded at (0" in text, (code, text[-300:]))
     code, text, _ = in_folder(lambda f: scenes.folded(f, fold=False), "mesh_mover")
     check("the same mesh without the fold does", code == 0, (code, text[-300:]))
+    code, text, found = in_folder(scenes.pushed_in, "mesh_mover")
+    check("a cell that the motion folds at a corner is a finding", code == 0 and -0.3 < found["mover"].get("distorted-mesh", {}).get("number", 0) < -0.2, (code, found, text[-300:]))
     code, text, found = in_folder(scenes.explicit_step, "fluid_solver")
     check("an explicit step far beyond its limit ends the run with its cause",
           code == 1 and "10 halvings of the step for one cause did not help: The flow diverges" in text, (code, text[-400:]))
@@ -113,7 +115,7 @@ def scenes_():
 def sound():
     code, text, found = in_folder(scenes.duct, "fluid_solver", "--strict")
     mach = found["fluid"].get("compressibility", {})
-    check("SF6 at 48 m/s is flagged by its own speed of sound", 0.33 < mach.get("number", 0) < 0.39 and "air" not in mach["sentence"], mach)
+    check("SF6 at 48 m/s is flagged by its own speed of sound", 0.06 < mach.get("share", 0) < 0.08 and "air" not in mach["sentence"], mach)
     # On so coarse a mesh the estimated error is 0.18: that alone, no neglected effect, is what --strict ends on.
     check("neglected effects alone do not fail under --strict", code == int("error-estimate" in found["fluid"]), (code, found))
     code, text, found = in_folder(scenes.duct, "fluid_solver", sets=["participants.fluid.density=1.2", "participants.fluid.viscosity=1.8e-5"])

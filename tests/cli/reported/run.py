@@ -3,6 +3,7 @@
 """Runs the inputs of cases.yaml, which went wrong when users brought their problems to the programs. Each must end with the right value, or the right refusal.
 Usage: run.py BIN [WORD ...]   (with words: only the cases whose name has one of them)"""
 import csv
+import json
 import pathlib
 import shutil
 import subprocess
@@ -20,8 +21,10 @@ WAYS = {"last": lambda v: v[-1], "largest": max, "least": min, "spread": lambda 
 
 
 def number(folder, text):
-    """'FILE.csv: WAY COLUMN' of the output."""
+    """'FILE.csv: WAY COLUMN' of the output, or the part of the error: 'solid/run.json: mesh'."""
     file, what = text.split(": ", 1)
+    if file.endswith(".json"):
+        return json.loads((folder / "out" / file).read_text())["errors"][what]
     way, column = what.split(" ", 1)
     with open(folder / "out" / file, newline="") as rows:
         return WAYS[way]([float(row[column]) for row in csv.DictReader(rows)])

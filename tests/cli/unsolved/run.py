@@ -23,8 +23,8 @@ for name, (setting, is_sound) in CASES.items():
         tries = (run.stdout + run.stderr).count("step 1 with dt")  # a shorter static step meets the same equations: one try
         text = run.stdout + run.stderr
         # What a failed run saw until then proves nothing sound, nor what its answer errs by.
-        judged = "justified" in text and "estimated error" in text
-        unjudged = "justified" not in text and "estimated error" not in text and "the run failed: its error and neglected effects" in text
+        judged = (": justified" in text or ": matters" in text) and "estimated error" in text
+        unjudged = ": justified" not in text and ": matters" not in text and "estimated error" not in text and "the run failed: its error and neglected effects" in text
         good = (run.returncode == 0 and reached_end and judged) if is_sound else (
             run.returncode != 0 and told and not reached_end and tries == 1 and unjudged)
         print("ok    " if good else "FAILED", name, f"(exit code {run.returncode}, told {told}, end reached {reached_end})")

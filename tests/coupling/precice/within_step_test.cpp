@@ -6,6 +6,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::within_step_test {

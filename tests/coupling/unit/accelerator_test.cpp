@@ -2,8 +2,7 @@
 #include "coupler/acceleration/accelerator.hpp"
 
 #include "common/io/checkpoint.hpp"
-#include "coupler/acceleration/fixed_point.hpp"
-#include "coupler/acceleration/growing_qr.hpp"
+#include "coupler/acceleration/quasi_newton.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::accelerator_test {

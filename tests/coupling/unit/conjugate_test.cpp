@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "coupler/mapping/links.hpp"
-#include "coupler/output/mechanics.hpp"
+#include "coupler/output/record.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet::conjugate_test {

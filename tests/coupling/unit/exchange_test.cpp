@@ -4,6 +4,7 @@
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "coupler/output/interface_output.hpp"
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::exchange_test {

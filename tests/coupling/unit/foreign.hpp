@@ -5,6 +5,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet {
@@ -55,10 +56,8 @@ struct ForeignCase {
   std::unique_ptr<coupler::Coupler> coupler(coupling::Participant& fluid,
                                             coupling::Participant& solid) const {
     std::filesystem::create_directories(folder);
-    return std::make_unique<coupler::Coupler>(
-        coupling, simulation,
-        coupler::CouplerChannels{std::make_unique<coupling::LocalChannel>("fluid", fluid),
-                                 std::make_unique<coupling::LocalChannel>("solid", solid), nullptr},
+    return std::make_unique<tests::LocalCoupler>(
+        coupling, simulation, fluid, solid, nullptr,
         coupler::CouplerFolders{folder, folder / "checkpoints", restart});
   }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A structure with vertices alone, names of its own and no velocity, as a program on preCICE's interface.
 #include "common/app/loop/step_loop.hpp"
-#include "coupler/output/mechanics.hpp"
+#include "coupler/output/record.hpp"
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet::foreign_structure_test {

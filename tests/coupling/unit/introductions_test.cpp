@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs that read their configuration themselves, and the case that was made of it.
-#include "coupler/exchange/start_checks.hpp"
+#include "coupler/exchange/partners.hpp"
 
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/unit/foreign.hpp"
 
 namespace couplet::introductions_test {
@@ -50,17 +51,17 @@ TEST(Introductions, another_configuration_than_the_cases_or_the_partners_is_refu
   EXPECT_EQ(
       said(p, "", serial),
       "coupling.exchange.digest: 'Right' reads a configuration of preCICE that is not the one this case was "
-      "made of: it was edited, or is another file. Make the case anew with `couplet import FILE --force`.");
+      "made of: it was edited, or is another file. Recreate the case with `couplet import FILE --force`.");
   p.exchange->digest = "";
   EXPECT_EQ(
       said(p, "xml-2", serial),
       "'Left' and 'Right' read different configurations of preCICE: give both the same file. If it was edited, "
-      "make the case anew with `couplet import FILE --force`.");
+      "recreate the case with `couplet import FILE --force`.");
 }
 
 TEST(Introductions, a_scheme_or_an_order_that_is_not_the_configurations_is_refused) {
   const std::string again =
-      " in the configuration that 'Left' reads. Make the case anew with `couplet import FILE --force`.";
+      " in the configuration that 'Left' reads. Recreate the case with `couplet import FILE --force`.";
   EXPECT_EQ(said(imported(Scheme::explicit_, Order::serial), serial, serial),
             "coupling.scheme: explicit here, but implicit" + again);
   EXPECT_EQ(said(imported(Scheme::implicit, Order::parallel), serial, serial),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/mapping/links.hpp"
-#include "coupler/exchange/start_checks.hpp"
+#include "coupler/exchange/partners.hpp"
 #include "coupler/mapping/mapping.hpp"
 #include "coupler/mapping/surface_checks.hpp"
-#include "coupler/output/mechanics.hpp"
+#include "coupler/output/record.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::links_test {

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 #include "common/io/checkpoint.hpp"
-#include "coupler/acceleration/fixed_point.hpp"
+#include "coupler/acceleration/accelerator.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::quasi_newton_test {

@@ -2,6 +2,7 @@
 // Closed fluids under masses on springs, in one process: what is pumped in is what the wall gives way.
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/toy/spring.hpp"
 #include "tests/support/test.hpp"
 

@@ -6,6 +6,7 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/local_channel.hpp"
 #include "tests/coupling/support/residuals.hpp"
 #include "tests/coupling/toy/modal.hpp"
 
@@ -48,10 +49,9 @@ struct ModalRun {
     fs::create_directories(folder);
     toy::ModalChannel fluid(p);
     toy::ModalWall wall(p);
-    CouplerChannels channels{std::make_unique<LocalChannel>("fluid", fluid),
-                             std::make_unique<LocalChannel>("solid", wall), nullptr};
     {
-      Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", {}});
+      tests::LocalCoupler coupler(coupling, simulation, fluid, wall, nullptr,
+                                  {folder, folder / "checkpoints", {}});
       problem = coupler.run();
     }
     amplitudes = wall.amplitudes();

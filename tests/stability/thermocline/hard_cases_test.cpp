@@ -16,7 +16,7 @@ struct Audit {
   double scale() const { return bed.heat_capacity() * (high - low); }
   void step(double mass_flow, double inlet) {
     const double before = bed.energy(low);
-    const PackedBed::StepHeat heat = bed.step(mass_flow, inlet);
+    const BedHeat heat = bed.step(mass_flow, inlet);
     entered += heat.by_flow + heat.by_source;
     worst_step =
         std::max(worst_step, std::abs(bed.energy(low) - before - heat.by_flow - heat.by_source) / scale());

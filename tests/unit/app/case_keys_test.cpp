@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/case/case_keys.hpp"
+#include "common/app/case/case_file.hpp"
 
 #include "common/config/document.hpp"
 #include "tests/support/test.hpp"

@@ -50,7 +50,7 @@ TEST(Markdown, every_key_is_there_with_unit_default_range_and_meaning) {
         "| `interval` | number | `s` | `0` | at least 0 s | time between outputs |\n", "\n## `material`\n",
         "| `youngs-modulus` | number | `Pa` | **required** | above 0 Pa | Young's modulus |\n",
         "| `poisson-ratio` | number |  | `0.3` | from -1 to 0.5 | Poisson's ratio |\n",
-        "| `damping` | mapping |  | absent: not used |  | proportional damping |\n", "\n## `damping`\n",
+        "| `damping` | mapping |  | not used |  | proportional damping |\n", "\n## `damping`\n",
         "| `limit` | number | `m` | not set | above 0 m |  |\n",
         "| `boundaries` | mapping by patch |  |  |  | one entry for each patch of the mesh |\n",
         "\n## `boundaries.<patch>`\n",

@@ -25,7 +25,7 @@ class TwoPrograms : public ::testing::Test {
   std::string set_up_error(const Mesh& mesh, const Geometry& geometry) const {
     return support::error_of([&] {
       if (is_mover)
-        make_mesh_motion_sink(peers, mesh, geometry.points);
+        MeshMotionSink(peers, mesh, geometry.points);
       else
         make_mesh_motion_source(peers, mesh, geometry.points);
     });
@@ -53,9 +53,9 @@ TEST_P(MeshMotion, every_local_point_of_the_fluid_gets_its_own_displacement) {
     return values;
   };
   if (is_mover) {
-    const auto sink = make_mesh_motion_sink(peers, mesh, geometry.points);
-    for (int step = 0; step < 3; ++step) sink->send(expected(step));
-    sink->send(expected(3), expected(4));
+    MeshMotionSink sink(peers, mesh, geometry.points);
+    for (int step = 0; step < 3; ++step) sink.send(expected(step));
+    sink.send(expected(3), expected(4));
   } else {
     const auto source = make_mesh_motion_source(peers, mesh, geometry.points);
     for (int step = 0; step < 3; ++step) EXPECT_EQ(source->receive(), expected(step)) << "step " << step;
@@ -70,9 +70,9 @@ TEST_F(TwoPrograms, failure_of_the_mover_is_a_failed_step_for_the_fluid_and_the_
       distribute(own, make_box(BoxCells::hexahedra, {3, 3, 3}, Vec3::Zero(), Vec3::Ones()));
   const std::vector<double> ones(3 * std::size_t(mesh.points.n_local()), 1.0);
   if (is_mover) {
-    const auto sink = make_mesh_motion_sink(peers, mesh, geometry.points);
-    sink->send_failure();
-    sink->send(ones);
+    MeshMotionSink sink(peers, mesh, geometry.points);
+    sink.send_failure();
+    sink.send(ones);
   } else {
     const auto source = make_mesh_motion_source(peers, mesh, geometry.points);
     EXPECT_THROW(source->receive(), SolveFailure);
@@ -86,10 +86,10 @@ TEST_F(TwoPrograms, large_motion_is_sent_without_waiting_for_the_fluid) {
       distribute(own, make_box(BoxCells::quadrilaterals, {200, 100, 0}, Vec3::Zero(), Vec3::Ones()));
   const std::vector<double> ones(2 * std::size_t(mesh.points.n_local()), 1.0);
   if (is_mover) {
-    const auto sink = make_mesh_motion_sink(peers, mesh, geometry.points);
-    sink->send(ones);
+    MeshMotionSink sink(peers, mesh, geometry.points);
+    sink.send(ones);
     MPI_Barrier(MPI_COMM_WORLD);
-    sink->send_failure();
+    sink.send_failure();
   } else {
     const auto source = make_mesh_motion_source(peers, mesh, geometry.points);
     MPI_Barrier(MPI_COMM_WORLD);

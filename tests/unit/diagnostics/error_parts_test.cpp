@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/error_parts.hpp"
+#include "common/diagnostics/results.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::error_parts_test {
@@ -97,10 +98,16 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
       sentences[0],
       "estimated error 0.21 of the solution: coupling tolerance 0.2 (coupling), mesh 0.01 (fluid), step 0.004 (solid).");
   const auto without = error_sentences({{"plate", {.step = 2e-9}}});
-  EXPECT_EQ(
-      without.at(0),
-      "estimated error 2e-09 of the solution: step 2e-09; the error due to the mesh (or truncated modes) is "
-      "unknown and not included.");
+  EXPECT_EQ(without.at(0),
+            "estimated error: the part due to the mesh is unknown; the rest is 2e-09 of the "
+            "solution: step 2e-09.");
+  EXPECT_EQ(without.size(), 1u) << "nothing dominates";
+  // A verdict must not pass the tolerance of a solver for the error.
+  const NamedErrors rounding{"sphere", {.linear = 9.4e-17}};
+  EXPECT_EQ(error_summary({rounding}), "the error due to the mesh is unknown, the rest is 9.4e-15 %");
+  EXPECT_NE(best_change({rounding}).find("half the cell size"), std::string::npos);
+  EXPECT_EQ(error_summary({{"fluid", {.mesh = 1e-2, .step = 1e-3}}, rounding}),
+            "the error due to the mesh of 'sphere' is unknown, the rest is 1.1 %");
   EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
 }
 

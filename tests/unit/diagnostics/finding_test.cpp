@@ -26,12 +26,14 @@ TEST(Findings, count_by_severity_channel_and_consent) {
   EXPECT_EQ(diagnostics::count(Severity::warning, false), 1);
   EXPECT_THAT(
       diagnostics::findings_as_json(),
-      HasSubstr(R"({"id": "compressibility", "severity": "warning", "number": 0.4, "limit": 0.3, )"
-                R"("sentence": "b", "advice": "\"c\"", "neglected-effect": true, "accepted": false})"));
+      HasSubstr(
+          R"({"id": "compressibility", "severity": "warning", "number": 0.4, "limit": 0.3, )"
+          R"("sentence": "b", "advice": "\"c\"", "neglected-effect": true, "share": null, "accepted": false})"));
   diagnostics::accept(Words{"energy-growth"});
   EXPECT_EQ(diagnostics::count(Severity::wrong, true), 0);
   EXPECT_EQ(diagnostics::findings().size(), 3u) << "an accepted finding is kept";
-  EXPECT_THAT(diagnostics::findings_as_json(), HasSubstr(R"("neglected-effect": false, "accepted": true)"));
+  EXPECT_THAT(diagnostics::findings_as_json(),
+              HasSubstr(R"("neglected-effect": false, "share": null, "accepted": true)"));
   EXPECT_THROW(diagnostics::finding(1, {.id = "no-such-id", .sentence = ""}), std::logic_error);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/elasticity/symmetric/symmetric_diagonal.hpp"
-
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
+
 #include "common/mesh/load.hpp"
 #include "tests/support/test.hpp"
 

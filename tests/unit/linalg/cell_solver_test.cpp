@@ -86,13 +86,13 @@ struct Box {
 };
 
 SolveStatistics solve(CellSolver& solver, const Box& box, std::vector<double>& x, double tolerance = 1e-9) {
-  solver.fill(box.diagonal, box.faces, {});
+  solver.fill(box.diagonal, box.faces);
   return solver.solver().solve(box.right_side(), x, tolerance, 0);
 }
 
 /// Iterations to 1e-9, whose residual is checked.
 int iterations(const Box& box, Kind kind) {
-  CellSolver solver("p", box.graph(), {}, kind);
+  CellSolver solver("p", box.graph(), kind);
   std::vector<double> x(box.diagonal.size(), 0.0);
   const int taken = solve(solver, box, x).iterations;
   const std::vector<double> b = box.right_side();
@@ -111,13 +111,13 @@ TEST(CellSolver, multigrid_iterations_hardly_grow_with_the_mesh_nor_with_the_ran
 TEST(CellSolver, a_singular_matrix_takes_no_more_iterations_on_several_ranks) {
   const Box box(33, 33, 1, false, true);
   const auto taken = [&](const Box& of) {
-    CellSolver solver("p", of.graph(), {}, Kind::multigrid);
+    CellSolver solver("p", of.graph(), Kind::multigrid);
     std::vector<double> b = of.right_side(), x(b.size(), 0.0);
     double sum = 0;
     for (const double v : b) sum += v;
     const double mean = parallel::sum(MPI_COMM_WORLD, sum) / (33 * 33 * 33);
     for (double& v : b) v -= mean;
-    solver.fill(of.diagonal, of.faces, {});
+    solver.fill(of.diagonal, of.faces);
     const int n = solver.solver().solve(b, x, 1e-9, 0).iterations;
     EXPECT_LE(std::sqrt(of.left(b, x)), 1.1e-9 * solver.solver().norm(b));
     return n;
@@ -147,7 +147,7 @@ TEST(CellSolver, factors_need_an_iteration_or_two) {
 TEST(CellSolver, factors_follow_entries_that_vanish_and_come_back) {
   if (comm_size(MPI_COMM_WORLD) > 1) return;
   const Box whole(12, 1), cut(12, 1, 1, true);
-  CellSolver solver("p", whole.graph(), {}, Kind::factors);
+  CellSolver solver("p", whole.graph(), Kind::factors);
   for (const Box* box : {&cut, &whole, &cut}) {
     std::vector<double> x(box->diagonal.size(), 0.0);
     solver.solver().refresh();
@@ -159,7 +159,7 @@ TEST(CellSolver, factors_follow_entries_that_vanish_and_come_back) {
 TEST(CellSolver, factors_hold_on_thin_cells) {
   if (comm_size(MPI_COMM_WORLD) > 1) return;
   const Box box(60, 1, 3e4);
-  CellSolver solver("p", box.graph(), {}, Kind::factors);
+  CellSolver solver("p", box.graph(), Kind::factors);
   std::vector<double> x(box.diagonal.size(), 0.0);
   EXPECT_LE(solve(solver, box, x, 1e-10).iterations, 3);
 }
@@ -168,12 +168,12 @@ TEST(CellSolver, a_preconditioner_made_again_gives_the_same_bits) {
   for (const Kind kind : {Kind::factors, Kind::multigrid}) {
     if (kind == Kind::factors && comm_size(MPI_COMM_WORLD) > 1) continue;
     const Box box(16, kind == Kind::factors ? 1 : 16);
-    CellSolver first("p", box.graph(), {}, kind), second("p", box.graph(), {}, kind);
+    CellSolver first("p", box.graph(), kind), second("p", box.graph(), kind);
     std::vector<double> x(box.diagonal.size(), 0.0);
     solve(first, box, x);
     std::vector<double> of_first(x.size(), 0.0), of_second(x.size(), 0.0);
     solve(first, box, of_first);
-    second.fill(box.diagonal, box.faces, {});
+    second.fill(box.diagonal, box.faces);
     second.solver().restore(first.solver().memory());
     EXPECT_EQ(second.solver().preconditioners_built(), 0);
     solve(second, box, of_second);
@@ -184,7 +184,7 @@ TEST(CellSolver, a_preconditioner_made_again_gives_the_same_bits) {
 
 TEST(CellSolver, what_is_not_finite_is_told_and_leaves_nothing_behind) {
   const Box box(12, 12);
-  CellSolver solver("the pressure", box.graph(), {}, Kind::multigrid);
+  CellSolver solver("the pressure", box.graph(), Kind::multigrid);
   std::vector<double> x(box.diagonal.size(), 0.0), b = box.right_side();
   solve(solver, box, x);
   const std::vector<double> wanted = x;
@@ -200,7 +200,7 @@ TEST(CellSolver, what_is_not_finite_is_told_and_leaves_nothing_behind) {
 TEST(CellSolver, a_matrix_that_is_not_positive_is_refused) {
   Box box(12, 12);
   for (std::size_t c = 0; c < box.diagonal.size(); c += 2) box.diagonal[c] *= -1;
-  CellSolver solver("p", box.graph(), {}, Kind::multigrid);
+  CellSolver solver("p", box.graph(), Kind::multigrid);
   std::vector<double> x(box.diagonal.size(), 0.0);
   EXPECT_THROW(solve(solver, box, x), SolveFailure);
 }

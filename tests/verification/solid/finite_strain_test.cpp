@@ -164,8 +164,8 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       const auto solid = make_solid(raw, busy(dim, volume));
       const auto law =
           laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.3});
-      const auto kernel = std::make_unique<elastic::FiniteKernel>(
-          solid->body().mesh(), solid->body().elastic(), std::vector<const elastic::FiniteLaw*>{law.get()});
+      const auto kernel = std::make_unique<elastic::FiniteKernel>(solid->body().mesh(),
+                                                                  solid->body().elastic(), std::vector{law});
       const std::size_t n = solid->body().elastic().n_unknowns();
       expect_derivatives(*kernel, n);
       std::vector<double> pressure(solid->body().mesh().boundary.n_owned(), 0);

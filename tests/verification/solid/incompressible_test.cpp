@@ -101,8 +101,8 @@ double asymmetry(bool whole_wall) {
   const Geometry& geometry = solid->body().geometry();
   const auto law =
       laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.2});
-  const auto kernel = std::make_unique<elastic::FiniteKernel>(
-      mesh, solid->body().elastic(), std::vector<const elastic::FiniteLaw*>{law.get()});
+  const auto kernel =
+      std::make_unique<elastic::FiniteKernel>(mesh, solid->body().elastic(), std::vector{law});
   std::vector<double> pressure(std::size_t(mesh.boundary.n_owned()), 0);
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
     const Vec3& x = geometry.face_centre[f];

@@ -209,9 +209,8 @@ TEST(LargeSheet, condensed_tangent_is_the_derivative_of_the_forces_and_symmetric
       SCOPED_TRACE(law.name);
       const auto solid = make_solid(box(cells), sheet(law, 0.3));
       const auto own = law.make(lame_constants(E, 0.3), std::vector<double>(law.n_coefficients, 0.1));
-      const auto kernel =
-          std::make_unique<elastic::FiniteKernel>(solid->body().mesh(), solid->body().elastic(),
-                                                  std::vector<const elastic::FiniteLaw*>{own.get()}, true);
+      const auto kernel = std::make_unique<elastic::FiniteKernel>(
+          solid->body().mesh(), solid->body().elastic(), std::vector{own}, true);
       expect_derivatives(*kernel, solid->body().elastic().n_unknowns(), true, 1e-9);
     }
 }

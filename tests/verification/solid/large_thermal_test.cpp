@@ -193,8 +193,8 @@ TEST(LargeThermalStrain, tangent_is_the_derivative_of_the_forces) {
       const auto solid = make_solid(box(cells), p);
       const Mesh& mesh = solid->body().mesh();
       const auto law = laws::find("mooney-rivlin")->make(lame_constants(E, nu), std::vector{0.3});
-      const auto kernel = std::make_unique<elastic::FiniteKernel>(
-          mesh, solid->body().elastic(), std::vector<const elastic::FiniteLaw*>{law.get()});
+      const auto kernel =
+          std::make_unique<elastic::FiniteKernel>(mesh, solid->body().elastic(), std::vector{law});
       std::vector<double> stretch;
       for (Index f = 0; f < mesh.n_flux_faces(); ++f)
         stretch.push_back(1 + 0.2 * solid->body().geometry().face_centre[f][0]);

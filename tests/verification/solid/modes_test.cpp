@@ -3,7 +3,6 @@
 // shapes on the surface that plate_modal takes.
 #include "common/modes/modal_checks.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
-#include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::modes_test {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Manufactured solution u_i = a_i 1e-6 sin(4 pi x) sin(2 pi y) sin(pi z), a = (2, 4, 6), on a cube of 0.2 m
 // (the 3-D case of the solids4foam verification suite); in 2-D without the third component and factor.
+#include "solid_solver/output/displacement_error.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::order_test {
@@ -46,8 +47,25 @@ std::vector<std::string> displacement_text(int dim) {
   return result;
 }
 
+/// sigma n on the side whose normal is x.
+std::vector<std::string> traction_text(int dim, const elastic::LameConstants& lame) {
+  const auto slope = [&](int component, int axis) {
+    std::array<int, 3> once{};
+    once[axis] = 1;
+    return fmt::format("{:.17g}*{}", amplitude[component], derivative_text(dim, once));
+  };
+  std::vector<std::string> result;
+  for (int i = 0; i < dim; ++i) {
+    std::string text = fmt::format("{:.17g}*({} + {})", lame.mu, slope(0, i), slope(i, 0));
+    for (int j = 0; i == 0 && j < dim; ++j) text += fmt::format(" + {:.17g}*{}", lame.lambda, slope(j, j));
+    result.push_back(text);
+  }
+  return result;
+}
+
 struct Errors {
   double displacement, stress, inner_stress, recovered;
+  double estimated = 0;  // displacement_error(), of the symmetric gradient
 };
 
 /// d u_a / d x_d of the exact displacement, entry (d, a).
@@ -80,11 +98,12 @@ double error_at_points(const Solid& solid) {
 /// Volume-weighted L2 errors over L2 norms of the exact solution; the inner stress over the cells whose
 /// centre is further than an eighth of the cube's side from its sides. `perturbed`: by this part of the
 /// spacing, at random.
-Errors solve(BoxCells cells, int n, double perturbed, FaceGradient gradient) {
+Errors solve(BoxCells cells, int n, double perturbed, FaceGradient gradient, bool pulled = false) {
   const int dim = dimension_of(cells);
   SolidParameters p = box_parameters(dim);
   p.method.face_gradient = gradient;
   for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, displacement_text(dim));
+  if (pulled) p.boundaries["xmax"] = boundary(Type::traction, traction_text(dim, lame_constants(p)));
   for (const std::string& text : body_force_text(dim, lame_constants(p))) p.body_force.push_back({text});
   RawMesh raw = make_box(cells, {n, n, n}, Vec3::Zero(), Vec3(0.2, 0.2, dim == 3 ? 0.2 : 0));
   if (perturbed > 0) perturb_interior(raw, perturbed, 3);
@@ -114,8 +133,12 @@ Errors solve(BoxCells cells, int n, double perturbed, FaceGradient gradient) {
     inner_error += here;
     inner_size += there;
   }
-  return {std::sqrt(error / size), std::sqrt(stress_error / stress_size), std::sqrt(inner_error / inner_size),
-          error_at_points(*solid)};
+  Errors found{std::sqrt(error / size), std::sqrt(stress_error / stress_size),
+               std::sqrt(inner_error / inner_size), error_at_points(*solid)};
+  if (gradient == FaceGradient::symmetric)
+    found.estimated = displacement_error(solid->body(), solid->stepper().state(), solid->fields().loads_now(),
+                                         *solid->stepper().method());
+  return found;
 }
 
 Errors slope(const Errors& coarse, const Errors& fine, double refinement) {
@@ -212,6 +235,25 @@ TEST_P(SolidOrder, displacement_and_stress_converge) {
   if (gradient == FaceGradient::symmetric) {
     EXPECT_GE(last.recovered, 1.3);  // cells at the fixed rim are of first order
   }
+}
+
+/// The estimate from one run beside the true error, with all sides given, and with a traction on one of them.
+TEST(SolidError, of_a_smooth_field_is_estimated_on_all_cells_without_drift) {
+  for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed,
+                               BoxCells::quadrilaterals, BoxCells::triangles})
+    for (const bool pulled : {false, true}) {
+      std::vector<double> ratios;
+      for (const int n : dimension_of(cells) == 3 ? std::vector{4, 6, 9} : std::vector{8, 16, 32}) {
+        const Errors found = solve(cells, n, 0, FaceGradient::symmetric, pulled);
+        ratios.push_back(found.estimated / found.displacement);
+        fmt::print("{} {}{}: estimated {:.3g}, true {:.3g}, ratio {:.2f}\n", name(cells), n,
+                   pulled ? ", pulled" : "", found.estimated, found.displacement, ratios.back());
+        EXPECT_GT(ratios.back(), 0.5);
+        EXPECT_LT(ratios.back(), 3);
+      }
+      EXPECT_GT(ratios[2] / ratios[1], 0.7) << name(cells);
+      EXPECT_LT(ratios[2] / ratios[1], 1.4) << name(cells);
+    }
 }
 
 }  // namespace couplet::testing::order_test

@@ -2,9 +2,9 @@
 // The operator is not symmetric: M^-1 K has complex pairs of eigenvalues, which let a scheme without
 // dissipation grow. The rate is predicted by the spectrum, seen in the run, and removed by dissipative
 // schemes.
-#include "solid_solver/output/spectrum.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/time/time_scheme.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::spectrum_test {

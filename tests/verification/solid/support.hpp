@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/mesh/load.hpp"
-#include "solid_solver/diagnostics/energy_balance.hpp"
+#include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/solid.hpp"
 #include "tests/support/box.hpp"

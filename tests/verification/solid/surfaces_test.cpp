@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields on patches and moments of reactions, against solutions that are known.
-#include "solid_solver/thermal_solid.hpp"
+#include "solid_solver/solid.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/support/surface_file.hpp"
 #include "tests/verification/solid/loads_support.hpp"

@@ -2,8 +2,7 @@
 // The symmetric operator with the vertices as unknowns of their own: the kernel's rows, their inverse and their inertia.
 #include "common/elasticity/finite/stress_stiffness.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
-#include "common/elasticity/symmetric/tied_matrix.hpp"
-#include "solid_solver/output/spectrum.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::tied_test {

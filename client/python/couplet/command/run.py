@@ -130,11 +130,16 @@ def run(arguments):
 
 def shown_run(job, picture=False, verbose=False):
     """Runs the job with a digest on a terminal, else with the programs' own lines."""
+    from couplet.command import report
     from couplet.runs import ranks
+    from couplet.runs.results import Results
     from couplet.runs.terminal import Digest, Plain
     ranks.fit(job.case, job.ranks, job.alone)
     if not sys.stdout.isatty() or verbose:
-        return finish(job, job.run(Plain()), picture)
+        code = job.run(Plain())
+        if job.case.coupled and not job.alone and code in (0, 4) and "--quiet" not in job.flags:  # a program alone prints its own
+            print(*report.verdict(Results(job.output), ["coupler", *job.case.participants]), sep="\n")
+        return finish(job, code, picture)
     digest = Digest(job)
     digest.begin()
     code = job.run(digest)

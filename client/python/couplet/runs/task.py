@@ -65,7 +65,7 @@ class Task:
         return Results(self.folder)
 
     def record(self):
-        """Record of exactly this run, or None if there is none or another one."""
+        """Record of this run, or None if the folder has no record or that of another run."""
         try:
             record = Record(**json.loads((self.folder / RECORD).read_text()))
         except (OSError, ValueError, TypeError):

@@ -14,7 +14,7 @@ The section of the case:
         height: {from: 8, to: 16, unit: m, sets: {bed.layers.0.height: 0.01, bed.layers.1.height: 0.99}}   # key: share
 A surface of cubic radial functions through the runs so far predicts where the best is; the next runs go there, as many at a
 time as there are processors, the others of a round to where the surface is known least. optimise.csv has all runs so far; a
-search that was interrupted and is started again finds the runs that are done. --again makes them anew."""
+search that was interrupted and is started again finds the runs that are done. --again repeats them."""
 import csv
 import itertools
 import math
@@ -125,7 +125,7 @@ class Variable:
         expect(not unknown, f"{place}: unknown key '{next(iter(unknown), '')}'; valid are key, from, to, unit, sets.")
         low, high = spec.get("from"), spec.get("to")
         expect(is_number(low) and is_number(high) and low < high,
-               f"{place}: 'from' and 'to' must be numbers, the first below the second; the unit stands in 'unit'.")
+               f"{place}: 'from' and 'to' must be numbers, the first below the second; give the unit in 'unit'.")
         self.name, self.low, self.high, self.unit = name, low, high, spec.get("unit", "")
         expect(isinstance(self.unit, str), f"{place}.unit: expected a text, not {self.unit!r}.")
         expect(not ("sets" in spec and "key" in spec), f"{place}: give either 'key' or 'sets'.")

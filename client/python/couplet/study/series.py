@@ -95,7 +95,7 @@ class Series:
             return self.cost(self.rows[-1]) * max(1, size / self.rows[-1].point.size)
         a, b, q = power_cost(self.sizes(), [self.cost(r) for r in self.rows])
         nearest = min(self.rows, key=lambda r: abs(math.log(r.point.size / size)))
-        # through the nearest run, whose misfit also applies to this one
+        # passes through the nearest run, whose misfit also applies to this one
         return self.cost(nearest) / (a + b * nearest.point.size**q) * (a + b * size**q)
 
     # -- errors

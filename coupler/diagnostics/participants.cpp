@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+#include "coupler/diagnostics/view.hpp"
+
+namespace couplet::coupler {
+namespace {
+
+constexpr int late = 10;                ///< passes before which answers are not compared
+constexpr int judged_steps = 10;        ///< before which the velocity is not judged
+constexpr double doubtful = 0.3;        ///< deviation of the velocity, over the rate
+constexpr double least_motion = 1e-12;  ///< over the interface's extent; below it nothing moves
+
+/// True if any rank's values differ bitwise.
+bool differ(MPI_Comm comm, const coupling::Exchange& a, const coupling::Exchange& b) {
+  return parallel::max(comm, a == b ? 0. : 1.) > 0;
+}
+
+double extent_of(MPI_Comm comm, const std::vector<Vec3>& points) {
+  double most = 0;
+  for (const Vec3& x : points) most = std::max(most, (x - points.front()).norm());
+  return parallel::max(comm, most);
+}
+
+/// Detects two faults of participants that residuals do not explain: a response that ignores the input (a
+/// solver whose guess meets its own tolerance), and a velocity that is not the rate of the displacement.
+class DataOfParticipants final : public CouplingDiagnostic {
+ public:
+  explicit DataOfParticipants(const CouplingView& view) : view_(view) {
+    const std::vector<Side>& sides = view.pass.sides();
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      answers_.push_back({.name = sides[s].name, .taken = {}, .given = {}});
+      const coupling::Interface& i = sides[s].interface;
+      if (find_datum(i.gives, "displacement") && find_datum(i.gives, "velocity"))
+        motions_.push_back(
+            {.side = s, .name = sides[s].name, .x = {}, .v = {}, .extent = extent_of(view.comm, i.vertices)});
+    }
+  }
+
+  void begin_step() override {
+    for (Answers& one : answers_) one.passes = one.looked = one.same = 0;
+  }
+
+  void answered(std::size_t side, const coupling::Exchange& taken, const coupling::Exchange& given) override {
+    Answers& one = answers_[side];
+    if (++one.passes < late) return;
+    if (one.passes > late && differ(view_.comm, taken, one.taken)) {
+      ++one.looked;
+      one.same += differ(view_.comm, given, one.given) ? 0 : 1;
+    }
+    one.taken = taken, one.given = given;
+  }
+
+  /// Names participants with identical responses to changed input in at least half of the recent passes.
+  std::string remark() const override {
+    std::string text;
+    for (const Answers& one : answers_)
+      if (one.looked > 0 && 2 * one.same >= one.looked)
+        text += fmt::format(
+            " '{}' gave the same answer in {} of the last {} passes although its input changed: its solver's "
+            "tolerance is too loose for this coupling.",
+            one.name, one.same, one.looked);
+    return text;
+  }
+
+  void observe(diagnostics::Report& report) override {
+    for (Motion& one : motions_) {
+      if (one.reported) continue;
+      add(one, values_of(view_.pass.given()[one.side], "displacement"),
+          values_of(view_.pass.given()[one.side], "velocity"));
+      if (one.steps <= judged_steps || !(one.largest > least_motion * one.extent) || !(one.rate_rate > 0))
+        continue;
+      const double end = one.rate_end / one.rate_rate, mean = one.rate_mean / one.rate_rate;
+      const double factor = std::abs(end - 1) < std::abs(mean - 1) ? end : mean;
+      if (!(std::abs(factor - 1) > doubtful)) continue;
+      one.reported = true;
+      report.findings.push_back(
+          {.id = "velocity-and-displacement",
+           .severity = factor < 0.5 || factor > 2 ? base::Severity::wrong : base::Severity::warning,
+           .number = factor,
+           .limit = 1 + doubtful,
+           .sentence = fmt::format("velocity of '{}': {:.3g} times the rate of the displacement that it "
+                                   "gives (limit 1 +- {:g}): the fluid sees a wall that moves differently",
+                                   one.name, factor, doubtful),
+           .advice = "correct the 'velocity' [m/s] that this program gives"});
+    }
+  }
+
+  void visit(io::Archive& archive) override {
+    for (Motion& one : motions_) {
+      const Side& side = view_.pass.sides()[one.side];
+      archive.common("motion-" + one.name, one.rate_rate, one.rate_end, one.rate_mean, one.largest, one.steps,
+                     one.reported);
+      const auto order = side.order(view_.comm, coupling::Interface::Place::vertices);
+      archive.field(order, "displacement-" + one.name, one.x, std::size_t(side.interface.dim));
+      archive.field(order, "velocity-" + one.name, one.v, std::size_t(side.interface.dim));
+    }
+  }
+
+ private:
+  struct Answers {
+    std::string name;
+    coupling::Exchange taken, given;
+    int passes = 0, looked = 0, same = 0;
+  };
+  struct Motion {
+    std::size_t side;
+    std::string name;
+    std::vector<double> x, v;                           // of the last accepted step
+    double rate_rate = 0, rate_end = 0, rate_mean = 0;  // sums of products over the run
+    double extent = 0, largest = 0;                     // [m]
+    int steps = 0;
+    bool reported = false;
+  };
+
+  /// Compares v^{n+1} and (v^n + v^{n+1})/2 with (x^{n+1} - x^n)/dt, by least squares over the run.
+  void add(Motion& one, const std::vector<double>& x, const std::vector<double>& v) const {
+    std::array<double, 3> sums{};
+    double most = 0;
+    const bool known = one.steps > 0 && one.x.size() == x.size() && v.size() == x.size();
+    for (std::size_t i = 0; known && i < x.size(); ++i) {
+      const double rate = (x[i] - one.x[i]) / view_.dt;
+      sums[0] += rate * rate, sums[1] += rate * v[i], sums[2] += rate * 0.5 * (v[i] + one.v[i]);
+      most = std::max(most, std::abs(x[i]));
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, view_.comm);
+    one.rate_rate += sums[0], one.rate_end += sums[1], one.rate_mean += sums[2];
+    one.largest = std::max(one.largest, parallel::max(view_.comm, most));
+    one.x = x, one.v = v;
+    ++one.steps;
+  }
+
+  const CouplingView& view_;
+  std::vector<Answers> answers_;
+  std::vector<Motion> motions_;
+};
+
+}  // namespace
+
+std::shared_ptr<CouplingDiagnostic> data_of_participants(const CouplingView& view) {
+  return std::make_shared<DataOfParticipants>(view);
+}
+
+namespace {
+
+// No mesh follows a wall that far; millimeters instead of meters give a factor of a thousand.
+constexpr double farthest = 30;
+
+/// Detects displacements much larger than the interface, probably in another unit.
+class DisplacementScale final : public CouplingDiagnostic {
+ public:
+  explicit DisplacementScale(const CouplingView& view) : view_(view) {
+    for (const Side& side : view.pass.sides()) {
+      const PointBox box(side.interface.vertices);
+      const double extent = parallel::max(view.comm, (box.high - box.low).norm());
+      extents_.push_back(find_datum(side.interface.gives, "displacement") ? extent : 0);
+    }
+  }
+
+  void observe(diagnostics::Report& report) override {
+    for (std::size_t s = 0; s < extents_.size(); ++s) {
+      if (!(extents_[s] > 0)) continue;
+      double most = 0;
+      for (const double u : values_of(view_.pass.given()[s], "displacement"))
+        most = std::max(most, std::abs(u));
+      const double share = parallel::max(view_.comm, most) / extents_[s];
+      if (!(share > farthest)) continue;
+      const std::string& name = view_.pass.sides()[s].name;
+      report.findings.push_back(
+          {.id = "displacement-scale",
+           .number = share,
+           .limit = farthest,
+           .sentence = fmt::format("displacement of '{}': {:.3g} times the extent of its interface, {:.3g} m "
+                                   "(limit {:g}): implausible",
+                                   name, share, extents_[s], farthest),
+           .advice = "check the unit of the 'displacement' [m] that this program gives",
+           .subject = name});
+    }
+  }
+
+ private:
+  const CouplingView& view_;
+  std::vector<double> extents_;  // by side [m]; 0 if it gives no displacement or has no extent
+};
+
+}  // namespace
+
+std::shared_ptr<CouplingDiagnostic> displacement_scale(const CouplingView& view) {
+  return std::make_shared<DisplacementScale>(view);
+}
+
+namespace {
+
+constexpr int patience = 10;  // steps
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+/// Detects loaded structures that do not move at all, because their interface is held or the load does not
+/// arrive. Even a stiff structure moves measurably.
+class StructureAtRest final : public CouplingDiagnostic {
+ public:
+  explicit StructureAtRest(const CouplingView& view) : view_(view) {
+    const std::vector<Side>& sides = view.pass.sides();
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      const coupling::Interface& i = sides[s].interface;
+      if (!find_datum(i.gives, "displacement")) continue;
+      Structure one{.side = s, .loads = {}, .unit = {}};
+      for (const auto& datum : i.takes)
+        if (datum.unit == "N" || datum.unit == "Pa") one.loads.push_back(datum.name), one.unit = datum.unit;
+      if (!one.loads.empty()) structures_.push_back(std::move(one));
+    }
+    steps_.resize(structures_.size());
+  }
+  void observe(diagnostics::Report& report) override {
+    for (std::size_t k = 0; k < structures_.size(); ++k) {
+      const Structure& one = structures_[k];
+      double load = 0;
+      for (const std::string& name : one.loads)
+        load = std::max(load, largest(values_of(view_.pass.taken()[one.side], name)));
+      load = parallel::max(view_.comm, load);
+      const double motion =
+          parallel::max(view_.comm, largest(values_of(view_.pass.given()[one.side], "displacement")));
+      steps_[k] = load > 0 && motion == 0 ? steps_[k] + 1 : 0;
+      if (steps_[k] < patience) continue;
+      const std::string& name = view_.pass.sides()[one.side].name;
+      report.findings.push_back(
+          {.id = "structure-at-rest",
+           .sentence = fmt::format("motion of '{}': 0 m at every interface vertex for {} steps under a load "
+                                   "of up to {:.3g} {} per face: the interface is held fixed; check its "
+                                   "boundary conditions and `coupling`.",
+                                   name, steps_[k], load, one.unit),
+           .subject = name});
+    }
+  }
+  void visit(io::Archive& archive) override { archive.common("steps", steps_); }
+
+ private:
+  struct Structure {
+    std::size_t side;
+    std::vector<std::string> loads;
+    std::string unit;  // of one of them, for the message
+  };
+  const CouplingView& view_;
+  std::vector<Structure> structures_;
+  std::vector<int> steps_;  // of each in a row, under load and without motion
+};
+
+}  // namespace
+
+std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view) {
+  return std::make_shared<StructureAtRest>(view);
+}
+
+namespace {
+
+constexpr double limit = 0.02;
+
+/// Forces at faces that no participant receives, relative to received ones: RMS over faces and steps.
+class LostLoad final : public CouplingDiagnostic {
+ public:
+  explicit LostLoad(const CouplingView& view) : view_(view) {
+    const std::vector<Side>& sides = view.pass.sides();
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      std::vector<Force> forces;
+      for (const coupling::Interface::Datum& datum : sides[i].interface.gives) {
+        if (datum.unit != "N" || datum.place != coupling::Interface::Place::faces) continue;
+        const bool taken = std::ranges::any_of(view.pass.links().all(), [&](const Links::Link& link) {
+          return link.giver == i && link.datum.name == datum.name;
+        });
+        forces.push_back({i, datum.name, taken});
+      }
+      // If none are received, the coupling does not act by forces.
+      if (std::ranges::any_of(forces, &Force::taken) && !std::ranges::all_of(forces, &Force::taken))
+        forces_.insert(forces_.end(), forces.begin(), forces.end());
+    }
+  }
+  bool empty() const { return forces_.empty(); }
+  void observe(diagnostics::Report& report) override {
+    std::array<double, 2> size{};  // of the forces that nobody takes, and of those that somebody does
+    for (const Force& force : forces_) {
+      for (const double value : values_of(view_.pass.given()[force.giver], force.name))
+        size[force.taken] += value * value;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, size.data(), 2, MPI_DOUBLE, MPI_SUM, view_.comm);
+    for (std::size_t k = 0; k < size.size(); ++k) squares_[k] += size[k];
+    if (!(squares_[1] > 0)) return;
+    const double lost = std::sqrt(squares_[0] / squares_[1]);
+    if (auto finding = diagnostics::finding_of(
+            {.effect = "viscous coupling load",
+             .number = lost,
+             .limit = limit,
+             .what = fmt::format("fluid forces not taken / taken by the structure = {:.2g}", lost),
+             .advice =
+                 "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)",
+             .share = lost / (1 + lost)}))  // of all forces
+      report.findings.push_back(std::move(*finding));
+  }
+  void visit(io::Archive& archive) override { archive.common("squares", squares_); }
+
+ private:
+  struct Force {
+    std::size_t giver;
+    std::string name;
+    bool taken;
+  };
+  const CouplingView& view_;
+  std::vector<Force> forces_;        // of sides of which one is not taken
+  std::array<double, 2> squares_{};  // sums over the run
+};
+
+}  // namespace
+
+std::shared_ptr<CouplingDiagnostic> lost_load(const CouplingView& view) {
+  auto made = std::make_shared<LostLoad>(view);
+  return made->empty() ? nullptr : made;
+}
+
+}  // namespace couplet::coupler

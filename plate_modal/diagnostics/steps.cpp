@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks of the energies, the time step and the impacts on a seat.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "common/io/checkpoint.hpp"
+#include "common/time/step_errors.hpp"
+#include "plate_modal/diagnostics/motion.hpp"
+#include "plate_modal/diagnostics/view.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// Error of the energy balance, thesis (4.29)-(4.31), relative to the largest energy or work of the loads.
+class BalanceOfEnergies final : public diagnostics::Diagnostic {
+ public:
+  explicit BalanceOfEnergies(const PlateView& view) : view_(view) {}
+  void observe(diagnostics::Report&) override {
+    const Energies& e = view_.state.energies;
+    mismatch_ = std::max(mismatch_, std::abs(e.mismatch()));
+    largest_ = std::max({largest_, e.kinetic + e.strain + e.contact, std::abs(e.load_work)});
+  }
+  void look(diagnostics::Report& report) override {
+    if (!(largest_ > 0)) return;
+    report_present(report, "balance of the energies", mismatch_ / largest_, 0.01,
+                   fmt::format("max error of the energy balance (4.29-4.31) / largest energy = {:.2g}",
+                               mismatch_ / largest_),
+                   "use a smaller step, or 'trapezoidal' with 'contact.rule: conserving'", 0.5);
+  }
+  void visit(io::Archive& archive) override { archive.common("energies", mismatch_, largest_); }
+
+ private:
+  PlateView view_;
+  double mismatch_ = 0, largest_ = 0;  // [J]
+};
+
+/// With ten steps per period the trapezoidal rule lengthens the period by 3 %, and a mode at a wrong
+/// frequency responds to a load like another structure.
+class StepSize final : public diagnostics::Diagnostic {
+ public:
+  StepSize(const PlateView& view, std::shared_ptr<Motion> motion) : view_(view), motion_(std::move(motion)) {}
+  void observe(diagnostics::Report&) override {
+    motion_->accepted(view_.before, view_.state, view_.oscillators.load(), view_.step.dt);
+  }
+  void look(diagnostics::Report& report) override {
+    const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
+    const bool is_coarse = seen.coarse_share > 0;
+    report_present(
+        report, "step that resolves the modes", seen.coarse_share, Motion::coarse_limit,
+        is_coarse ? fmt::format("modes with fewer than ten steps per period (first: mode {}, {:.2g} steps) "
+                                "make up {:.2g} of the displacement (rms)",
+                                seen.coarse_mode, seen.steps_a_period, seen.coarse_share)
+                  : "no oscillating mode has fewer than ten steps per period",
+        is_coarse ? fmt::format("they oscillate at a wrong frequency: use 'simulation.time-step: "
+                                "{:.2g} s'",
+                                seen.recommended_step)
+                  : "");
+    report_present(report, "step near a resonance", seen.resonance_error, 0.1,
+                   fmt::format("mode {} is near resonance (amplification {:.2g}): displacement error by the "
+                               "step's frequency error = {:.2g}",
+                               seen.resonant_mode, seen.amplification, seen.resonance_error),
+                   fmt::format("use 'simulation.time-step: {:.2g} s'", seen.resonant_step));
+  }
+  void visit(io::Archive& archive) override { archive.common("motion", *motion_); }
+
+ private:
+  PlateView view_;
+  std::shared_ptr<Motion> motion_;
+};
+
+double norm_of(std::span<const double> amplitudes) {
+  return std::sqrt(std::inner_product(amplitudes.begin(), amplitudes.end(), amplitudes.begin(), 0.0));
+}
+
+/// Error of all steps so far, for modes of unit mass.
+class StepError final : public diagnostics::Diagnostic {
+ public:
+  explicit StepError(const PlateView& view) : view_(view), errors_(view.parameters.time_scheme) {}
+  void observe(diagnostics::Report&) override {
+    const ModalState &before = view_.before, &now = view_.state;
+    errors_.add(before.v, now.v, now.dt, before.dt, norm_of(now.q), norm_of, rate_of_decay());
+  }
+  void conclude(diagnostics::Report& report) override { report.errors.step = errors_.over_size(); }
+  void visit(io::Archive& archive) override {
+    std::vector<double> state = errors_.state();
+    archive.common("errors", state);
+    if (archive.reads()) errors_.restore(state);
+  }
+
+ private:
+  /// Decay rate of the present motion by damping [1/s].
+  double rate_of_decay() const {
+    const std::span<const double> c = view_.oscillators.damping();
+    const std::vector<double>&omega = view_.surface.omega(), &v = view_.state.v;
+    double lost = 0, all = 0;
+    for (std::size_t m = 0; m < c.size(); ++m) {
+      // Above critical damping, the slower of two rates.
+      lost += v[m] * v[m] * (c[m] <= 2 * omega[m] ? 0.5 * c[m] : omega[m] * omega[m] / c[m]);
+      all += v[m] * v[m];
+    }
+    return all > 0 ? lost / all : 0;
+  }
+
+  PlateView view_;
+  time::VelocityErrors errors_;
+};
+
+/// Minimum share of the energy for an impact to be counted, because a structure resting on its seat vibrates.
+constexpr double least_work = 0.02;
+
+/// Shortest impact on the seat in steps, and whether there was contact. The error of the impact time is a
+/// third of a step, and that of the speed after it a corresponding share. Twenty steps per contact give 1 %
+/// (docs/plate.md).
+class ImpactOnSeat final : public diagnostics::Diagnostic {
+ public:
+  explicit ImpactOnSeat(const PlateView& view) : view_(view) {}
+  void observe(diagnostics::Report&) override {
+    const ModalState &before = view_.before, &now = view_.state;
+    const Energies& e = now.energies;
+    has_met_ = has_met_ || e.impact_work != 0;
+    energy_ = std::max({energy_, e.kinetic + e.strain + e.contact, std::abs(e.load_work)});
+    const double work = e.impact_work - before.energies.impact_work;
+    if (work != 0) {
+      const double stiffness =
+          view_.contact->stiffness_of_impact(before.q, now.q, view_.oscillators.seat().force);
+      const double duration = std::numbers::pi / std::sqrt(stiffness);
+      if (stiffness > 0 && std::abs(work) > least_work * energy_ && view_.step.dt / duration > share_)
+        share_ = view_.step.dt / duration, duration_ = duration;
+    }
+  }
+  void look(diagnostics::Report& report) override {
+    if (!(share_ > 0)) return;
+    constexpr double limit = 0.1;
+    report_present(
+        report, "step that resolves the contact", share_, limit,
+        fmt::format("an impact on the seat lasts {:.2g} s (pi sqrt(m / kappa)), one step is {:.2g} of that",
+                    duration_, share_),
+        fmt::format("the rebound is not resolved: use 'simulation.time-step: {:.2g} s', or a softer seat",
+                    duration_ / 20));
+    report.position.push_back({"step over the duration of an impact", share_, limit, "plate-contact"});
+  }
+  void conclude(diagnostics::Report& report) override {
+    if (has_met_) return;
+    const Contact::Place nearest = view_.contact->deepest(view_.state.q);
+    if (nearest.depth > 0) return;
+    report.sentences.push_back(fmt::format(
+        "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, "
+        "{:.4g}).",
+        -nearest.depth, nearest.centre.x(), nearest.centre.y(), nearest.centre.z()));
+  }
+  void visit(io::Archive& archive) override {
+    archive.common("impacts", has_met_, share_, duration_, energy_);
+  }
+
+ private:
+  PlateView view_;
+  bool has_met_ = false;
+  double share_ = 0, duration_ = 0;  // longest step over the duration of an impact; that duration [s]
+  double energy_ = 0;                // largest so far, or work of the loads [J]
+};
+
+}  // namespace
+
+diagnostics::Made balance_of_energies(const PlateView& view, const std::shared_ptr<Motion>& motion) {
+  return motion ? std::make_shared<BalanceOfEnergies>(view) : nullptr;
+}
+
+diagnostics::Made step_size(const PlateView& view, const std::shared_ptr<Motion>& motion) {
+  return motion ? std::make_shared<StepSize>(view, motion) : nullptr;
+}
+
+diagnostics::Made step_error(const PlateView& view, const std::shared_ptr<Motion>& motion) {
+  return motion ? std::make_shared<StepError>(view) : nullptr;
+}
+
+diagnostics::Made impact_on_seat(const PlateView& view, const std::shared_ptr<Motion>&) {
+  return view.contact ? std::make_shared<ImpactOnSeat>(view) : nullptr;
+}
+
+}  // namespace couplet::plate

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/io/checkpoint.hpp"
+#include "thermocline/diagnostics/tank_diagnostic.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// Checks grains with a single shell. It assumes a parabolic profile (linear driving force), delayed by
+/// d^2/(60 a) for slow changes and inaccurate for fast ones: 1/h becomes (1 + Bi/5)/h. Behind a front the
+/// fluid was within 0.1 % of 20 shells at Bi 10, within 1.2 % at Bi 100 (docs/stability.md).
+class ResolvedGrains final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void look(diagnostics::Report& report) override {
+    if (bed().shells() > 1 || !(seen_->flow > 0)) return;
+    const double biot = largest_biot();
+    constexpr double limit = 20;
+    tell(report, {.effect = "resolved grains",
+                  .number = biot,
+                  .limit = limit,
+                  .what = fmt::format(
+                      "Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
+                      biot, biot / 5),
+                  .advice = "set 'bed.shells': five resolve the grains",
+                  .share = 1.2e-4 * biot});
+    report.position.push_back({"Biot number of the grains", biot, limit, "tank-biot"});
+  }
+  void conclude(diagnostics::Report& report) override {
+    if (!(seen_->flow > 0)) return;
+    std::string layers;
+    for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
+      const BedGrid::Run& run = bed().grid().runs[r];
+      layers += fmt::format(
+          "{}{:.3g}", layers.empty() ? "" : ", ",
+          bed().closure(r).reynolds(bed().fluid()[run.first + run.count / 2], seen_->flow / bed().area()));
+    }
+    report.sentences.push_back(
+        fmt::format("closures: Re of the layers at the largest flow {} from the bottom up; the film "
+                    "correlation is fitted to Re from 15 to 8500",
+                    layers));
+  }
+
+ private:
+  /// Film times d/(2 conductivity) of grain layers at the largest flow and the bed's mean temperature.
+  double largest_biot() const {
+    double mean = 0, largest = 0;
+    for (const double t : bed().fluid()) mean += t / double(bed().fluid().size());
+    for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
+      const BedLayer& layer = bed().grid().runs[r].layer;
+      if (layer.porosity >= 1 || layer.melting) continue;
+      const Filler& filler = layer.filler ? *layer.filler : view_.model.setup().filler;
+      const double film = bed().closure(r).at(mean, MassFlux(seen_->flow / bed().area())).film;
+      largest = std::max(largest, film * layer.diameter / (2 * filler.conductivity));
+    }
+    return largest;
+  }
+};
+
+/// Detects cold fluid above hot fluid, which sinks (docs/thermocline.md, inversions). The effect depends on
+/// flow and grains, so there is no error estimate.
+class Inversions final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void observe(diagnostics::Report&) override {
+    if (view_.happened.inversion.depth > worst_.depth) worst_ = view_.happened.inversion;
+  }
+  void look(diagnostics::Report& report) override {
+    const auto [cold, hot] = range_to_come();
+    if (view_.parameters().bed.mix_inversions || worst_.depth <= 0.01 || hot <= cold + 1) return;
+    const double share = worst_.depth / (hot - cold);
+    tell(report,
+         {.effect = "mixing of inverted fluid",
+          .number = share,
+          .limit = 0.05,
+          .what = fmt::format(
+              "fluid {:.3g} K colder than the fluid below it at t = {:.6g} s, z = {:.3f} m: {:.2g} of the "
+              "run's range",
+              worst_.depth, worst_.time, worst_.z, share),
+          .advice = "it would sink: set 'bed.mix-inversions: true', or check the signs of the mass flows "
+                    "(upward above 0) and the inlet temperatures",
+          .share = share});
+  }
+  void visit(io::Archive& archive) override { archive.common("worst", worst_.depth, worst_.z, worst_.time); }
+
+ private:
+  Inversion worst_;
+};
+
+/// Power of pump or fan at the largest flow, over the heat flow between the coldest and hottest fluid.
+class Pumping final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void look(diagnostics::Report& report) override {
+    const auto [cold, hot] = range_to_come();
+    if (!(seen_->flow > 0) || hot <= cold + 1) return;
+    if (view_.parameters().pump)
+      look_at_pump(report, cold, hot);
+    else
+      look_at_neglected(report, cold, hot);
+  }
+
+ private:
+  static constexpr double usual_efficiency = 0.7;
+
+  /// Ergun at the mean of both temperatures, layer by layer.
+  void look_at_neglected(diagnostics::Report& report, double cold, double hot) const {
+    const Fluid& f = view_.fluid();
+    const double mean = 0.5 * (cold + hot);
+    const double density = f.is_gas() ? f.pressure / (f.gas_constant * mean) : f.density;
+    double loss = 0;
+    for (const auto& run : bed().grid().runs)
+      if (run.layer.porosity < 1)
+        loss += run.layer.height * ergun(run.layer, f.viscosity(mean), seen_->flow / bed().area()) / density;
+    const double share = loss / (density * usual_efficiency * f.specific_heat * (hot - cold));
+    tell(report, {.effect = "pressure loss of the bed",
+                  .number = share,
+                  .limit = 0.02,
+                  .what = fmt::format(
+                      "pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
+                      1e-3 * loss, share),
+                  .advice = "add 'pump: {}', or check flow and grains: no real store is driven this hard",
+                  .share = share});
+  }
+
+  /// A power block converts some 0.4 of the heat, and pump or fan run during charge and discharge: a tenth of
+  /// the heat is half of the electricity sold. The bed is assumed at the mean temperature.
+  void look_at_pump(diagnostics::Report& report, double cold, double hot) const {
+    const Fluid& f = view_.fluid();
+    const std::vector<double> mean(std::size_t(bed().grid().size()), 0.5 * (cold + hot));
+    const PressureLoss loss = pressure_loss(bed().grid(), f, mean, seen_->flow, bed().area());
+    const double power = pump_power(loss, f, cold, seen_->flow, view_.parameters().pump->efficiency),
+                 heat = seen_->flow * f.specific_heat * (hot - cold);
+    tell(report,
+         {.effect = "work of pump or fan",
+          .number = power / heat,
+          .limit = 0.1,
+          .what =
+              fmt::format("pump or fan {:.3g} MW / transported heat {:.3g} MW = {:.2g} at the largest flow",
+                          1e-6 * power, 1e-6 * heat, power / heat),
+          .advice = "they consume half of the electricity or more; use less flow, a wider or lower bed, or "
+                    "larger grains",
+          .left_out = false});
+  }
+};
+
+/// Checks an ideal gas of constant specific heat: its Mach number, and the mean of the true specific heat.
+class Gas final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  void look(diagnostics::Report& report) override {
+    if (seen_->flow > 0) look_at_speed(report);
+    const auto [cold, hot] = range_to_come();
+    if (hot <= cold + 1) return;
+    const double mean = air_heat_between(cold, hot) / (hot - cold),
+                 error = std::abs(mean / view_.fluid().specific_heat - 1);
+    tell(report, {.effect = "specific heat of a gas by its temperature",
+                  .number = error,
+                  .limit = 0.05,
+                  .what = fmt::format("from the coldest to the hottest fluid of the run, air has {:.0f} "
+                                      "J/(kg K), a difference of {:.2g} from the constant",
+                                      mean, error),
+                  .advice = fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", mean),
+                  .share = error});
+  }
+
+ private:
+  /// Mach number at the hottest gas and narrowest pores, at the outlet pressure.
+  void look_at_speed(diagnostics::Report& report) const {
+    const Fluid& f = view_.fluid();
+    double narrowest = 1;
+    for (const auto& run : bed().grid().runs) narrowest = std::min(narrowest, run.layer.porosity);
+    const double rt = f.gas_constant * seen_->hottest,
+                 speed = seen_->flow / bed().area() * rt / (f.pressure * narrowest);
+    const double mach = speed / std::sqrt(f.specific_heat / (f.specific_heat - f.gas_constant) * rt);
+    tell(report,
+         {.effect = "compressible flow of a gas",
+          .number = mach,
+          .limit = 0.3,
+          .what =
+              fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow", mach),
+          .advice =
+              "the flow is compressible, and neither pressure loss nor films are valid: use less flow, a "
+              "wider bed or a higher pressure",
+          .share = 0.5 * mach * mach});
+  }
+};
+
+}  // namespace
+
+Made grains(const TankView& view, const Seen& seen) { return std::make_shared<ResolvedGrains>(view, seen); }
+
+Made inversions(const TankView& view, const Seen& seen) { return std::make_shared<Inversions>(view, seen); }
+
+Made pumping(const TankView& view, const Seen& seen) { return std::make_shared<Pumping>(view, seen); }
+
+Made gas(const TankView& view, const Seen& seen) {
+  return view.fluid().is_gas() ? std::make_shared<Gas>(view, seen) : nullptr;
+}
+
+}  // namespace couplet::thermocline
