@@ -19,7 +19,7 @@ using mesh::Entries;
 void SolidStepper::visit(io::Archive& archive) {
   SolidState& s = state_;
   SolidEnergies& e = s.energies;
-  // Those that the case does not use are empty on all ranks.
+  // Fields that the case does not use are empty on all ranks.
   const auto field = [&](Entries entries, const char* name, std::vector<double>& values) {
     if (parallel::any(mesh_.comm, !values.empty()))
       archive.field(entries, name, values, std::size_t(mesh_.dim));

@@ -403,7 +403,7 @@ class Defect {
     return rows_.stress(c, gradient) - pressure * Tensor3::Identity();
   }
 
-  /// The same around the axis, by three points.
+  /// Integrates around the axis, with three points.
   void add_ring_part(Index c, const Cubic& w, const Cubic& body, const Pressure& heat,
                      std::array<Corner, 4>& part, const std::array<Vec3, 4>& area, double volume) {
     for (std::size_t q = 0; q < 3; ++q) {

@@ -28,13 +28,10 @@ std::optional<SolidProblem> vibration(const SolidBody& body);
 modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
                               std::span<const double> cell_mass, int n);
 
-/// Bound of the relative error of a shape's strain energy due to the mesh. Two gradients differ by a strain g and by the
-/// energy g^2, which falls faster with the cell size than the error: the larger of this energy, with that of recovered
-/// strains, and of a share of g counts. Collective.
-double energy_error(const SolidBody& body, const std::vector<double>& shape);
-
 /// Bound of the relative errors of the frequencies due to the mesh: half that of the strain energies of the
-/// mass-normalised shapes. Collective.
+/// mass-normalised shapes. Two gradients differ by a strain g and by the energy g^2, which falls faster with the cell
+/// size than the error of the frequencies: the larger of this energy, with that of recovered strains, and of a share of
+/// g counts. Collective.
 double mode_error(const SolidBody& body, const modes::EigenModes& modes);
 
 /// Surface values of these modes on rank 0 (empty elsewhere), vertices by ascending point_id and faces by
