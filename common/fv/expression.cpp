@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -79,9 +78,7 @@ struct Expression::State {
   // In the run: null while the text is only checked.
   Use* use = nullptr;
   std::vector<double> instants;  // at which it may jump
-  // The two times before the latest one [s]; NaN if unknown.
-  double earlier = std::numeric_limits<double>::quiet_NaN(), since = earlier;
-  bool acts = false;  // it had a value other than 0 before `since`, so that its place is known
+  bool acts = false;             // it had a value other than 0 before Use::since, so that its place is known
 
   State() = default;
   State(const config::ExpressionText& source, std::string place)
@@ -128,14 +125,14 @@ struct Expression::State {
   void look_between(const Vec3& x, double t) {
     const double last = std::isnan(use->last_time) ? 0 : use->last_time;  // a run starts at 0
     if (t > last) {
-      earlier = std::exchange(since, last);
+      use->earlier = std::exchange(use->since, last);
       use->last_time = t;
       acts = use->largest() > 0;
-    } else if (acts || t < last || !(t > since)) {
+    } else if (acts || t < last || !(t > use->since)) {
       return;
     }
     const Vec3& place = acts ? use->place : x;
-    const double before = since;
+    const double before = use->since;
     // A look is no use of a table.
     std::vector<Use> noted;
     for (const auto& table : tables_in_use) noted.push_back(*table.use);
@@ -151,7 +148,7 @@ struct Expression::State {
     times.push_back(t);
     std::ranges::sort(times);
     const double second = value_at(before), third = value_at(t),
-                 first = std::isnan(earlier) ? second : value_at(earlier);
+                 first = std::isnan(use->earlier) ? second : value_at(use->earlier);
     const auto [low, high] = std::minmax(second, third);
     if ((second - first) * (third - second) < 0) {
       const double turn = std::min(std::abs(second - first), std::abs(third - second)) -

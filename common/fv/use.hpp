@@ -24,7 +24,8 @@ struct Use {
   /// Largest amount by which values between two times exceed those at both, and where.
   double unseen = 0, unseen_at = 0;
   double last_time = std::numeric_limits<double>::quiet_NaN();  ///< latest at which it was evaluated [s]
-  Vec3 place = Vec3::Zero();                                    ///< of the largest value
+  double since = last_time, earlier = last_time;  ///< the two times before it [s]; NaN if unknown
+  Vec3 place = Vec3::Zero();                      ///< of the largest value
 
   void note(double value) {
     lowest = std::min(lowest, value);
@@ -36,8 +37,8 @@ struct Use {
   template <class Numbers>
   void visit(Numbers& numbers) {
     int what = int(kind);
-    numbers(what, given, from, to, lowest, highest, unseen, unseen_at, last_time, place[0], place[1],
-            place[2]);
+    numbers(what, given, from, to, lowest, highest, unseen, unseen_at, last_time, since, earlier, place[0],
+            place[1], place[2]);
     kind = Kind(what);
   }
 };
