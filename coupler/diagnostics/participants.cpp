@@ -263,8 +263,6 @@ std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view) 
 
 namespace {
 
-constexpr double limit = 0.02;
-
 /// Forces at faces that no participant receives, relative to received ones: RMS over faces and steps.
 class LostLoad final : public CouplingDiagnostic {
  public:
@@ -298,7 +296,6 @@ class LostLoad final : public CouplingDiagnostic {
     if (auto finding = diagnostics::finding_of(
             {.effect = "viscous coupling load",
              .number = lost,
-             .limit = limit,
              .what = fmt::format("fluid forces not taken / taken by the structure = {:.2g}", lost),
              .advice =
                  "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)",

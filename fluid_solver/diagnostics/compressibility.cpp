@@ -191,7 +191,6 @@ diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
   return {
       .effect = "compressibility",
       .number = mach,
-      .limit = 0.3,
       .what = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)", speed,
                           mach, sound.of, sound.speed),
       .advice =
@@ -226,7 +225,6 @@ diagnostics::EffectFinding compliance(double density, double stroke, double pres
   const double share = pressure_volume / (density * sound.speed * sound.speed) / std::max(stroke, 1e-300);
   return {.effect = "waves of pressure",
           .number = share,
-          .limit = 0.1,
           .what = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
           .advice =
               "the compliance of the fluid may change frequencies and stability of the coupled motion: add "
@@ -239,7 +237,6 @@ diagnostics::EffectFinding wave_time(double rate, double size, const Sound& soun
   const double phase = rate * size / sound.speed;
   return {.effect = "waves of pressure",
           .number = phase,
-          .limit = 0.3,
           .what = fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of what moves it",
                               sound.of, size / sound.speed, phase, 1 / rate),
           .advice = "pressure waves return while that changes: add 'compressibility'",

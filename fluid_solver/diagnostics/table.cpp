@@ -194,7 +194,6 @@ std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {
   return diagnostics::finding_of(
       {.effect = "mesh motion",
        .number = view.wall_displacement,
-       .limit = 0.1,
        .what =
            fmt::format("max interface displacement / adjacent cell height = {:.2g}", view.wall_displacement),
        .advice = "add a mesh mover: 'coupling: {mesh: {participant: ...}}'",

@@ -53,13 +53,13 @@ class PlateTheory final : public diagnostics::Diagnostic {
   // there by about 20 degrees; the neglected foreshortening is 0.6 x 0.25^2 of the length, 4 %.
   void look_at_rotation(diagnostics::Report& report, double displacement) const {
     if (moves_freely())
-      report_neglected(report, "large rotation", rotation_, 0.25,
+      report_neglected(report, "large rotation", rotation_,
                        fmt::format("rigid rotation = {:.2g} rad", rotation_),
                        "linear modes move a body along its tangent: use a program for finite strain",
                        1 / std::max(0.1, std::cos(rotation_)) - 1);
     else
       report_neglected(
-          report, "large rotation", displacement, 0.25,
+          report, "large rotation", displacement,
           fmt::format("max displacement / structure size = {:.2g}", displacement),
           "modes are linear and cannot describe large rotations: use a program for finite strain",
           0.6 * displacement * displacement);
@@ -69,7 +69,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
   void look_at_stretch(diagnostics::Report& report, double deflection) const {
     const double stiffening = 0.5 * deflection * deflection;
     report_neglected(
-        report, "stretch of the mid-surface", deflection, view_.built.stretch_limit,
+        report, "stretch of the mid-surface", deflection,
         fmt::format("held on opposite sides: max deflection / thickness = {:.2g}", deflection),
         "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for "
         "finite strain",
@@ -88,7 +88,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
     const double weight = p.gravity.empty() ? 0 : share_of(Vec3(p.gravity.data()));
     if (moves_freely() || weight > 0.999) share = std::max(share, weight);
     report_neglected(
-        report, "motion in the plane", share, 0.01,
+        report, "motion in the plane", share,
         fmt::format("in-plane share of {1} = {0:.2g}", share,
                     p.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
         "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a "
@@ -102,7 +102,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
     const double omega =
         motion_ ? motion_->evidence(view_.step.is_last).last_mode_omega : view_.surface.omega().back();
     const double ratio = thickness_over_wave(omega);
-    report_neglected(report, "shear and rotary inertia", ratio, 0.1,
+    report_neglected(report, "shear and rotary inertia", ratio,
                      fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}", ratio,
                                  motion_ ? "with 1 % of the motion" : "kept"),
                      "shear and rotary inertia soften such modes: keep fewer, or use a volume model",

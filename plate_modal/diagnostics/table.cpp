@@ -47,8 +47,8 @@ std::optional<double> time_to_look(const PlateView& view) {
   return step.time + 0.5 * step.dt;
 }
 
-void report_neglected(diagnostics::Report& report, const char* effect, double number, double limit,
-                      std::string what, std::string advice, double share) {
+void report_neglected(diagnostics::Report& report, const char* effect, double number, std::string what,
+                      std::string advice, double share, double limit) {
   if (auto finding = diagnostics::finding_of({.effect = effect,
                                               .number = number,
                                               .limit = limit,

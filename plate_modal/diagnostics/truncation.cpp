@@ -38,7 +38,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   void look(diagnostics::Report& report) override {
     if (!motion_) return look_at_deflection(report);
     const double share = all_ > 0 ? left_out_ / all_ : unknown;
-    report_neglected(report, "deflection beyond the modes", share, 0.05,
+    report_neglected(report, "deflection beyond the modes", share,
                      fmt::format("compliance of the loads in truncated modes = {:.2g}", share),
                      "the loads excite truncated modes: keep more modes ('modes.number')", share);
     // A load without a component in the truncated modes does not excite them at any frequency.
@@ -88,7 +88,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     const auto& d = view_.deflection;
     const double apart = d && d->direct > 0 ? d->apart / d->direct : unknown;
     report_neglected(
-        report, "deflection beyond the modes", apart, 0.05,
+        report, "deflection beyond the modes", apart,
         fmt::format("truncation error of the deflection = {:.2g}", apart),
         "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
         "more modes ('modes.number')",
@@ -99,11 +99,11 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   void look_at_load_frequency(diagnostics::Report& report, double share) const {
     const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
     report_neglected(
-        report, "load faster than the modes", seen.load_over_last, 2. / 3,
+        report, "load faster than the modes", seen.load_over_last,
         fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
                     seen.load_omega / (2 * std::numbers::pi), seen.load_over_last),
         "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')",
-        seen.load_over_last < 1 ? share / (1 / (seen.load_over_last * seen.load_over_last) - 1) : 1);
+        seen.load_over_last < 1 ? share / (1 / (seen.load_over_last * seen.load_over_last) - 1) : 1, 2. / 3);
   }
   /// Share of the initial kinetic energy that is in no mode.
   void look_at_velocity(diagnostics::Report& report) const {
@@ -113,7 +113,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     for (const double one : view_.surface.participation(v)) kept += one * one;
     const double lost = std::max(0.0, 1 - kept / (view_.model().mass * v.squaredNorm()));
     report_neglected(
-        report, "initial velocity beyond the modes", lost, 0.1,
+        report, "initial velocity beyond the modes", lost,
         fmt::format("initial kinetic energy outside the modes = {:.2g}", lost),
         "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'",
         0.5 * lost);  // of an energy

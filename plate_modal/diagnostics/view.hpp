@@ -48,9 +48,10 @@ std::optional<double> time_to_look(const PlateView& view);
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all);
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Reports a neglected effect unless its number is unknown. `share`: see diagnostics::Finding.
-void report_neglected(diagnostics::Report& report, const char* effect, double number, double limit,
-                      std::string what, std::string advice, double share = unknown);
+/// Reports a neglected effect unless its number is unknown. `share`: see diagnostics::Finding. `limit`: of the number, from which
+/// an unknown share is a warning.
+void report_neglected(diagnostics::Report& report, const char* effect, double number, std::string what,
+                      std::string advice, double share, double limit = 0);
 /// Reports an effect of the case unless its number is unknown.
 void report_present(diagnostics::Report& report, const char* effect, double number, double limit,
                     std::string what, std::string advice,

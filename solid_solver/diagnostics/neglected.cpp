@@ -57,7 +57,6 @@ Opinion neglected_inertia(const P& p, double inertia_over_load) {
   if (p.analysis != P::Analysis::static_ || has_finite_strain(p)) return {};
   return diagnostics::finding_of({.effect = "inertia",
                                   .number = inertia_over_load,
-                                  .limit = 0.01,
                                   .what = fmt::format("inertia / load = {:.2g}", inertia_over_load),
                                   .advice = "use 'analysis: dynamic'",
                                   .share = std::min(inertia_over_load, 1.)});
@@ -115,7 +114,6 @@ Opinion neglected_yielding(double share_of_yield) {
   return diagnostics::finding_of(
       {.effect = "yielding",
        .number = share_of_yield,
-       .limit = 1,
        .what = fmt::format("max equivalent stress / yield strength = {:.2g}", share_of_yield),
        .advice = "the body would yield: the result is that of an elastic body; use a program with plasticity",
        .share = std::max(0., share_of_yield - 1)});
@@ -167,7 +165,6 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
   return diagnostics::finding_of(
       {.effect = "thermal strain",
        .number = share,
-       .limit = 0.02,
        .what = fmt::format(
            "a temperature {} of {:.3g} K would strain a free body with {:.3g} 1/K by {:.2g}; max |grad u| = {:.2g}",
            own ? "change" : "range", kelvins, coefficient, strain, gradient),
@@ -179,7 +176,6 @@ Opinion thermoelastic_coupling(const P& p, double coupling_number) {
   diagnostics::EffectFinding found{
       .effect = "thermoelastic coupling",
       .number = coupling_number,
-      .limit = 0.05,
       .what = fmt::format("heat of deformation / stiffness = {:.1e}", coupling_number),
       .advice = "use 'thermoelastic-coupling: true'",
       .share = coupling_number};
@@ -254,7 +250,6 @@ class NeglectedWeight final : public diagnostics::Diagnostic {
     add(report, diagnostics::finding_of(
                     {.effect = "gravity",
                      .number = share,
-                     .limit = 0,
                      .what = fmt::format(
                          "along {} the weight would change the displacement under the loads by {:.2g} of it",
                          "xyz"[axis], share),
@@ -365,7 +360,6 @@ class MissingContact final : public diagnostics::Diagnostic {
         diagnostics::finding_of(
             {.effect = "contact",
              .number = share,
-             .limit = 0.01,
              .what =
                  fmt::format("faces pass through each other by {:.2g} of the largest displacement", share),
              .advice = "there is no contact of bodies with each other: hold the faces apart, or end the "

@@ -19,16 +19,14 @@ class ResolvedGrains final : public TankDiagnostic {
   void look(diagnostics::Report& report) override {
     if (bed().shells() > 1 || !(seen_->flow > 0)) return;
     const double biot = largest_biot();
-    constexpr double limit = 20;
     tell(report, {.effect = "resolved grains",
                   .number = biot,
-                  .limit = limit,
                   .what = fmt::format(
                       "Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
                       biot, biot / 5),
                   .advice = "set 'bed.shells': five resolve the grains",
                   .share = 1.2e-4 * biot});
-    report.position.push_back({"Biot number of the grains", biot, limit, "tank-biot"});
+    report.position.push_back({"Biot number of the grains", biot, 20, "tank-biot"});
   }
   void conclude(diagnostics::Report& report) override {
     if (!(seen_->flow > 0)) return;
@@ -76,7 +74,6 @@ class Inversions final : public TankDiagnostic {
     tell(report,
          {.effect = "mixing of inverted fluid",
           .number = share,
-          .limit = 0.05,
           .what = fmt::format(
               "fluid {:.3g} K colder than the fluid below it at t = {:.6g} s, z = {:.3f} m: {:.2g} of the "
               "run's range",
@@ -119,7 +116,6 @@ class Pumping final : public TankDiagnostic {
     const double share = loss / (density * usual_efficiency * f.specific_heat * (hot - cold));
     tell(report, {.effect = "pressure loss of the bed",
                   .number = share,
-                  .limit = 0.02,
                   .what = fmt::format(
                       "pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
                       1e-3 * loss, share),
@@ -160,7 +156,6 @@ class Gas final : public TankDiagnostic {
                  error = std::abs(mean / view_.fluid().specific_heat - 1);
     tell(report, {.effect = "specific heat of a gas by its temperature",
                   .number = error,
-                  .limit = 0.05,
                   .what = fmt::format("from the coldest to the hottest fluid of the run, air has {:.0f} "
                                       "J/(kg K), a difference of {:.2g} from the constant",
                                       mean, error),
@@ -180,7 +175,6 @@ class Gas final : public TankDiagnostic {
     tell(report,
          {.effect = "compressible flow of a gas",
           .number = mach,
-          .limit = 0.3,
           .what =
               fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow", mach),
           .advice =

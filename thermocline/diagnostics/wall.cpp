@@ -36,7 +36,6 @@ class WallStrength final : public TankDiagnostic {
     tell(report,
          {.effect = "yielding of the wall",
           .number = share,
-          .limit = 1,
           .what = fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", share),
           .advice = "the wall would yield: its stress and that of the grains are those of an elastic wall",
           .share = std::max(0., share - 1)});
@@ -44,7 +43,6 @@ class WallStrength final : public TankDiagnostic {
       tell(report,
            {.effect = "bending of the wall",
             .number = share_.shell - share_.rings,
-            .limit = 0.1,
             .what = fmt::format(
                 "max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
                 share_.rings, share_.shell),
