@@ -305,6 +305,9 @@ constexpr double least_strain = 0.9 * 0.2 / 4 / BucklingEstimate::low;
 // Tolerance of the solution in which a negative curvature of K + low K_sigma would appear.
 constexpr double shown_at = 1e-3;
 constexpr int most_searches = 2000, most_refinements = 40, refinements_compared = 6;
+// Refinements before the search, and the factor over `low` of a load that needs none.
+constexpr int first_refinements = 10;
+constexpr double far_load = 4;
 // Increase of compression since the last search that justifies another one.
 constexpr double more_compression = 1.1;
 // Largest relative change in the last refinements for a factor to be reported.
@@ -417,6 +420,11 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
     };
     return modes::look_for_negative_curvature(mesh.comm, loaded, of.solve, force, shown_at, most_searches);
   };
+  // Only a solve shows that no motion at all is soft, but a few refinements tell that none is anywhere near.
+  const auto never = [](const std::vector<double>&) { return false; };
+  const modes::LowestQuotient first = modes::lowest_quotient(of, of_stress, first_refinements, never);
+  if (first.value > -1 / (far_load * BucklingEstimate::low))
+    return {.factor = 0, .iterations = first.iterations};
   modes::Curvature found = look(BucklingEstimate::low);
   if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
   // Fewer motions are soft under less load, so this one is closer to the softest.
