@@ -13,7 +13,7 @@ StressStiffness::StressStiffness(const mesh::Mesh& mesh, const ElasticOperator& 
     : space_(mesh, rows), of_(std::move(of)) {
   const SharedFaces shared = shared_faces(mesh, rows);
   if (parallel::any(mesh.comm, shared.n_mine > 0)) {
-    edges_ = std::make_unique<SharedEdges>(mesh, rows, shared.faces, shared.volume);
+    edges_ = std::make_unique<SharedEdges>(mesh, rows, shared);
     find_edge_stresses(shared, of_.stress, *edges_);
     for (Index e = 0; e < Index(edges_->n_edges()); ++e) edge_stress_.push_back(edge_tensor(*edges_, e));
     edge_value_.resize(edge_stress_.size() * SharedEdges::gradient_stride);
@@ -44,7 +44,8 @@ void StressStiffness::push(const FaceGroup& group) {
         Four sigma{};
         for (int k = 0; k < 4; ++k) {
           const Index f = group.volumes[i].face[k];
-          if (f >= 0) sigma[k] = group.own * group.volumes[i].whole[k] * of_.stress[std::size_t(f)](b, c);
+          if (f >= 0)
+            sigma[k] = group.volumes[i].own[k] * group.volumes[i].whole[k] * of_.stress[std::size_t(f)](b, c);
         }
         for (int a = 0; a < D; ++a) stress[a][c] += g[a][b] * sigma;
       }
