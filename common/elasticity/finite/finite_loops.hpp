@@ -115,7 +115,7 @@ template <int D, bool HasSecond>
 }
 
 /// Adds t V / 3 (F - I), or its change, to the edges, gradient_stride numbers each.
-inline void to_edges(const FaceGroup& group, const double* values, double* edges) {
+[[gnu::always_inline]] inline void to_edges(const FaceGroup& group, const double* values, double* edges) {
   for (std::size_t i = 0; i < group.edges.size(); ++i) {
     Four g[3][3];
     blocks::gradient<3>(group.blocks[i], values, g);
@@ -128,7 +128,7 @@ inline void to_edges(const FaceGroup& group, const double* values, double* edges
 }
 
 /// Adds the forces of the edges' stress to the nodes.
-inline void from_edges(const FaceGroup& group, const double* edges, double* forces) {
+[[gnu::always_inline]] inline void from_edges(const FaceGroup& group, const double* edges, double* forces) {
   for (std::size_t i = 0; i < group.edges.size(); ++i) {
     Four p[3][3] = {};
     for (int k = 0; k < 4; ++k)
