@@ -55,7 +55,8 @@ void QuadraticFit::add_sample(const Vec3& place, const Tensor3& moment, std::spa
   auto column = samples_.col(n_samples_++);
   const Terms phi = terms(place, moment);
   for (Eigen::Index i = 0; i < phi.size(); ++i) column[i] = root * phi[i];
-  for (Eigen::Index k = n_terms(); k < column.size(); ++k) column[k] = root * values[std::size_t(k - n_terms())];
+  for (Eigen::Index k = n_terms(); k < column.size(); ++k)
+    column[k] = root * values[std::size_t(k - n_terms())];
 }
 
 void QuadraticFit::add_row(const Row& row, double value, double weight) {
