@@ -117,8 +117,7 @@ class FractionalStep {
   void solve_coupled(const State<D>& from, const Vectors<D>& w);
   void project_from_guess(const State<D>& from, const Vectors<D>& w);
   Vectors<D> friction_of(const Vectors<D>& x) const;
-  double stiffness();
-  double splitting_error(const PressureLevel<D>& now);
+  double splitting_error(const PressureLevel<D>& now, double enough);
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
   void set_body_force();
@@ -146,7 +145,6 @@ class FractionalStep {
   Judgement judgement_;                      // of level_
   std::uint64_t states_ = 0;                 // number of states so far
   double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
-  double stiffness_ = 0;                     // see stiffness(); 0 if not computed yet
 };
 
 }  // namespace couplet::fluid
