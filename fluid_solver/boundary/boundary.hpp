@@ -73,7 +73,7 @@ class GivenVelocity {
  public:
   /// Throws Error if the keys do not fit the patch. Collective.
   GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
-                const BoundaryParameters& parameters);
+                const std::map<std::string, BoundaryParameters>& boundaries);
 
   const FaceRange& faces() const { return faces_; }
   const mesh::Patch& patch() const { return *patch_; }
@@ -184,7 +184,7 @@ class Boundary {
     FaceCorners corners;  // empty unless it varies in space
   };
   void add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
-                 const BoundaryParameters& b);
+                 const std::map<std::string, BoundaryParameters>& boundaries);
   void add_interface(const mesh::Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
   void add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters);
   MPI_Comm comm_;

@@ -71,7 +71,8 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
       .plausible(1e-9, 1e4)
       .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
-      .doc("for mean-speed. parabolic: zero at the rim of the patch, a straight line in 2-D, a disk in 3-D");
+      .doc(
+          "for mean-speed. parabolic: zero at the rim of the patch, a straight line in 2-D, a disk in 3-D; symmetry planes at the rim continue it");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   declare_absorbing(s, b);
