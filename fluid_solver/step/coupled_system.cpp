@@ -81,6 +81,7 @@ double FractionalStep<D>::splitting_error(const PressureLevel<D>& now, double en
 template <int D>
 void FractionalStep<D>::solve_coupled(const State<D>& from, const Vectors<D>& w) {
   if (scene_.obstacles->marks() || bodies_) return;
+  if (step_.moving() && !scene_.boundary.interface_patches().empty()) return;  // docs/validation/choices.md
   const double first = splitting_error(*level_, largest_splitting);
   if (first <= largest_splitting) return;
   const std::size_t owned = std::size_t(mesh_.cells.n_owned());

@@ -301,7 +301,7 @@ TEST(PrescribedMotion, a_squeezed_film_has_the_force_of_lubrication_theory_also_
   FluidParameters p = fluid_of(1, 5, 1e-8);
   p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::outlet);
   p.boundaries["ymin"] = boundary(BoundaryType::no_slip);
-  p.boundaries["ymax"] = boundary(BoundaryType::interface);
+  p.boundaries["ymax"] = boundary(BoundaryType::body);
   FluidCase<2> film(
       MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {40, 8, 1}, Vec3::Zero(), Vec3(1, 0.1, 1)), p,
       [&](const Vec3& x, GlobalIndex, double t) { return Vec3(x.x(), x.y() / 0.1 * gap(t), 0); });
