@@ -87,8 +87,6 @@ const std::array cards{
               "one expression per face and step"},
     PlateCard{"forces of a fluid", "`coupling`", [](const S& s) { return when(s.coupled, "coupling"); },
               "the mean of each mode over each face; the processes of the fluid and the coupler"},
-    PlateCard{"impedance for a Robin interface", "`surface-density: true`",
-              [](const S& s) { return when(s.parameters.surface_density, "surface-density"); }},
     PlateCard{"modes of another program", "`modes.file`",
               [](const S& s) { return when(s.parameters.modes_file.has_value(), "modes.file"); },
               "no mesh, no eigenvalue problem"},

@@ -142,8 +142,6 @@ coupling::Interface Structure::initialise() {
                      {"viscous-force", "N", coupling::Interface::Place::faces}};
   interface.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
                      {"velocity", "m/s", coupling::Interface::Place::vertices}};
-  if (parameters_.surface_density)
-    interface.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
   base::when_started([this] { results_->write_start(); });
   return interface;
 }
@@ -210,7 +208,6 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   if (parameters_.analysis == Parameters::Analysis::static_)
     for (std::size_t m = 0; m < rate.size(); ++m) rate[m] = (trial_.q[m] - state_.q[m]) / step_.dt;
   out["velocity"] = surface_.motion(rate);
-  if (parameters_.surface_density) out["surface-density"] = model().face_density;
   return out;
 }
 

@@ -296,33 +296,10 @@ template <int D>
 void Boundary<D>::add_interface(const mesh::Patch& patch, const FaceRange& faces,
                                 const BoundaryParameters& b) {
   interface_patches_.push_back(patch.name);
-  if (b.foresees()) {
-    yields_ = true;
-    wall_mass_.resize(interface_.size(), 0.);
-    std::fill_n(wall_mass_.begin() + faces.first, faces.count, b.surface_density.value_or(0.));
-  }
-  if (b.impedance == Impedance::structure) {
-    asks_for_mass_ = true;
-    asked_.resize(interface_.size(), 0);
-    std::fill_n(asked_.begin() + faces.first, faces.count, 1);
-  }
-}
-
-template <int D>
-bool Boundary<D>::set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
-  bool changed = false;
-  for (std::size_t i = 0; i < boundary_faces.size(); ++i) {
-    const Index b = boundary_faces[i];
-    if (!asked_[b]) continue;
-    if (!(masses[i] > 0) || !std::isfinite(masses[i]))
-      throw Error(
-          "impedance: structure: the structure gave a 'surface-density' of {:g} kg/m^2 at an interface "
-          "face; it must be above 0.",
-          masses[i]);
-    changed = changed || wall_mass_[b] != masses[i];
-    wall_mass_[b] = masses[i];
-  }
-  return changed;
+  if (!b.surface_density) return;
+  yields_ = true;
+  wall_mass_.resize(interface_.size(), 0.);
+  std::fill_n(wall_mass_.begin() + faces.first, faces.count, *b.surface_density);
 }
 
 template <int D>

@@ -85,8 +85,6 @@ class FractionalStep {
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
   const Scene<D>& scene() const { return scene_; }
-  /// The masses of such walls have changed; the pressure matrix is rebuilt when it is needed next.
-  void forget_walls() { projection_.forget_matrix(); }
   /// Pressure of the last project() per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return projected_.boundary; }
   /// State of the solvers in addition to the level, as of the last keep(). load() is collective.
