@@ -146,7 +146,7 @@ void EnergyBalance::look(diagnostics::Report& report) {
   const double work = parallel::sum(view_.comm(), state.load_work);
   audit_.is_driven = work != 0;
   audit_.given = parallel::sum(view_.comm(), state.energies.initial_kinetic) + work +
-                 view_.stepper.ledger().initial_contact();
+                 view_.stepper.ledger().initial_contact() + by_changes_;
   audit_.held = kinetic + strain + view_.stepper.ledger().contact(state);
   audit_.scale = std::max(audit_.scale, std::abs(audit_.given));
   if (audit_.is_hopeless())
@@ -179,8 +179,14 @@ void EnergyBalance::conclude(diagnostics::Report& report) {
 }
 
 void EnergyBalance::visit(io::Archive& archive) {
-  archive.common("audit", audit_, largest_kinetic_, largest_strain_);
+  archive.common("audit", audit_, largest_kinetic_, largest_strain_, by_changes_);
   archive.sums("rates", rates_);
+  if (strain_ && view_.body.thermal()) return;
+  const double kinetic = parallel::sum(view_.comm(), view_.stepper.ledger().kinetic(view_.now()));
+  const double now = kinetic + strain_energy() + view_.stepper.ledger().contact(view_.now());
+  double then = now;
+  archive.common("held", then);
+  if (std::abs(now - then) > 1e-9 * then) by_changes_ += now - then;
 }
 
 }  // namespace couplet::solid

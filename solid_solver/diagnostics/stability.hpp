@@ -82,6 +82,7 @@ class EnergyBalance final : public diagnostics::Diagnostic {
   SolidView view_;
   std::shared_ptr<StrainEnergy> strain_;
   EnergyAudit audit_;
+  double by_changes_ = 0;                            // energy that the changes of restarts gave the body [J]
   double largest_kinetic_ = 0, largest_strain_ = 0;  // [J]
   std::vector<double> rates_ = {0, 0};  // integrals over time of m v^2 and m a^2, this rank [J s], [J/s]
 };

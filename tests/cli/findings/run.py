@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Findings act: exit code 4 for a useless answer, what is accepted passes, what is neglected is another channel, ten halvings end a run,
 all programs of a job agree. Each is shown to fire and not to fire.
-Usage: run.py BIN CONFIGS accept|strict|stress|scenes|sound|plant|coupled|effects"""
+Usage: run.py BIN CONFIGS accept|strict|stress|scenes|sound|plant|coupled|effects|resumed"""
 import json
 import pathlib
 import re
@@ -175,6 +175,18 @@ def effects_():
             check(f"film correlation at Re {reynolds}, fitted from 15", (share is not None) == (reynolds < 15), share)
 
 
+def resumed():
+    """The energy of a stiffer material is no growth, and the change is a finding."""
+    sets = [*beam(0.5, 12), "simulation.checkpoint.interval=6"]
+    with tempfile.TemporaryDirectory() as folder:
+        line = [programs / "solid_solver", configs / "vibrating-cantilever/case.yaml", *(f"--set={s}" for s in sets), f"--set=simulation.output.folder={folder}/out"]
+        subprocess.run([*line, "--set=simulation.end-time=6"], capture_output=True, check=True)
+        done = subprocess.run([*line, "--set=participants.solid.material.youngs-modulus=20 MPa", "--restart", f"{folder}/out/checkpoints", "--restart-with-changes"],
+                              capture_output=True, text=True)
+        report = pathlib.Path(f"{folder}/out/solid/run.json")
+        ids = {f["id"] for f in json.loads(report.read_text())["findings"]} if report.exists() else done.stdout[-400:]
+    check("resumed with another modulus", done.returncode == 0 and "changed-since-checkpoint" in ids and "energy-growth" not in ids, (done.returncode, ids))
 
-{"accept": accept, "strict": strict, "stress": stress, "scenes": scenes_, "sound": sound, "plant": plant, "coupled": coupled, "effects": effects_}[kind]()
+
+{"accept": accept, "strict": strict, "stress": stress, "scenes": scenes_, "sound": sound, "plant": plant, "coupled": coupled, "effects": effects_, "resumed": resumed}[kind]()
 end()
