@@ -68,7 +68,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
     if (!rate_.empty())
       report_neglected(report, "inertia", inertia, fmt::format("inertia / load = {:.2g}", inertia),
                        "use 'analysis: dynamic'", inertia < 0.5 ? inertia / (1 - inertia) : 1);
-    if (view_.parameters.gravity.empty() && !moves_freely())
+    if (view_.parameters.gravity.empty() && !moves_freely() && view_.fluid_force.empty())
       report_neglected(report, "gravity", weight,
                        fmt::format("across the plate its weight would add {:.2g} of the motion", weight),
                        "if it acts there, use 'gravity'", weight);
