@@ -95,15 +95,6 @@ std::vector<double> FluidParticipant<D>::wall_load(const coupling::Exchange& in)
   return load;
 }
 
-/// Takes the masses for `impedance: structure`.
-template <int D>
-void FluidParticipant<D>::take_wall_mass(const coupling::Exchange& in) {
-  const std::vector<double> masses = interface_->scatter_faces(datum(in, "surface-density"), 1);
-  std::vector<Index> faces = interface_->faces();
-  for (Index& f : faces) f -= mesh_.n_interior;
-  fluid_->set_wall_mass(faces, masses);
-}
-
 /// Largest mean displacement of an interface face over the height of its cell. Collective.
 template <int D>
 double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) const {
@@ -198,8 +189,6 @@ coupling::Interface FluidParticipant<D>::initialise() {
     const coupling::Interface::Datum own{"own-wall-force", "N", Place::faces, 1};
     description.takes.push_back(own);
     description.gives.push_back(own);
-    if (fluid_->boundary().asks_for_mass())
-      description.takes.push_back({"surface-density", "kg/m^2", Place::faces, 1});
   }
   if (holds_volume(fluid_->parameters())) description.gives.push_back({"inflow", "m^3/s", Place::faces, 2});
   return description;
@@ -305,7 +294,6 @@ coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
   if (!predicted_) points_ = receive_points();
   auto [w, turn] = wall_motion(in);
   if (yields() && step_.scheme != coupling::Scheme::standalone) {
-    if (fluid_->boundary().asks_for_mass()) take_wall_mass(in);
     fluid_->yield_from(wall_load(in));
   }
   prepare(w);

@@ -62,7 +62,6 @@ class FluidParticipant final : public coupling::Participant {
   std::pair<Vectors<D>, Vectors<D>> wall_motion(const coupling::Exchange& in) const;
   std::vector<Vec3> body_velocities(const mesh::Patch& patch) const;
   std::vector<double> wall_load(const coupling::Exchange& in) const;
-  void take_wall_mass(const coupling::Exchange& in);
   /// True if the case moves bodies or a mesh mover moves some of its own accord.
   bool moves_bodies() const { return prescribed_ || (motion_ && !fluid_->boundary().body_patches().empty()); }
   bool yields() const { return interface_ && fluid_->boundary().yields(); }

@@ -37,7 +37,8 @@ PlateCard left_out(const char* name, const char* key, const char* judged_by) {
 }
 
 const std::array cards{
-    PlateCard{"inertia", "`analysis: dynamic`", dynamic_asked_by, "rate and acceleration per mode"},
+    PlateCard{"inertia", "`analysis: dynamic`", dynamic_asked_by, "rate and acceleration per mode",
+              "of the static steps: acceleration over omega^2 and the deflection, rms over the modes"},
     PlateCard{"balance of the energies", "`analysis: dynamic`", dynamic_asked_by, "energies.csv",
               "in a dynamic analysis: error of the energy balance over the largest energy, 0.01", true},
     PlateCard{
@@ -56,8 +57,9 @@ const std::array cards{
               "with `contact`: a step over the duration of an impact, 0.1", true},
     left_out("large rotation", "no key: not in the model",
              "max displacement over the structure's size, or rigid rotation [rad]"),
-    left_out("motion in the plane", "no key: not in the model",
-             "in-plane share of gravity on a plate that may fall, or of the initial velocity"),
+    left_out(
+        "motion in the plane", "no key: not in the model",
+        "part in the plane over that across it, of gravity on a plate that may fall, or of the initial velocity"),
     left_out("deflection beyond the modes", "`modes.number`",
              "truncated modes: static, of the deflection, dynamic, of the compliance of the loads"),
     left_out("load faster than the modes", "`modes.number`",
@@ -74,12 +76,13 @@ const std::array cards{
     left_out("stretch of the mid-surface", "no key: not in the model",
              "of a plate with two or more held edges: deflection over thickness"),
     left_out("shear and rotary inertia", "no key: not in the model",
-             "thickness over half the wavelength of the highest mode with 1 % of the motion"),
+             "softening of the modes by their wavelength over the thickness, rms over the motion"),
     PlateCard{"damping", "`damping`",
               [](const S& s) { return when(s.parameters.damping.has_value(), "damping"); },
-              "a coefficient per mode"},
+              "a coefficient per mode", "share of the motion that 2 % of the critical damping would take"},
     PlateCard{"gravity", "`gravity`",
-              [](const S& s) { return when(!s.parameters.gravity.empty(), "gravity"); }, "a load per mode"},
+              [](const S& s) { return when(!s.parameters.gravity.empty(), "gravity"); }, "a load per mode",
+              "deflection by the weight across a held plate over that by the loads"},
     PlateCard{"contact with a seat", "`contact`", contact_asked_by,
               "mode shapes of the faces toward the seat, a full matrix of the modes; contact.csv"},
     PlateCard{"pressures of the case", "`load`",
@@ -87,8 +90,6 @@ const std::array cards{
               "one expression per face and step"},
     PlateCard{"forces of a fluid", "`coupling`", [](const S& s) { return when(s.coupled, "coupling"); },
               "the mean of each mode over each face; the processes of the fluid and the coupler"},
-    PlateCard{"impedance for a Robin interface", "`surface-density: true`",
-              [](const S& s) { return when(s.parameters.surface_density, "surface-density"); }},
     PlateCard{"modes of another program", "`modes.file`",
               [](const S& s) { return when(s.parameters.modes_file.has_value(), "modes.file"); },
               "no mesh, no eigenvalue problem"},

@@ -28,22 +28,20 @@ Parameters with_unit_directions(Parameters p) {
   return p;
 }
 
-/// A restart may remove or move the seat, or change gravity. The energy balance then starts from the energy
-/// in the new case.
+/// A restart may change the material, the seat or gravity. The energy balance then starts from the energy in the new case.
 void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState& state) {
   Energies& kept = state.energies;
   const Energies now = oscillators.start(state.q, state.v).energies;
   const double scale =
       std::abs(kept.kinetic) + std::abs(kept.strain) + std::abs(kept.gravity) + std::abs(kept.contact);
-  const double jump = now.contact - kept.contact + now.gravity - kept.gravity;
-  if (!(std::abs(now.contact - kept.contact) + std::abs(now.gravity - kept.gravity) > 1e-9 * scale)) return;
+  const double jump = now.total() - kept.total();
+  if (!(std::abs(jump) > 1e-9 * scale)) return;
   if (tells)
     log::warn(
-        "energy: with the changes of this restart the seat stores {:.4g} J instead of {:.4g} J, and gravity "
-        "{:.4g} J instead of {:.4g} J: this jump of {:.4g} J is not part of the balance.",
-        now.contact, kept.contact, now.gravity, kept.gravity, jump);
+        "energy: with the changes of this restart the structure holds {:.4g} J instead of {:.4g} J: this jump is not part of the balance.",
+        now.total(), kept.total());
+  kept.kinetic = now.kinetic, kept.strain = now.strain, kept.gravity = now.gravity,
   kept.contact = now.contact;
-  kept.gravity = now.gravity;
   kept.initial += jump;
 }
 
@@ -142,8 +140,6 @@ coupling::Interface Structure::initialise() {
                      {"viscous-force", "N", coupling::Interface::Place::faces}};
   interface.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
                      {"velocity", "m/s", coupling::Interface::Place::vertices}};
-  if (parameters_.surface_density)
-    interface.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
   base::when_started([this] { results_->write_start(); });
   return interface;
 }
@@ -210,7 +206,6 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   if (parameters_.analysis == Parameters::Analysis::static_)
     for (std::size_t m = 0; m < rate.size(); ++m) rate[m] = (trial_.q[m] - state_.q[m]) / step_.dt;
   out["velocity"] = surface_.motion(rate);
-  if (parameters_.surface_density) out["surface-density"] = model().face_density;
   return out;
 }
 

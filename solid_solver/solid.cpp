@@ -45,7 +45,7 @@ coupling::Exchange Solid::solve(const coupling::Exchange& in) {
     stepper_.prepare_loads();
   }
   stepper_.solve(interface_.load(in));
-  return interface_.values(stepper_.trial(), stepper_.step().dt);
+  return interface_.values(stepper_.trial());
 }
 
 coupling::StepReport Solid::accept_step() {

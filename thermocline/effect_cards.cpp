@@ -18,7 +18,11 @@ std::string when(const P& p, bool on, const char* reason) {
 const std::array cards{
     Card{"resolved grains", "`bed.shells` above 1",
          [](const P& p) { return when(p, p.tank.bed.shells > 1, "bed.shells"); },
-         "a temperature per shell of the grains of each cell", "Biot number of the grains"},
+         "a temperature per shell of the grains of each cell",
+         "delay within the grains over the passage of a front, and Biot number"},
+    Card{"range of the film correlation", "`bed.closures.film-coefficient`",
+         [](const P& p) { return when(p, p.tank.bed.closures.film_coefficient > 0, "film-coefficient"); }, "",
+         "where Re is outside: width of the front that the film makes, over the bed"},
     Card{"implicit advection", "`bed.advection: implicit`",
          [](const P& p) { return when(p, p.tank.bed.advection == Advection::implicit, "bed.advection"); }, "",
          "smearing of a front by the step, over the bed's height, 0.05", true},

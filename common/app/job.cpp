@@ -70,8 +70,12 @@ bool lock(const std::filesystem::path& name) {
 void find_restart(Job& job, const CommandLine& command_line, bool is_driver) {
   job.restart_folder = find_checkpoint(command_line.restart_folder, is_driver && job.rank == 0);
   job.restart_time = read_run_state(job.restart_folder).time;
-  if (is_driver && job.rank == 0)
-    judge_changes(job.restart_folder, job.simulation.keys, command_line.restart_with_changes);
+  if (is_driver)
+    for (const std::string& change :
+         judge_changes(job.restart_folder, job.simulation.keys, command_line.restart_with_changes))
+      diagnostics::finding(job.rank, {.id = "changed-since-checkpoint",
+                                      .sentence = "since the checkpoint: " + change,
+                                      .subject = change});
   const double end = job.simulation.end_time;
   if (job.restart_time > end * (1 + 1e-9))
     throw Error(

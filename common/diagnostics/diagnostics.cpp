@@ -25,14 +25,17 @@ void Diagnostics::take(Report& report) {
     const auto same = [&](const Finding& w) { return w.id == f.id && w.subject == f.subject; };
     const auto worst = std::ranges::find_if(worst_, same);
     const bool is_news = f.severity > (worst == worst_.end() ? Severity::note : worst->severity);
-    if (is_news) {
+    const bool is_worse =
+        is_news || worst == worst_.end() || (f.severity >= worst->severity && exceeds(f, *worst));
+    if (!is_worse) continue;
+    if (f.severity > Severity::note) {
       Finding told = f;
       if (!concluding_ || !f.effect.empty()) told.sentence = fmt::format("t = {:g} s: {}", time_, f.sentence);
-      finding(rank_, std::move(told));
+      is_news ? finding(rank_, std::move(told)) : amend(told);
     }
     if (worst == worst_.end())
       worst_.push_back(std::move(f));
-    else if (is_news || (f.severity >= worst->severity && exceeds(f, *worst)))
+    else
       *worst = std::move(f);
   }
   keep_nearest(position_, report.position);

@@ -73,6 +73,11 @@ void finding(int rank, Finding f) {
   kept().push_back(std::move(f));
 }
 
+void amend(const Finding& worse) {
+  const auto same = [&](const Finding& f) { return f.id == worse.id && f.subject == worse.subject; };
+  std::ranges::replace_if(kept(), same, worse);
+}
+
 const std::vector<Finding>& findings() { return kept(); }
 
 void resume_findings(int rank, const std::vector<Finding>& earlier) {

@@ -34,6 +34,8 @@ struct Finding {
 
 /// Logs (rank 0) and stores a finding. Call it on every rank. Throws std::logic_error for an unknown id.
 void finding(int rank, Finding f);
+/// Replaces the stored finding of the same id and subject by a worse one, without logging it.
+void amend(const Finding& worse);
 /// All findings of this process so far.
 const std::vector<Finding>& findings();
 /// Adds the findings of an earlier part of this run, before it was interrupted. Findings that the resumed run

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/fv/gradients.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <cstring>
+
+#include "common/base/processor_clones.hpp"
 
 namespace couplet::fv {
 
@@ -66,15 +68,9 @@ constexpr double not_spanned = 1e-20;
 
 }  // namespace
 
-NearQuadratic::NearQuadratic(int dim, const Vec3& centre, double reach, int values)
-    : dim_(dim), centre_(centre), reach_(reach) {
-  const Eigen::Index n = 1 + dim + dim * (dim + 1) / 2;
-  of_ = Eigen::MatrixXd::Zero(n, n), right_ = Eigen::MatrixXd::Zero(n, values);
-}
-
-Eigen::VectorXd NearQuadratic::terms(const Vec3& place) const {
+NearQuadratic::Terms NearQuadratic::terms(const Vec3& place) const {
   const Vec3 x = (place - centre_) / reach_;
-  Eigen::VectorXd phi(of_.rows());
+  Terms phi(n_);
   int i = 0;
   phi[i++] = 1;
   for (int a = 0; a < dim_; ++a) phi[i++] = x[a];
@@ -83,21 +79,89 @@ Eigen::VectorXd NearQuadratic::terms(const Vec3& place) const {
   return phi;
 }
 
-void NearQuadratic::add(const Vec3& place, std::span<const double> values) {
-  const Eigen::VectorXd phi = terms(place);
-  const double weight = 1 / (near_weight + ((place - centre_) / reach_).squaredNorm());
-  of_ += weight * phi * phi.transpose();
-  right_ += weight * phi * Eigen::Map<const Eigen::RowVectorXd>(values.data(), right_.cols());
+namespace {
+
+// Vector values are passed only between inlined functions, so no ABI is involved.
+#pragma GCC diagnostic ignored "-Wpsabi"
+using Lanes [[gnu::vector_size(32)]] = double;
+using Row = std::array<double, 16>;
+
+[[gnu::always_inline]] inline Lanes load(const double* from) {
+  Lanes value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
 }
 
-Eigen::MatrixXd NearQuadratic::solve() const {
+/// Adds a_i a_j of four rows `a`, in blocks of four from the diagonal on.
+COUPLET_PROCESSOR_CLONES void add_products(const std::array<Row, 4>& a, std::span<Row> products) {
+  for (std::size_t i = 0; i < products.size(); ++i)
+    for (std::size_t j = i / 4 * 4; j < 16; j += 4) {
+      double* to = products[i].data() + j;
+      const Lanes sum = load(to) + a[0][i] * load(a[0].data() + j) + a[1][i] * load(a[1].data() + j) +
+                        a[2][i] * load(a[2].data() + j) + a[3][i] * load(a[3].data() + j);
+      std::memcpy(to, &sum, sizeof sum);
+    }
+}
+
+/// Cholesky's method on the upper triangle. The last four columns are right-hand sides and become the solutions.
+COUPLET_PROCESSOR_CLONES void solve_rows(std::span<Row> rows) {
+  const std::size_t n = rows.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double inverse = 1 / std::sqrt(rows[k][k]);
+    for (double& value : rows[k]) value *= inverse;
+    for (std::size_t i = k + 1; i < n; ++i)
+      for (std::size_t j = i / 4 * 4; j < 16; j += 4) {
+        const Lanes left = load(rows[i].data() + j) - rows[k][i] * load(rows[k].data() + j);
+        std::memcpy(rows[i].data() + j, &left, sizeof left);
+      }
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    Lanes value = load(rows[i].data() + 12);
+    for (std::size_t j = i + 1; j < n; ++j) value -= rows[i][j] * load(rows[j].data() + 12);
+    value /= rows[i][i];
+    std::memcpy(rows[i].data() + 12, &value, sizeof value);
+  }
+}
+
+}  // namespace
+
+void NearQuadratic::take_batch() {
+  add_products(batch_, {products_.data(), std::size_t(n_)});
+  batch_ = {}, waiting_ = 0;
+}
+
+void NearQuadratic::add(const Vec3& place, std::span<const double> values) {
+  const Vec3 x = (place - centre_) / reach_;
+  const double weight = 1 / std::sqrt(near_weight + x.squaredNorm());
+  Row& row = batch_[waiting_];
+  row[0] = weight;
+  std::size_t i = 1;
+  for (int a = 0; a < dim_; ++a) row[i++] = weight * x[a];
+  for (int a = 0; a < dim_; ++a)
+    for (int b = a; b < dim_; ++b) row[i++] = weight * x[a] * x[b];
+  for (std::size_t k = 0; k < std::size_t(values_); ++k) row[12 + k] = weight * values[k];
+  if (++waiting_ == batch_.size()) take_batch();
+}
+
+NearQuadratic::Coefficients NearQuadratic::solve() {
+  take_batch();
   // Thin cells give terms of very different magnitude.
-  const double least = not_spanned * of_(0, 0);
-  const Eigen::VectorXd scale =
-      of_.diagonal().unaryExpr([&](double v) { return v > least ? 1 / std::sqrt(v) : 0; });
-  Eigen::MatrixXd scaled = scale.asDiagonal() * of_ * scale.asDiagonal();
-  scaled.diagonal().array() += least_pivot;
-  return scale.asDiagonal() * scaled.llt().solve(scale.asDiagonal() * right_);
+  const auto n = std::size_t(n_);
+  std::array<double, most_terms> scale{};
+  for (std::size_t i = 0; i < n; ++i)
+    if (products_[i][i] > not_spanned * products_[0][0]) scale[i] = 1 / std::sqrt(products_[i][i]);
+  std::array<Row, most_terms> rows = products_;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) rows[i][j] *= scale[i] * scale[j];
+    for (std::size_t j = 12; j < 16; ++j) rows[i][j] *= scale[i];
+    rows[i][i] += least_pivot;
+  }
+  solve_rows({rows.data(), n});
+  Coefficients c(n_, values_);
+  for (int i = 0; i < n_; ++i)
+    for (int k = 0; k < values_; ++k)
+      c(i, k) = scale[std::size_t(i)] * rows[std::size_t(i)][std::size_t(12 + k)];
+  return c;
 }
 
 namespace {

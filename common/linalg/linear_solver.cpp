@@ -55,15 +55,17 @@ void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
 }
 
 // Smoothed aggregation with one symmetric SOR sweep, the best packaged preconditioner for FV Laplacians: ML or, in
-// builds of PETSc without it (Debian 13), GAMG. The matrix norm bounds the spectral radius in ML's prolongation
-// smoother. ML's other estimate uses random vectors that continue from setup to setup, so a restarted run would
-// not be reproducible (2 % more iterations on the thin plate's fluid).
+// builds of PETSc without it (Debian 13), GAMG. Setups must not depend on earlier ones, or a restarted run would
+// not be reproducible: the matrix norm bounds the spectral radius in ML's prolongation smoother, whose other
+// estimate uses random vectors that continue from setup to setup (2 % more iterations on the thin plate's fluid),
+// and GAMG must not keep the interpolation of its first matrix.
 void choose_aggregation(PC pc) {
 #ifdef PETSC_HAVE_ML
   petsc_check(PCSetType(pc, PCML));
   petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_pc_ml_SpectralNormScheme_Anorm", "true"));
 #else
   petsc_check(PCSetType(pc, PCGAMG));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_pc_gamg_reuse_interpolation", "false"));
 #endif
   petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_mg_levels_ksp_type", "richardson"));
   petsc_check(PetscOptionsSetValue(nullptr, "-couplet_sa_mg_levels_ksp_max_it", "1"));

@@ -16,13 +16,14 @@ namespace couplet::linalg {
 // PETSc installs no signal handlers. It starts while the program runs, so removing them later
 // (PetscPopSignalHandler) would also remove the program's own, which save the state on a stop. Errors become
 // exceptions (petsc_check()); PETSc prints nothing. It does not read .petscrc, which may lie beside a case from
-// elsewhere and start a debugger.
+// elsewhere and start a debugger. Options of a preconditioner that needed no coarse level are no mistake.
 PetscEnvironment::PetscEnvironment(MPI_Comm program) {
   PETSC_COMM_WORLD = program;
   // PETSc keeps the pointers. It obeys -skip_petscrc only as an argument.
-  static char name[] = "couplet", no_file[] = "-skip_petscrc", no_handler[] = "-no_signal_handler";
-  static std::array<char*, 4> words{name, no_file, no_handler, nullptr};
-  int count = 3;
+  static char name[] = "couplet", no_file[] = "-skip_petscrc", no_handler[] = "-no_signal_handler",
+              options_left[] = "-options_left", no[] = "no";
+  static std::array<char*, 6> words{name, no_file, no_handler, options_left, no, nullptr};
+  int count = 5;
   char** all = words.data();
   PetscErrorCode code = PetscInitialize(&count, &all, nullptr, nullptr);
   if (code == 0) code = PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);

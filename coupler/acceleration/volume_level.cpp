@@ -22,8 +22,8 @@ constexpr double exact = 1e-11, good_enough = 1e-6;
 constexpr double resting = 1e-2;
 constexpr int most_tries = 12;
 // Damping of an oscillation per step (0.15 has the smallest spectral radius, 0.612), and the relative size
-// that is ignored: it moves the level by less than a coupling tolerance of 1e-6 does.
-constexpr double damping = 0.15, calm = 1e-5;
+// that is ignored: it moves the level by less than a coupling tolerance of 1e-5 does.
+constexpr double damping = 0.15, calm = 1e-4;
 // Decay of the largest flow per step as a scale, because flows pass through zero.
 constexpr double fading = 0.98;
 

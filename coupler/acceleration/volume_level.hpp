@@ -21,7 +21,7 @@ namespace couplet::coupler {
 /// E is the excess volume at the end of the step over the inflow's. E* is zero unless the flux mismatch at
 /// the wall, h = sum w . S - Q, alternates between steps. E = 0 would keep such an oscillation forever with
 /// the trapezoidal rule (h^{n+1} + h^n = 0); E* = 0.15 dt/2 (h^n - h^{n-1})/2 leaves 0.61 of it per step.
-/// Oscillations below 1e-5 of the flow are ignored, so the volume is exact for smooth motion. lambda follows
+/// Oscillations below 1e-4 of the flow are ignored, so the volume is exact for smooth motion. lambda follows
 /// by Newton's method. dg/dlambda comes from the response to an additional pressure (once per step size, then
 /// Broyden updates), one more solve per pass for a linear structure. A fluid requests a level by giving
 /// "inflow" [m^3/s] at its faces (shares of Q at the end and start of the step). Levels of several cavities

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_set>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
@@ -42,17 +44,79 @@ Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Pa
   return e;
 }
 
-/// Parabolic profile: 4 s (1 - s) between the ends of a line (2-D), 1 - (r/R)^2 on a disc (3-D), scaled to
-/// the mean. Throws Error if the patch is neither. Collective.
+using Conditions = std::map<std::string, BoundaryParameters>;
+
+/// Unit normals and levels n . x of the symmetry planes at the rim of a patch that they cut at right angles. Collective.
+template <int D>
+std::vector<Eigen::Vector4d> planes_at_rim(const mesh::Mesh& mesh, const mesh::Geometry& g,
+                                           const mesh::Patch& patch, const Vec3& direction,
+                                           const Conditions& boundaries) {
+  std::vector<GlobalIndex> ids;
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    for (const Index v : mesh.face_points[f]) ids.push_back(mesh.point_id[v]);
+  ids = parallel::all_gather(mesh.comm, ids);
+  const std::unordered_set<GlobalIndex> on_patch(ids.begin(), ids.end());
+  std::vector<Eigen::Vector4d> planes;
+  const auto add = [&](const Eigen::Vector4d& plane) {
+    if (std::ranges::none_of(planes, [&](const Eigen::Vector4d& p) {
+          return p.head<3>().dot(plane.head<3>()) > 1 - flat_enough;
+        }))
+      planes.push_back(plane);
+  };
+  for (const mesh::Patch& other : mesh.patches) {
+    const auto given = boundaries.find(other.name);
+    if (given == boundaries.end() || given->second.type != BoundaryType::symmetry) continue;
+    for (Index f = other.first; f < other.first + other.count; ++f) {
+      const Vec3 n = g.face_area[f].normalized();
+      if (std::abs(n.dot(direction)) < flat_enough &&
+          std::ranges::count_if(mesh.face_points[f],
+                                [&](Index v) { return on_patch.contains(mesh.point_id[v]); }) >= D - 1)
+        add(Eigen::Vector4d(n.x(), n.y(), n.z(), n.dot(g.face_centre[f])));
+    }
+  }
+  const auto all = parallel::all_gather(mesh.comm, std::exchange(planes, {}));
+  std::ranges::for_each(all, add);
+  return planes;
+}
+
+/// Completes a patch by its mirror images: moves its center onto the planes. Returns the number of images, itself included.
+/// Throws Error if the planes have no point in common. Collective.
+template <int D>
+double mirror(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Patch& patch,
+              const Conditions& boundaries, Extent& e) {
+  const std::vector<Eigen::Vector4d> planes =
+      planes_at_rim<D>(mesh, g, patch, e.area.normalized(), boundaries);
+  if (planes.empty()) return 1;
+  const auto above = [&](const Eigen::Vector4d& plane) { return plane.head<3>().dot(e.centre) - plane[3]; };
+  for (int i = 0; i < 200; ++i)  // projections converge to the nearest common point
+    for (const Eigen::Vector4d& plane : planes) e.centre -= above(plane) * plane.head<3>();
+  if (!std::ranges::all_of(
+          planes, [&](const auto& plane) { return std::abs(above(plane)) < flat_enough * e.radius; }))
+    throw Error(
+        "boundaries.{}: the symmetry planes at its rim do not meet in it, so a parabolic profile is not defined. Give "
+        "a 'velocity'.",
+        patch.name);
+  e.radius = 0;
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    for (const Index p : mesh.face_points[f]) e.radius = std::max(e.radius, (g.points[p] - e.centre).norm());
+  e.radius = parallel::max(mesh.comm, e.radius);
+  if (planes.size() == 1) return 2;
+  return 2 * std::numbers::pi / (std::numbers::pi - std::acos(planes[0].head<3>().dot(planes[1].head<3>())));
+}
+
+/// Parabolic profile: zero at the ends of a line (2-D), 1 - (r/R)^2 on a disk (3-D), scaled to the mean. Symmetry planes continue
+/// the patch by its mirror image. Throws Error if it is neither. Collective.
 template <int D>
 InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
-                          InletProfile profile) {
-  const Extent e = extent_of(mesh, geometry, patch);
+                          InletProfile profile, const Conditions& boundaries) {
+  const bool parabolic = profile == InletProfile::parabolic;
+  Extent e = extent_of(mesh, geometry, patch);
   if (!(e.area.norm() > (1 - flat_enough) * e.size))
     throw Error("boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity'.",
                 patch.name);
-  if (D == 3 && profile == InletProfile::parabolic &&
-      std::abs(e.size / (std::numbers::pi * e.radius * e.radius) - 1) > round_enough)
+  const double images = parabolic ? mirror<D>(mesh, geometry, patch, boundaries, e) : 1;
+  if (D == 3 && parabolic &&
+      std::abs(images * e.size / (std::numbers::pi * e.radius * e.radius) - 1) > round_enough)
     throw Error(
         "boundaries.{}: the patch is not round, so a parabolic profile is not defined. Give a 'velocity'.",
         patch.name);
@@ -60,8 +124,10 @@ InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry
   shape.direction = -e.area.normalized().template head<D>();
   double flow = 0;
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-    const double r = (geometry.face_centre[f] - e.centre).norm() / e.radius;
-    shape.speed.push_back(profile == InletProfile::parabolic ? std::max(0.0, 1 - r * r) : 1.0);
+    const auto speed = [&](const Vec3& x) {
+      return Vec3(std::max(0.0, 1 - (x - e.centre).squaredNorm() / (e.radius * e.radius)), 0, 0);
+    };
+    shape.speed.push_back(parabolic ? fv::mean_over_face(mesh, geometry, f, speed).whole.x() : 1.0);
     flow -= shape.speed.back() * shape.direction.dot(geometry.face_area[f].template head<D>());
   }
   const double mean = parallel::sum(mesh.comm, flow) / e.size;
@@ -121,15 +187,19 @@ double ramp_factor(const BoundaryParameters& b, double t) {
 
 template <int D>
 GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                                const mesh::Patch& patch, const BoundaryParameters& b)
-    : faces_{patch.first - mesh.n_interior, patch.count}, patch_(&patch), parameters_(b) {
+                                const mesh::Patch& patch,
+                                const std::map<std::string, BoundaryParameters>& boundaries)
+    : faces_{patch.first - mesh.n_interior, patch.count},
+      patch_(&patch),
+      parameters_(boundaries.at(patch.name)) {
+  const BoundaryParameters& b = parameters_;
   const std::string where = "boundaries." + patch.name;
   if (b.rotation) turning_ = turning_of(b, where);
   if (b.table) {
     table_ = velocity_table(b.table->file, b.table->outside, D);
   } else if (b.mean_speed) {
     mean_speed_ = fv::Expression(*b.mean_speed, where + ".mean-speed");
-    shape_ = inlet_shape<D>(mesh, geometry, patch, b.profile);
+    shape_ = inlet_shape<D>(mesh, geometry, patch, b.profile, boundaries);
   } else if (!b.velocity.empty()) {
     velocity_ = fv::make_expressions(b.velocity, D, where + ".velocity");
   }
@@ -218,8 +288,7 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   check_names(mesh, parameters);
   interface_.assign(rows_.pressure.size(), 0);
   convective_ = interface_;
-  for (const mesh::Patch& patch : mesh.patches)
-    add_patch(mesh, geometry, patch, parameters.boundaries.at(patch.name));
+  for (const mesh::Patch& patch : mesh.patches) add_patch(mesh, geometry, patch, parameters.boundaries);
   add_openings(mesh, parameters);
   rows_.sort();
 }
@@ -262,7 +331,8 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& pa
 
 template <int D>
 void Boundary<D>::add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
-                            const BoundaryParameters& b) {
+                            const std::map<std::string, BoundaryParameters>& boundaries) {
+  const BoundaryParameters& b = boundaries.at(patch.name);
   const FaceRange faces{patch.first - mesh.n_interior, patch.count};
   const std::string where = "boundaries." + patch.name;
   const Condition& condition = condition_of(b);
@@ -277,7 +347,7 @@ void Boundary<D>::add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geomet
     pressure_patches_.push_back({faces, std::move(pressure), std::move(corners)});
   }
   if (condition.velocity == GivenBy::keys) {
-    velocity_patches_.emplace_back(mesh, geometry, patch, b);
+    velocity_patches_.emplace_back(mesh, geometry, patch, boundaries);
     turns_ = turns_ || velocity_patches_.back().turns();
   }
   if (condition.velocity == GivenBy::flow) {
@@ -296,33 +366,10 @@ template <int D>
 void Boundary<D>::add_interface(const mesh::Patch& patch, const FaceRange& faces,
                                 const BoundaryParameters& b) {
   interface_patches_.push_back(patch.name);
-  if (b.foresees()) {
-    yields_ = true;
-    wall_mass_.resize(interface_.size(), 0.);
-    std::fill_n(wall_mass_.begin() + faces.first, faces.count, b.surface_density.value_or(0.));
-  }
-  if (b.impedance == Impedance::structure) {
-    asks_for_mass_ = true;
-    asked_.resize(interface_.size(), 0);
-    std::fill_n(asked_.begin() + faces.first, faces.count, 1);
-  }
-}
-
-template <int D>
-bool Boundary<D>::set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
-  bool changed = false;
-  for (std::size_t i = 0; i < boundary_faces.size(); ++i) {
-    const Index b = boundary_faces[i];
-    if (!asked_[b]) continue;
-    if (!(masses[i] > 0) || !std::isfinite(masses[i]))
-      throw Error(
-          "impedance: structure: the structure gave a 'surface-density' of {:g} kg/m^2 at an interface "
-          "face; it must be above 0.",
-          masses[i]);
-    changed = changed || wall_mass_[b] != masses[i];
-    wall_mass_[b] = masses[i];
-  }
-  return changed;
+  if (!b.surface_density) return;
+  yields_ = true;
+  wall_mass_.resize(interface_.size(), 0.);
+  std::fill_n(wall_mass_.begin() + faces.first, faces.count, *b.surface_density);
 }
 
 template <int D>

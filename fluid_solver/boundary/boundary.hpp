@@ -73,7 +73,7 @@ class GivenVelocity {
  public:
   /// Throws Error if the keys do not fit the patch. Collective.
   GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
-                const BoundaryParameters& parameters);
+                const std::map<std::string, BoundaryParameters>& boundaries);
 
   const FaceRange& faces() const { return faces_; }
   const mesh::Patch& patch() const { return *patch_; }
@@ -139,11 +139,6 @@ class Boundary {
   /// area of each boundary face [kg/m^2], 0 if none.
   bool yields() const { return yields_; }
   const std::vector<double>& wall_mass() const { return wall_mass_; }
-  /// True if the structure provides the masses of some interface faces (`impedance: structure`).
-  bool asks_for_mass() const { return asks_for_mass_; }
-  /// Sets the structure's masses of boundary faces [kg/m^2] where they are asked for. Returns true if one of
-  /// this rank's changed. Throws Error if one is not positive.
-  bool set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses);
 
   /// Sets the pressure that gave walls of known mass their velocity, per boundary face [Pa].
   void set_wall_load(std::vector<double> load) { wall_load_ = std::move(load); }
@@ -184,7 +179,7 @@ class Boundary {
     FaceCorners corners;  // empty unless it varies in space
   };
   void add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
-                 const BoundaryParameters& b);
+                 const std::map<std::string, BoundaryParameters>& boundaries);
   void add_interface(const mesh::Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
   void add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters);
   MPI_Comm comm_;
@@ -195,11 +190,10 @@ class Boundary {
   std::vector<GivenVelocity<D>> velocity_patches_;
   std::vector<GivenPressure> pressure_patches_;
   std::vector<FaceRange> convective_patches_;  // also empty ones
-  bool closed_ = true, sealed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
+  bool closed_ = true, sealed_ = true, yields_ = false, turns_ = false;
   std::vector<AbsorbingPatch> absorbing_patches_;
   std::vector<FaceRange> upstream_patches_;
   std::vector<double> wall_mass_, wall_load_;
-  std::vector<char> asked_;  // per boundary face: the structure provides its mass
 };
 
 }  // namespace couplet::fluid

@@ -80,7 +80,9 @@ template <int D>
 class WavesOfPressure final : public diagnostics::Diagnostic {
  public:
   WavesOfPressure(const FluidView<D>& view, const Sound& sound)
-      : view_(view), sound_(sound), moves_((view.has_interface && view.has_mover) || has_bodies(view)) {
+      : view_(view),
+        sound_(sound),
+        moves_((view.has_interface && view.has_mover) || view.is_prescribed || has_bodies(view)) {
     if (!moves_) return;
     faces_ = moving_faces(view);
     for (const Index f : faces_) at_start_.push_back(centre(f));

@@ -294,8 +294,11 @@ template <int D>
 std::vector<Index> moving_faces(const FluidView<D>& view) {
   std::vector<Index> faces;
   for (const mesh::Patch& patch : view.mesh.patches) {
-    const GivenBy by = condition_of(view.parameters().boundaries.at(patch.name)).velocity;
-    if (by != GivenBy::structure && by != GivenBy::motion) continue;
+    const Condition& condition = condition_of(view.parameters().boundaries.at(patch.name));
+    const GivenBy by = condition.velocity;
+    if (by != GivenBy::structure && by != GivenBy::motion &&
+        !(view.is_prescribed && condition.passage == Passage::none))
+      continue;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) faces.push_back(f);
   }
   return faces;

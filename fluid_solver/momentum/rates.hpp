@@ -177,6 +177,7 @@ class ImplicitFriction {
   void solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a, Vectors<D>& side,
              Vectors<D>& u);
   int iterations() const { return iterations_; }
+  const std::vector<double>& inverse_diagonal() const { return solver_.inverse_diagonal(); }
 
  private:
   double tolerance() const;

@@ -71,7 +71,8 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
       .plausible(1e-9, 1e4)
       .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
-      .doc("for mean-speed. parabolic: zero at the rim of the patch, a straight line in 2-D, a disk in 3-D");
+      .doc(
+          "for mean-speed. parabolic: zero at the rim of the patch, a straight line in 2-D, a disk in 3-D; symmetry planes at the rim continue it");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   declare_absorbing(s, b);
@@ -133,19 +134,6 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
           "its response (Robin condition), with `coupling.order: structure-first`; the density of a "
           "solid times its thickness, or less: too small costs passes, too large may diverge; "
           "default: the wall moves as the coupling prescribes");
-  s.choice("impedance", b.impedance, {{"given", Impedance::given}, {"structure", Impedance::structure}})
-      .doc(
-          "source of the surface density: given: `surface-density`, if present. structure: the "
-          "structure itself, for each face (solid_solver with `interface: {surface-density: true}`, "
-          "plate_modal with `surface-density: true`, or any program that gives 'surface-density' "
-          "[kg/m^2] at its faces)");
-  s.check(
-      [&b] {
-        return b.surface_density && b.impedance == Impedance::structure
-                   ? "the structure gives it: remove 'surface-density'"
-                   : "";
-      },
-      "impedance");
 }
 
 using Entry = std::pair<BoundaryType, Condition>;

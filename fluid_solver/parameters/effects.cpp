@@ -74,12 +74,11 @@ const std::array cards{
               [](const S& s) { return when(s.parameters.implicit_stretch.has_value(), "implicit-stretch"); },
               "up to as many more sub-steps as the stability limit exceeds this bound"},
     FluidCard{
-        "walls that yield (Robin interface)",
-        "`surface-density` or `impedance` of a boundary of type interface",
+        "walls that yield (Robin interface)", "`surface-density` of a boundary of type interface",
         [](const S& s) {
-          return when(
-              std::ranges::any_of(s.parameters.boundaries, [](const auto& b) { return b.second.foresees(); }),
-              "surface-density");
+          return when(std::ranges::any_of(s.parameters.boundaries,
+                                          [](const auto& b) { return b.second.surface_density.has_value(); }),
+                      "surface-density");
         },
         "two loops over the interface per pass, a pressure per face in the coupling; a new pressure matrix "
         "where the step is halved"},

@@ -43,9 +43,6 @@ struct RotationParameters {
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
 };
 
-/// Source of the mass per area behind a Robin interface.
-enum class Impedance { given, structure };
-
 /// Keys of all conditions; those that a condition does not read keep their defaults.
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
@@ -61,9 +58,6 @@ struct BoundaryParameters {
   double slip_length = 0;                            // [m], partial slip
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
-  Impedance impedance = Impedance::given;            // interface
-  /// True if the pressure equation accounts for the response of the wall.
-  bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };
 
 /// Coefficients of a condition in the equations of its faces, with given velocity w or pressure p_b, slip

@@ -129,6 +129,13 @@ void PressureProjection<D>::extrapolate_pressure() {
     gradient_start_[c] += ahead * (levels[0]->gradient[c] - levels[1]->gradient[c]);
 }
 
+template <int D>
+void PressureProjection<D>::start_from(const PressureLevel<D>* level) {
+  if (!level) return extrapolate_pressure();
+  out_.p = level->p;
+  if (scene_.oblique) gradient_start_ = level->gradient;
+}
+
 /// phi^p without and with -(dt/rho) grad p~ . k.
 template <int D>
 void PressureProjection<D>::add_oblique_pressure(const std::vector<double>& phi) {

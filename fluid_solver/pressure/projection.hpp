@@ -21,6 +21,8 @@ class PressureProjection {
 
   /// Prepares the guess p~, the initial non-orthogonal gradient, the terms and the matrix. Collective.
   void prepare(const State<D>& from);
+  /// Begins the next project() with the pressure of a level, or with the extrapolated one for nullptr.
+  void start_from(const PressureLevel<D>* level);
   /// Computes p and p_b for given velocities w at t^{n+1} from predicted fluxes, without and then with
   /// -(dt/rho) grad p~ . k. `answer`: see PressureEquation::solve(). Collective.
   void project(const State<D>& from, const Vectors<D>& w, const std::vector<double>& phi, double answer);

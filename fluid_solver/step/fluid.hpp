@@ -45,10 +45,6 @@ class Fluid {
     yields_ = boundary_.yields();
     boundary_.set_wall_load(std::move(load));
   }
-  /// Calls Boundary::set_wall_mass(). Call before yield_from(). Collective.
-  void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
-    if (parallel::any(mesh_.comm, boundary_.set_wall_mass(boundary_faces, masses))) step_.forget_walls();
-  }
   /// Pressure at the boundary faces from the last solve_pressure() [Pa].
   const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }
   /// Sets the turn (see turn_of()) of interface and body faces at the end of the step; zero at other walls.

@@ -85,8 +85,6 @@ class FractionalStep {
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
   const Scene<D>& scene() const { return scene_; }
-  /// The masses of such walls have changed; the pressure matrix is rebuilt when it is needed next.
-  void forget_walls() { projection_.forget_matrix(); }
   /// Pressure of the last project() per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return projected_.boundary; }
   /// State of the solvers in addition to the level, as of the last keep(). load() is collective.
@@ -117,8 +115,7 @@ class FractionalStep {
   void solve_coupled(const State<D>& from, const Vectors<D>& w);
   void project_from_guess(const State<D>& from, const Vectors<D>& w);
   Vectors<D> friction_of(const Vectors<D>& x) const;
-  double stiffness();
-  double splitting_error(const PressureLevel<D>& now);
+  double splitting_error(const PressureLevel<D>& now, double enough);
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
   void set_body_force();
@@ -146,7 +143,6 @@ class FractionalStep {
   Judgement judgement_;                      // of level_
   std::uint64_t states_ = 0;                 // number of states so far
   double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
-  double stiffness_ = 0;                     // see stiffness(); 0 if not computed yet
 };
 
 }  // namespace couplet::fluid

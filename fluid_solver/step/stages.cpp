@@ -306,8 +306,8 @@ void FaceFlux<D>::add_memory(const State<D>& from) {
   far_.resize(std::size_t(mesh_.n_interior) + 1);
   const Index n_far = memory_pass(mesh_, {step_.dt, now, before}, relaxation_.data(), from.memory.data(),
                                   ratio > 0 ? from.memory_old.data() : nullptr, phi_.data(), far_.data());
-  if (!step_.by.pressure[0]) return;
-  const Vectors<D>& gradient = scene_.flux_velocity(*from.placement, step_.by.pressure[0]->gradient);
+  if (!step_.guess) return;
+  const Vectors<D>& gradient = scene_.flux_velocity(guess_at(from), step_.guess->gradient);
   for (const Index f : std::span(far_).first(n_far)) {
     const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
     const double decay = rate * step_.dt, share = decay / (1 + decay);
@@ -329,32 +329,38 @@ void FaceFlux<D>::add_increment(const State<D>& from) {
     const double decay = rate * step_.dt;
     fading_[f] = from.memory[f] / (1 + decay * (1 + decay / 2));  // exp(-decay) to second order
     phi_[f] += fading_[f];
-    if (!step_.by.pressure[0]) continue;
+    if (!step_.guess) continue;
     phi_[f] += step_.dt * (scene_.fourth ? pressure_flux(from, f) / scene_.fluid.rho
-                                         : -pressure_excess(from, step_.by.pressure[0]->gradient, f));
+                                         : -pressure_excess(from, step_.guess->gradient, f));
   }
 }
 
 /// A fourth-order flux already contains the old pressure's gradient in its mean velocity.
 template <int D>
 bool FaceFlux<D>::increment_of_fourth() const {
-  return scene_.fourth && scene_.parameters.projection == Projection::incremental && step_.by.pressure[0];
+  return scene_.fourth && scene_.parameters.projection == Projection::incremental && step_.guess;
 }
 
 template <int D>
 const Vectors<D>& FaceFlux<D>::without_pressure(const Vectors<D>& u) {
-  const Vectors<D>& gradient = step_.by.pressure[0]->gradient;
+  const Vectors<D>& gradient = step_.guess->gradient;
   const double factor = step_.dt / scene_.fluid.rho;
   without_pressure_.resize(u.size());
   for (std::size_t c = 0; c < u.size(); ++c) without_pressure_[c] = u[c] - factor * gradient[c];
   return without_pressure_;
 }
 
-/// g (p_N - p_P) + (grad p)_f . k of the pressure of the last step [N/m].
+/// Placement on which the gradient of the predictor's pressure was computed.
+template <int D>
+const Placement<D>& FaceFlux<D>::guess_at(const State<D>& from) const {
+  return step_.guess == step_.by.pressure[0] ? *from.placement : *step_.to;
+}
+
+/// g (p_N - p_P) + (grad p)_f . k of the predictor's pressure [N/m].
 template <int D>
 double FaceFlux<D>::pressure_flux(const State<D>& from, Index f) const {
-  const Placement<D>& at = *from.placement;
-  const PressureLevel<D>& level = *step_.by.pressure[0];
+  const Placement<D>& at = guess_at(from);
+  const PressureLevel<D>& level = *step_.guess;
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const double flux = at.conductance[f] * (level.p[n] - level.p[p]);
   if (at.oblique.empty()) return flux;
@@ -362,12 +368,12 @@ double FaceFlux<D>::pressure_flux(const State<D>& from, Index f) const {
   return flux + (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
 }
 
-/// Acceleration e of the flux by the pressure of the last step, less that of the mean of the cells' velocities [m^3/s^2].
+/// Acceleration e of the flux by the predictor's pressure, less that of the mean of the cells' velocities [m^3/s^2].
 /// `gradient`: gradient of that pressure in the cells, as applied to the flux velocity.
 template <int D>
 double FaceFlux<D>::pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const {
   const Vec<D> mean = 0.5 * (gradient[mesh_.owner[f]] + gradient[mesh_.neighbour[f]]);
-  return (mean.dot(from.placement->area[f]) - pressure_flux(from, f)) / scene_.fluid.rho;
+  return (mean.dot(guess_at(from).area[f]) - pressure_flux(from, f)) / scene_.fluid.rho;
 }
 
 template <int D>

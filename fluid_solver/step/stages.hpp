@@ -39,6 +39,8 @@ class Predictor {
   void set_rates(const State<D>& from, bool implicit);
   RateOperator<D>& rate_operator() { return rate_operator_; }
   int iterations() const { return friction_.iterations(); }
+  /// Inverse of the diagonal of the last implicit system, per owned cell.
+  const std::vector<double>& inverse_diagonal() const { return friction_.inverse_diagonal(); }
 
  private:
   void set_explicit_friction(const State<D>& from, double e0, double e1);
@@ -81,6 +83,7 @@ class FaceFlux {
   void add_increment(const State<D>& from);
   bool increment_of_fourth() const;
   const Vectors<D>& without_pressure(const Vectors<D>& u);
+  const Placement<D>& guess_at(const State<D>& from) const;
   double pressure_flux(const State<D>& from, Index f) const;
   double pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const;
 

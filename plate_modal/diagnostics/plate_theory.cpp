@@ -30,12 +30,30 @@ class PlateTheory final : public diagnostics::Diagnostic {
     for (const Vec3& x : model.vertices) size_ = std::max(size_, (x - model.vertices.front()).norm());
     for (std::size_t m = 0; m < omega.size(); ++m)
       rotations_.push_back(omega[m] == 0 ? modes::rigid_motion(model, m).rotation : Vec3(Vec3::Zero()));
+    constexpr double gravity = 9.81;  // [m/s^2]
+    const std::vector<double> weight =
+        view.surface.participation(gravity * view.parameters.placement.normal());
+    for (std::size_t m = 0; m < omega.size(); ++m) sag_ += std::pow(weight[m] / (omega[m] * omega[m]), 2);
+    sag_ = std::sqrt(sag_);
   }
   void observe(diagnostics::Report&) override {
     displacement_ = std::max(displacement_, largest_of(view_.displacement));
     Vec3 turn = Vec3::Zero();
     for (std::size_t m = 0; m < rotations_.size(); ++m) turn += view_.state.q[m] * rotations_[m];
     rotation_ = std::max(rotation_, turn.norm());
+    const std::vector<double>&q = view_.state.q, &omega = view_.surface.omega();
+    double size = 0, added = 0;
+    for (const double amplitude : q) size += amplitude * amplitude;
+    largest_ = std::max(largest_, std::sqrt(size));
+    if (view_.is_dynamic() || view_.step.number < 1) return;
+    // Static steps that follow a load: what their accelerations would add.
+    std::vector<double> rate = q;
+    for (std::size_t m = 0; m < q.size(); ++m) {
+      rate[m] = (q[m] - view_.before.q[m]) / view_.step.dt;
+      if (!rate_.empty()) added += std::pow((rate[m] - rate_[m]) / (view_.step.dt * omega[m] * omega[m]), 2);
+    }
+    rate_ = std::move(rate);
+    added_ = std::max(added_, std::sqrt(added));
   }
   void look(diagnostics::Report& report) override {
     look_at_rotation(report, displacement_ / size_);
@@ -43,7 +61,21 @@ class PlateTheory final : public diagnostics::Diagnostic {
     if (!view_.parameters.modes_file && view_.is_dynamic()) look_at_plane(report);
     if (!view_.parameters.modes_file) look_at_shear(report);
   }
-  void visit(io::Archive& archive) override { archive.common("largest", displacement_, rotation_); }
+  void conclude(diagnostics::Report& report) override {
+    if (!(largest_ > 0)) return;
+    // A weight that acts at once moves a plate at rest to twice its sag.
+    const double inertia = added_ / largest_, weight = (view_.is_dynamic() ? 2 : 1) * sag_ / largest_;
+    if (!rate_.empty())
+      report_neglected(report, "inertia", inertia, fmt::format("inertia / load = {:.2g}", inertia),
+                       "use 'analysis: dynamic'", inertia < 0.5 ? inertia / (1 - inertia) : 1);
+    if (view_.parameters.gravity.empty() && !moves_freely() && view_.fluid_force.empty())
+      report_neglected(report, "gravity", weight,
+                       fmt::format("across the plate its weight would add {:.2g} of the motion", weight),
+                       "if it acts there, use 'gravity'", weight);
+  }
+  void visit(io::Archive& archive) override {
+    archive.common("largest", displacement_, rotation_, largest_, added_, rate_);
+  }
 
  private:
   bool moves_freely() const { return view_.surface.omega().front() == 0; }
@@ -76,20 +108,22 @@ class PlateTheory final : public diagnostics::Diagnostic {
         stiffening / (1 + stiffening));
   }
 
-  /// Largest in-plane share of loads and base motion, to which bending modes do not respond.
+  /// Largest part of loads and base motion in the plane, to which bending modes do not respond, over that across it.
   void look_at_plane(diagnostics::Report& report) const {
     const Parameters& p = view_.parameters;
     const Vec3 normal = p.placement.normal();
     const auto share_of = [&](const Vec3& all) {
-      return all.norm() > 0 ? (all - all.dot(normal) * normal).norm() / all.norm() : 0;
+      const double across = std::abs(all.dot(normal));
+      return all.norm() > 0 ? (all - all.dot(normal) * normal).norm() / std::max(across, 0.1 * all.norm())
+                            : 0;
     };
     double share = share_of(p.initial_velocity);
     // Supports carry in-plane weight, unless gravity is given for nothing; a free plate has none.
     const double weight = p.gravity.empty() ? 0 : share_of(Vec3(p.gravity.data()));
-    if (moves_freely() || weight > 0.999) share = std::max(share, weight);
+    if (moves_freely() || weight > 9) share = std::max(share, weight);
     report_neglected(
         report, "motion in the plane", share,
-        fmt::format("in-plane share of {1} = {0:.2g}", share,
+        fmt::format("part of {1} in the plane / across it = {0:.2g}", share,
                     p.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
         "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a "
         "volume model",
@@ -97,22 +131,27 @@ class PlateTheory final : public diagnostics::Diagnostic {
   }
 
   // Mindlin's plate compared with Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5
-  // (1 - nu))), omega by 2 % if half a wave, pi/k, is ten thicknesses long.
+  // (1 - nu))), omega by 2 % if half a wave, pi/k, is ten thicknesses long, and the motion by twice as much.
   void look_at_shear(diagnostics::Report& report) const {
-    const double omega =
-        motion_ ? motion_->evidence(view_.step.is_last).last_mode_omega : view_.surface.omega().back();
-    const double ratio = thickness_over_wave(omega);
-    report_neglected(report, "shear and rotary inertia", ratio,
-                     fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}", ratio,
-                                 motion_ ? "with 1 % of the motion" : "kept"),
-                     "shear and rotary inertia soften such modes: keep fewer, or use a volume model",
-                     4 * ratio * ratio);  // twice the 2 % of omega at 0.1, in the motion
+    const std::vector<double>& omega = view_.surface.omega();
+    double softening = 0, all = 0;
+    for (std::size_t m = 0; m < omega.size(); ++m) {
+      const double moved = motion_ ? motion_->moved(m) : view_.state.q[m] * view_.state.q[m];
+      softening += moved * 16 * std::pow(thickness_over_wave(omega[m]), 4);
+      all += moved;
+    }
+    const double share =
+        all > 0 ? std::sqrt(softening / all) : 4 * std::pow(thickness_over_wave(omega.back()), 2);
+    report_neglected(
+        report, "shear and rotary inertia", share,
+        fmt::format("by the thickness over half the wavelength of the modes they add {:.2g} to the motion",
+                    share),
+        "shear and rotary inertia soften short modes: keep fewer, or use a volume model", share);
   }
   /// Thickness over half the bending wavelength at this frequency in the thickest part of the plate: D k^4 =
-  /// rho h omega^2. NaN for an unknown frequency.
+  /// rho h omega^2.
   double thickness_over_wave(double omega) const {
     const Parameters& p = view_.parameters;
-    if (std::isnan(omega)) return omega;
     double largest = 0;
     const auto add = [&](double h, double density, double youngs_modulus) {
       const double d =
@@ -132,6 +171,9 @@ class PlateTheory final : public diagnostics::Diagnostic {
   std::vector<Vec3> rotations_;  // of each rigid mode [1/(sqrt(kg) m)], 0 for the others
   // Largest of any vertex [m]; of the body as a whole [rad].
   double displacement_ = 0, rotation_ = 0;
+  // Norms of modal displacements: by the weight, of the state, and by the acceleration of static steps; rate of the last one.
+  double sag_ = 0, largest_ = 0, added_ = 0;
+  std::vector<double> rate_;
 };
 
 }  // namespace

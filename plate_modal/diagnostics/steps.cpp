@@ -23,6 +23,9 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
     const Energies& e = view_.state.energies;
     mismatch_ = std::max(mismatch_, std::abs(e.mismatch()));
     largest_ = std::max({largest_, e.kinetic + e.strain + e.contact, std::abs(e.load_work)});
+    moved_ = std::max(moved_, e.kinetic + e.strain);
+    for (std::size_t m = 0; m < view_.state.v.size(); ++m)
+      turns_ += view_.surface.omega()[m] * view_.state.v[m] * view_.state.v[m] * view_.state.dt;
   }
   void look(diagnostics::Report& report) override {
     if (!(largest_ > 0)) return;
@@ -30,12 +33,22 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
                    fmt::format("max error of the energy balance (4.29-4.31) / largest energy = {:.2g}",
                                mismatch_ / largest_),
                    "use a smaller step, or 'trapezoidal' with 'contact.rule: conserving'", 0.5);
+    if (view_.parameters.damping || !view_.fluid_force.empty()) return;
+    const double share = 1 - std::exp(-usual_damping * turns_ / moved_);
+    report_neglected(
+        report, "damping", share,
+        fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual_damping, share),
+        "use 'damping'", share);
   }
-  void visit(io::Archive& archive) override { archive.common("energies", mismatch_, largest_); }
+  void visit(io::Archive& archive) override {
+    archive.common("energies", mismatch_, largest_, moved_, turns_);
+  }
 
  private:
   PlateView view_;
-  double mismatch_ = 0, largest_ = 0;  // [J]
+  static constexpr double usual_damping = 0.02;
+  double mismatch_ = 0, largest_ = 0, moved_ = 0;  // [J]; moved_: without the seat
+  double turns_ = 0;  // integral over time of the angular frequency times twice the kinetic energy [J]
 };
 
 /// With ten steps per period the trapezoidal rule lengthens the period by 3 %, and a mode at a wrong

@@ -92,8 +92,6 @@ void declare_place(config::Section& s, Parameters& p) {
       .doc(
           "sides that form the interface. upper: where the normal points. both: including the rims of free "
           "edges");
-  s.value("surface-density", p.surface_density)
-      .doc("also give the mass behind each face [kg/m^2], the impedance for a Robin interface");
 }
 
 void declare_modes(config::Section& s, Parameters& p) {

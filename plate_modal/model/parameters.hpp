@@ -71,7 +71,6 @@ struct Parameters {
   std::vector<double> gravity;  // [m/s^2]; empty if there is none
   std::optional<Load> load;
   std::optional<ContactParameters> contact;
-  bool surface_density = false;  // given at the faces, for a Robin interface
   Vec3 initial_velocity = Vec3::Zero();
   std::vector<double> initial_amplitudes;
   std::map<std::string, Watched> probes;

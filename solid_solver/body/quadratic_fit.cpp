@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -20,9 +21,9 @@ constexpr double least_curvature = 1e-4, least_slope = 1e-12;
 }  // namespace
 
 void QuadraticFit::start(int dim, int components, const Vec3& centre, double scale) {
-  dim_ = dim, centre_ = centre, scale_ = scale, weights_ = 0, coupled_ = false;
-  of_samples_.setZero(n_terms(), n_terms());
-  right_.setZero(n_terms(), components);
+  dim_ = dim, centre_ = centre, scale_ = scale, weights_ = 0, n_samples_ = n_rows_ = 0;
+  samples_.resize(n_terms() + components, std::max<Eigen::Index>(samples_.cols(), 64));
+  rows_.resize(n_terms() * components + 1, std::max<Eigen::Index>(rows_.cols(), 64));
 }
 
 QuadraticFit::Terms QuadraticFit::terms(const Vec3& place, const Tensor3& moment) const {
@@ -48,37 +49,38 @@ QuadraticFit::Slopes QuadraticFit::slopes(const Vec3& place) const {
 
 void QuadraticFit::add_sample(const Vec3& place, const Tensor3& moment, std::span<const double> values,
                               double weight) {
-  const Terms phi = terms(place, moment);
+  if (n_samples_ == samples_.cols()) samples_.conservativeResize(Eigen::NoChange, 2 * n_samples_);
   weights_ += weight;
-  of_samples_.noalias() += weight * phi * phi.transpose();
-  for (Eigen::Index k = 0; k < right_.cols(); ++k) right_.col(k) += weight * values[std::size_t(k)] * phi;
+  const double root = std::sqrt(weight);
+  auto column = samples_.col(n_samples_++);
+  const Terms phi = terms(place, moment);
+  for (Eigen::Index i = 0; i < phi.size(); ++i) column[i] = root * phi[i];
+  for (Eigen::Index k = n_terms(); k < column.size(); ++k)
+    column[k] = root * values[std::size_t(k - n_terms())];
 }
 
 void QuadraticFit::add_row(const Row& row, double value, double weight) {
-  const Eigen::Index n = row.size();
-  if (!coupled_) {
-    of_rows_.setZero(n, n);
-    right_of_rows_.setZero(n);
-    coupled_ = true;
-  }
-  const auto flat = row.reshaped();
-  of_rows_.noalias() += weight * flat * flat.transpose();
-  right_of_rows_.noalias() += weight * value * flat;
+  if (n_rows_ == rows_.cols()) rows_.conservativeResize(Eigen::NoChange, 2 * n_rows_);
+  const double root = std::sqrt(weight);
+  rows_.col(n_rows_++) << root * row.reshaped(), root * value;
 }
 
 void QuadraticFit::solve() {
-  const int n = n_terms();
-  for (int i = 0; i < n; ++i)
+  const Eigen::Index n = n_terms(), components = samples_.rows() - n;
+  const auto of = samples_.topLeftCorner(n, n_samples_);
+  of_samples_.setZero(n, n);
+  of_samples_.selfadjointView<Eigen::Lower>().rankUpdate(of);
+  for (Eigen::Index i = 0; i < n; ++i)
     of_samples_(i, i) += weights_ * (i > dim_ ? least_curvature : i > 0 ? least_slope : 0);
-  if (!coupled_) {
-    coefficients_ = of_samples_.llt().solve(right_);
-    return;
-  }
-  for (Eigen::Index k = 0; k < right_.cols(); ++k) {
-    of_rows_.block(k * n, k * n, n, n) += of_samples_;
-    right_of_rows_.segment(k * n, n) += right_.col(k);
-  }
-  coefficients_ = of_rows_.llt().solve(right_of_rows_).reshaped(n, right_.cols());
+  coefficients_ = of * samples_.bottomLeftCorner(components, n_samples_).transpose();
+  if (n_rows_ == 0) return of_samples_.llt().solveInPlace(coefficients_);
+  const auto coupled = rows_.topLeftCorner(n * components, n_rows_);
+  of_rows_.setZero(n * components, n * components);
+  for (Eigen::Index k = 0; k < components; ++k) of_rows_.block(k * n, k * n, n, n) = of_samples_;
+  of_rows_.selfadjointView<Eigen::Lower>().rankUpdate(coupled);
+  Eigen::VectorXd right = coefficients_.reshaped();
+  right += coupled * rows_.row(n * components).head(n_rows_).transpose();
+  coefficients_ = of_rows_.llt().solve(right).reshaped(n, components);
 }
 
 namespace {

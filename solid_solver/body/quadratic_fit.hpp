@@ -43,10 +43,10 @@ class QuadraticFit {
   int dim_ = 3;
   Vec3 centre_ = Vec3::Zero();
   double scale_ = 1, weights_ = 0;
-  bool coupled_ = false;                    // a row was added
-  Eigen::MatrixXd of_samples_, right_;      // terms x terms, terms x components
-  Eigen::MatrixXd of_rows_, coefficients_;  // (components terms)^2
-  Eigen::VectorXd right_of_rows_;
+  Eigen::Index n_samples_ = 0, n_rows_ = 0;
+  // Columns are samples or rows times the root of their weight; the last entries are the values.
+  Eigen::MatrixXd samples_, rows_;
+  Eigen::MatrixXd of_samples_, of_rows_, coefficients_;  // normal equations, lower half
 };
 
 /// Plane of symmetry, in which a patch of cells is continued by its mirror image.

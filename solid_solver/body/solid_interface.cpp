@@ -1,45 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/body/solid_interface.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "common/base/error.hpp"
 
 namespace couplet::solid {
-
-namespace {
-
-/// Speed of pressure waves without lateral motion [m/s]; infinite for a material where it is unknown.
-double speed_in(const SolidMaterial& m) {
-  const double nu = m.poissons_ratio, modulus = m.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
-  return modulus > 0 && m.density > 0 ? std::sqrt(modulus / m.density)
-                                      : std::numeric_limits<double>::infinity();
-}
-
-/// Impedance for `interface: {surface-density: true}`. Collective.
-WallImpedance impedance_of(const SolidBody& body, const coupling::Interface& interface) {
-  const mesh::Geometry& geometry = body.geometry();
-  const mesh::Mesh& mesh = body.mesh();
-  if (body.boundaries().interface_patches().empty())
-    throw Error(
-        "interface: surface-density: no patch has 'type: interface', so there is no face to give it "
-        "at.");
-  if (!body.is_dynamic())
-    throw Error(
-        "interface: surface-density: the response of a static solid does not depend on its mass; use "
-        "'analysis: dynamic' or remove the key.");
-  std::vector<double> densities, speeds, volumes;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    densities.push_back(body.density(c));
-    speeds.push_back(speed_in(body.materials()[std::size_t(mesh.material_of(c))]));
-    volumes.push_back(geometry.volume[c]);
-  }
-  return wall_impedance(mesh.comm, densities, speeds, volumes, interface.face_areas);
-}
-
-}  // namespace
 
 SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   const mesh::Mesh& mesh = body.mesh();
@@ -52,10 +16,6 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   description_.takes = taken(parameters.interface_data.value_or(InterfaceData{}));
   description_.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
                         {"velocity", "m/s", coupling::Interface::Place::vertices}};
-  if (parameters.interface_data && parameters.interface_data->surface_density) {
-    impedance_ = impedance_of(body, description_);
-    description_.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
-  }
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
   if (!map_)
     throw Error(
@@ -99,7 +59,7 @@ std::vector<double> SolidInterface::load(const coupling::Exchange& in) const {
   return force;
 }
 
-coupling::Exchange SolidInterface::values(const SolidState& state, double dt) const {
+coupling::Exchange SolidInterface::values(const SolidState& state) const {
   if (!map_) return {};
   const int dim = body_.mesh().dim;
   coupling::Exchange out;
@@ -107,7 +67,6 @@ coupling::Exchange SolidInterface::values(const SolidState& state, double dt) co
       map_->gather_vertices(body_.at_points(map_->points(), state.cell_u, state.face_u, state.known), dim);
   out["velocity"] = map_->gather_vertices(
       body_.at_points(map_->points(), state.cell_v, state.face_v, state.known_rate), dim);
-  if (impedance_) out["surface-density"].assign(description_.face_areas.size(), impedance_->in_step(dt));
   return out;
 }
 

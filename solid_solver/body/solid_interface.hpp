@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "common/coupling/interface_map.hpp"
@@ -16,7 +15,7 @@ namespace couplet::solid {
 /// Coupling interface of a solid: the data it takes and gives at its interface patches.
 class SolidInterface final {
  public:
-  /// Throws Error if a temperature or surface density is requested without an interface. Collective.
+  /// Throws Error if a temperature is requested without an interface. Collective.
   explicit SolidInterface(const SolidBody& body);
 
   const coupling::Interface& description() const { return description_; }
@@ -26,14 +25,13 @@ class SolidInterface final {
   void take_temperature(const coupling::Exchange& in) const;
   /// Sum of the given forces, `dim` values per boundary face of owned cells; empty without an interface.
   std::vector<double> load(const coupling::Exchange& in) const;
-  /// Displacement and velocity at the vertices, and the mass responding within `dt` on request. Collective.
-  coupling::Exchange values(const SolidState& state, double dt) const;
+  /// Displacement and velocity at the vertices. Collective.
+  coupling::Exchange values(const SolidState& state) const;
 
  private:
   const SolidBody& body_;
   std::unique_ptr<coupling::InterfaceMap> map_;  // nullptr if there is no interface patch
   coupling::Interface description_;
-  std::optional<WallImpedance> impedance_;  // empty if not given
   bool takes_temperature_ = false;
 };
 

@@ -173,13 +173,13 @@ void StressRecovery::fit_displacement(Index cell, const Local& local, Patch& pat
     const QuadraticFit::Slopes slope = fit.slopes(g.face_centre[f]);
     std::array<QuadraticFit::Row, 3> rows;
     rows.fill(QuadraticFit::Row::Zero(fit.n_terms(), dim));
-    for (int k = 0; k < dim; ++k)
-      for (int i = 0; i < fit.n_terms(); ++i) {
-        Tensor3 gradient = Tensor3::Zero();
-        gradient.col(k) = slope.row(i);
-        const Vec3 traction = known.projector * (rows_.stress(cell, gradient) * n);
-        for (int a = 0; a < dim; ++a) rows[std::size_t(a)](i, k) = unit * traction[a];
-      }
+    for (int k = 0; k < dim; ++k) {
+      Tensor3 of_slope = Tensor3::Zero();  // column j: traction of a unit slope of component k along axis j
+      for (int j = 0; j < dim; ++j)
+        of_slope.col(j) =
+            unit * (known.projector * (rows_.stress(cell, Vec3::Unit(j) * Vec3::Unit(k).transpose()) * n));
+      for (int a = 0; a < dim; ++a) rows[std::size_t(a)].col(k) = slope * of_slope.row(a).transpose();
+    }
     Vec3 traction = known.traction;
     if (!local.other_on_faces.empty())
       traction -= known.projector * (local.other_on_faces[std::size_t(f - mesh_.n_interior)] * n);
@@ -200,8 +200,15 @@ void StressRecovery::visit(const DiscreteStress& found, const Wants& wants, cons
     const Eigen::Matrix<double, tensor_size, 1> s = of.coefficients().transpose() * of.terms(place);
     return unpack({s.data(), tensor_size});
   };
+  // Without strain there is no stress, whatever loads are about to act.
+  const bool has_stress = parallel::any(
+      mesh_.comm, std::ranges::any_of(found.cells, [](const Tensor3& s) { return !s.isZero(0); }));
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     if (!wants(c)) continue;
+    if (!has_stress) {
+      take(c, [](const Vec3&) { return Tensor3(Tensor3::Zero()); });
+      continue;
+    }
     gather(c, local, patch);
     if (!patch.simplices || !patch.at_surface || rows_.volume_by_cells()) {
       fit_tensors(c, local.cells, local.faces, &local.surface, patch, fit);

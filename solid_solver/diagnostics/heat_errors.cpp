@@ -265,13 +265,28 @@ class ImpossibleTemperature final : public diagnostics::Diagnostic {
 class HeatStorage final : public diagnostics::Diagnostic {
  public:
   explicit HeatStorage(const Heat& heat) : heat_(heat) {}
-  void conclude(diagnostics::Report& report) override;
+  void observe(diagnostics::Report&) override {
+    const std::vector<double>&now = heat_.accepted().cells, &before = heat_.trial().cells;
+    for (std::size_t c = 0; c < now.size(); ++c) {
+      low_ = std::min(low_, now[c]), high_ = std::max(high_, now[c]);
+      if (heat_.accepted().steps > 1)
+        rate_ = std::max(rate_, std::abs(now[c] - before[c]) / heat_.accepted().dt);
+    }
+  }
+  void look(diagnostics::Report& report) override;
+  void visit(io::Archive& archive) override {
+    const MPI_Comm comm = heat_.conduction().mesh().comm;
+    low_ = parallel::min(comm, low_), high_ = parallel::max(comm, high_), rate_ = parallel::max(comm, rate_);
+    archive.common("storage", low_, high_, rate_);
+  }
 
  private:
   const Heat& heat_;
+  double low_ = std::numeric_limits<double>::max(), high_ = std::numeric_limits<double>::lowest(),
+         rate_ = 0;  // of the run [K], fastest change [K/s]; of this rank
 };
 
-void HeatStorage::conclude(diagnostics::Report& report) {
+void HeatStorage::look(diagnostics::Report& report) {
   const HeatState& state = heat_.accepted();
   if (state.steps < 2) return;
   const HeatProperties& m = heat_.materials().front();
@@ -282,27 +297,31 @@ void HeatStorage::conclude(diagnostics::Report& report) {
     volume += conduction.geometry().volume[c];
     level += conduction.geometry().volume[c] * state.cells[c];
   }
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    if (conduction.condition(f) != fv::HeatCondition::symmetry &&
-        conduction.condition(f) != fv::HeatCondition::bonded)
+  for (const mesh::Patch& patch : mesh.patches) {
+    const auto given = heat_.parameters().boundaries.find(patch.name);
+    if (given == heat_.parameters().boundaries.end() || !given->second.carries_heat()) continue;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
       surface += conduction.geometry().face_area[f].norm();
+  }
   volume = parallel::sum(mesh.comm, volume);
   level = parallel::sum(mesh.comm, level) / volume;
   const double size = volume / parallel::sum(mesh.comm, surface);
   const double stored = m.density * m.specific_heat(level);
-  if (!(stored > 0)) {
-    report.sentences.emplace_back(
-        "heat storage neglected (steady): give 'specific-heat' to compare its time scale with the step.");
-    return;
-  }
-  const double time = size * size * stored / m.conductivity(level);
-  report.sentences.push_back(
-      fmt::format("heat storage neglected (steady): heat needs about {:.2g} s to spread through the solid, "
-                  "a step takes {:.2g} s (Fourier number {:.2g}): {}.",
-                  time, state.dt, state.dt / time,
-                  state.dt > 3 * time ? "justified"
-                                      : "not justified if the loads change that fast; use 'analysis: "
-                                        "transient'"));
+  const double range = parallel::max(mesh.comm, high_) - parallel::min(mesh.comm, low_),
+               rate = parallel::max(mesh.comm, rate_);
+  if (!(rate > 0)) return;
+  // A ramp is followed at the distance of this time, of which the range of temperatures is one.
+  const double time = size * size * stored / m.conductivity(level), lag = time * rate / range;
+  if (auto finding = diagnostics::finding_of(
+          {.effect = "storage of heat",
+           .number = stored > 0 ? lag : 1,
+           .what = stored > 0 ? fmt::format("heat needs about {:.2g} s to spread through the solid, the "
+                                            "temperature changes within {:.2g} s",
+                                            time, range / rate)
+                              : "the temperature changes, and no 'specific-heat' is given",
+           .advice = "use 'analysis: transient' in 'heat'",
+           .share = stored > 0 ? lag / (1 + lag) : std::numeric_limits<double>::quiet_NaN()}))
+    report.findings.push_back(std::move(*finding));
 }
 
 /// Error of the temperature of a body that only conducts heat.

@@ -305,10 +305,17 @@ constexpr double least_strain = 0.9 * 0.2 / 4 / BucklingEstimate::low;
 // Tolerance of the solution in which a negative curvature of K + low K_sigma would appear.
 constexpr double shown_at = 1e-3;
 constexpr int most_searches = 2000, most_refinements = 40, refinements_compared = 6;
+// Factor over `low` of a load that needs no search, and relative change in the refinements that show it.
+constexpr double far_load = 4, roughly_settled = 0.1;
 // Increase of compression since the last search that justifies another one.
 constexpr double more_compression = 1.1;
 // Largest relative change in the last refinements for a factor to be reported.
 constexpr double settled_part = 0.01;
+
+bool has_settled(const std::vector<double>& rho, double part) {
+  return rho.size() > refinements_compared &&
+         rho[rho.size() - 1 - refinements_compared] - rho.back() < part * std::abs(rho.back());
+}
 
 double limit_of(const BucklingEstimate& found) {
   return found.factor < BucklingEstimate::imperfect ? BucklingEstimate::imperfect : BucklingEstimate::low;
@@ -417,6 +424,14 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
     };
     return modes::look_for_negative_curvature(mesh.comm, loaded, of.solve, force, shown_at, most_searches);
   };
+  // Only a solve shows that no motion at all is soft, but refinements that settle tell that none is anywhere near.
+  const double near = -1 / (far_load * BucklingEstimate::low);
+  const auto told = [&](const std::vector<double>& rho) {
+    return rho.back() < near || has_settled(rho, roughly_settled);
+  };
+  const modes::LowestQuotient first = modes::lowest_quotient(of, of_stress, most_refinements, told);
+  if (first.value > near && first.iterations < most_refinements)
+    return {.factor = 0, .iterations = first.iterations};
   modes::Curvature found = look(BucklingEstimate::low);
   if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
   // Fewer motions are soft under less load, so this one is closer to the softest.
@@ -424,10 +439,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
     closer.iterations += found.iterations;
     found = std::move(closer);
   }
-  const auto enough = [](const std::vector<double>& rho) {
-    return rho.size() > refinements_compared &&
-           rho[rho.size() - 1 - refinements_compared] - rho.back() < settled_part * -rho.back();
-  };
+  const auto enough = [](const std::vector<double>& rho) { return has_settled(rho, settled_part); };
   // -1 / lambda
   const modes::LowestQuotient least = modes::lowest_quotient(of, found.x, most_refinements, enough);
   const double factor = -1 / least.value;

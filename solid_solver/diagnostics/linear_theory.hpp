@@ -67,7 +67,8 @@ std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& fou
 std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstimate& found);
 
 /// Searches for a factor below `low`: conjugate gradients on K + low K_sigma, preconditioned by `method`,
-/// then meet a negative curvature. Costs about one loose solve. Skipped if the compression is far below the
+/// then meet a negative curvature. Costs about one loose solve, and a tenth of that where a few refinements
+/// of the least factor stay far above `low`. Skipped if the compression is far below the
 /// buckling strain of such a slender body, 0.2 (t/L)^2 for a clamped column, or hardly exceeds
 /// `compression_seen` [Pa], which is updated. Collective.
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, const SolidState& state,

@@ -25,6 +25,10 @@ using P = SolidParameters;
 
 bool deforms(const P& p) { return p.analysis != P::Analysis::thermal; }
 
+bool has_interface(const P& p) {
+  return std::ranges::any_of(p.boundaries, [](const auto& one) { return is_interface(one.second); });
+}
+
 /// Largest constant expansion coefficient in the case [1/K].
 std::optional<double> largest_expansion(const P& p) {
   std::optional<double> largest;
@@ -50,16 +54,31 @@ double share_of_geometry(const Deformation& d, const std::optional<LargeStrainEs
 
 }  // namespace
 
-// The static response to a load of angular frequency w has a relative error r = inertia/load = (w/w_1)^2 if
+// The static response to a load of angular frequency w has a relative error r/(1 - r), r = inertia/load = (w/w_1)^2, if
 // that is small, and is useless otherwise: a sudden load moves a body twice as far.
 Opinion neglected_inertia(const P& p, double inertia_over_load) {
   // Static steps at large strain are load steps, so t is not a time.
   if (p.analysis != P::Analysis::static_ || has_finite_strain(p)) return {};
-  return diagnostics::finding_of({.effect = "inertia",
-                                  .number = inertia_over_load,
-                                  .what = fmt::format("inertia / load = {:.2g}", inertia_over_load),
-                                  .advice = "use 'analysis: dynamic'",
-                                  .share = std::min(inertia_over_load, 1.)});
+  return diagnostics::finding_of(
+      {.effect = "inertia",
+       .number = inertia_over_load,
+       .what = fmt::format("inertia / load = {:.2g}", inertia_over_load),
+       .advice = "use 'analysis: dynamic'",
+       .share = inertia_over_load < 0.5 ? inertia_over_load / (1 - inertia_over_load) : 1});
+}
+
+// A damping ratio z takes the power 2 z w times twice the kinetic energy: a free vibration loses 1 - exp(-z w t) of its amplitude,
+// a load at resonance as much of its growth. A fluid damps a coupled body.
+Opinion neglected_damping(const P& p, double turns) {
+  constexpr double usual = 0.02;  // welded steel has 0.005, wood and joints 0.05
+  if (p.damping || has_interface(p)) return {};
+  const double share = 1 - std::exp(-usual * turns);
+  return diagnostics::finding_of(
+      {.effect = "damping",
+       .number = share,
+       .what = fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual, share),
+       .advice = "use 'damping'",
+       .share = share});
 }
 
 // In slow motion, the kinetic energy is (w/w_1)^2 of the strain energy.
@@ -172,6 +191,24 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
        .share = share});
 }
 
+// Metals lose 4 to 6 % of Young's modulus per 100 K; the others differ too much for an estimate.
+Opinion properties_of_temperature(const P& p, double kelvins) {
+  constexpr double metal = 10e9, per_kelvin = 5e-4;  // [Pa], [1/K]
+  double stiffest = 0;
+  for (const SolidMaterial& m : materials_of(p)) {
+    if (m.heat.youngs_modulus) return {};
+    stiffest = std::max(stiffest, m.youngs_modulus);
+  }
+  if (!deforms(p) || stiffest < metal) return {};
+  const double lost = std::min(0.9, per_kelvin * kelvins);
+  return diagnostics::finding_of(
+      {.effect = "properties of temperature",
+       .number = kelvins,
+       .what = fmt::format("up to {:.3g} K from the temperature of a room", kelvins),
+       .advice = "if 'youngs-modulus' is that of a room, use 'youngs-modulus-table'",
+       .share = lost / (1 - lost)});
+}
+
 Opinion thermoelastic_coupling(const P& p, double coupling_number) {
   diagnostics::EffectFinding found{
       .effect = "thermoelastic coupling",
@@ -208,30 +245,35 @@ class NeglectedInertia final : public diagnostics::Diagnostic {
                       (now.cell_v[i] - before.cell_v[i]) / (0.5 * (now.dt + before.dt));
       }
     for (int a = 0; a < mesh.dim; ++a) inertia[a] = parallel::sum(mesh.comm, inertia[a]);
-    const double load = view_.fields.total_load().norm();
-    if (load > 0) over_load_ = std::max(over_load_, inertia.norm() / load);
+    inertia_ = std::max(inertia_, inertia.norm());
+    load_ = std::max(load_, view_.fields.total_load().norm());
   }
 
-  void look(diagnostics::Report& report) override {
-    if (view_.now().steps > 1) add(report, neglected_inertia(view_.body.parameters(), over_load_));
+  void conclude(diagnostics::Report& report) override {
+    if (load_ > 0 && view_.now().steps > 1)
+      add(report, neglected_inertia(view_.body.parameters(), inertia_ / load_));
   }
 
-  void visit(io::Archive& archive) override { archive.common("inertia", over_load_); }
+  void visit(io::Archive& archive) override { archive.common("inertia", inertia_, load_); }
 
  private:
   SolidView view_;
-  double over_load_ = 0;
+  double inertia_ = 0, load_ = 0;  // largest of the run [N]
 };
 
-/// Weight of a static body without gravity. By reciprocity, its work on the displacement by the loads over the work of the loads is
-/// the change of the displacement at the loads. It counts in the direction of the axis in which it is largest.
+/// Weight of a body without gravity. By reciprocity, its work on the displacement by the loads over the work of the loads is
+/// the change of the displacement at the loads. It counts in the direction of the axis in which it is largest, and where the strain energy
+/// of the run is largest, which is the work of the loads at rest.
 class NeglectedWeight final : public diagnostics::Diagnostic {
  public:
   NeglectedWeight(const SolidView& view, std::shared_ptr<StrainEnergy> strain)
       : view_(view), strain_(std::move(strain)) {}
 
-  void conclude(diagnostics::Report& report) override {
+  void look(diagnostics::Report&) override {
     constexpr double gravity = 9.81;  // [m/s^2]
+    const StrainAudit& strain = strain_->now(false);
+    if (!(strain.strain_energy > largest_)) return;
+    largest_ = strain.strain_energy;
     const SolidBody& body = view_.body;
     const mesh::Mesh& mesh = body.mesh();
     Vec3 moved = Vec3::Zero();  // mass times displacement
@@ -240,26 +282,37 @@ class NeglectedWeight final : public diagnostics::Diagnostic {
         moved[a] +=
             body.density(c) * body.geometry().volume[c] * view_.now().cell_u[std::size_t(c) * mesh.dim + a];
     for (int a = 0; a < mesh.dim; ++a) moved[a] = std::abs(parallel::sum(mesh.comm, moved[a]));
-    int axis = 0;
-    moved.maxCoeff(&axis);
-    const StrainAudit& strain = strain_->now(false);
+    int axis = 1;  // the only one along which a body of revolution can weigh
+    if (!is_axisymmetric(body.parameters())) moved.maxCoeff(&axis);
     const double work = 2 * strain.strain_energy;
     // Without loads a given motion is the answer, and what is below the scale is round-off.
-    if (!(work > 0) || strain.strain_energy < strain.scale || !(view_.fields.total_load().norm() > 0)) return;
-    const double share = gravity * moved[axis] / work;
-    add(report, diagnostics::finding_of(
-                    {.effect = "gravity",
-                     .number = share,
-                     .what = fmt::format(
-                         "along {} the weight would change the displacement under the loads by {:.2g} of it",
-                         "xyz"[axis], share),
-                     .advice = "if it acts there, use 'gravity'",
-                     .share = share}));
+    if (!(work > 0) || strain.strain_energy < strain.scale ||
+        (!body.is_dynamic() && !(view_.fields.total_load().norm() > 0)))
+      return;
+    // A weight that acts at once moves a body at rest to twice its sag.
+    share_ = (body.is_dynamic() ? 2 : 1) * gravity * moved[axis] / work;
+    axis_ = axis;
   }
+  void conclude(diagnostics::Report& report) override {
+    if (largest_ > 0)
+      add(report,
+          diagnostics::finding_of(
+              {.effect = "gravity",
+               .number = share_,
+               .what = fmt::format(
+                   "along {} the weight would change the displacement under the loads by {:.2g} of it",
+                   "xyz"[axis_], share_),
+               .advice = "if it acts there, use 'gravity'",
+               .share = share_}));
+  }
+  void visit(io::Archive& archive) override { archive.common("energy", largest_, share_, axis_); }
 
  private:
   SolidView view_;
   std::shared_ptr<StrainEnergy> strain_;
+  double largest_ = 0;  // [J]
+  double share_ = std::numeric_limits<double>::quiet_NaN();
+  int axis_ = 0;
 };
 
 /// Yielding and volumetric locking.
@@ -309,6 +362,8 @@ class NeglectedOfHeat final : public diagnostics::Diagnostic {
     largest_gradient_ = std::max(largest_gradient_, gradient);
     add(report, neglected_thermal_strain(p, largest_gradient_, high - low,
                                          std::max(std::abs(high - reference), std::abs(low - reference))));
+    constexpr double room = 293.15;  // [K]
+    add(report, properties_of_temperature(p, std::max(std::abs(high - room), std::abs(low - room))));
     if (const double number = thermal.coupling_number(); number > 0)
       add(report, thermoelastic_coupling(p, number));
   }
@@ -329,10 +384,7 @@ diagnostics::Made neglected_inertia(const SolidView& view) {
 
 diagnostics::Made neglected_weight(const SolidView& view, const std::shared_ptr<StrainEnergy>& strain) {
   const P& p = view.body.parameters();
-  const bool has_interface =
-      std::ranges::any_of(p.boundaries, [](const auto& one) { return is_interface(one.second); });
-  if (!strain || view.body.is_dynamic() || !p.gravity.empty() || !p.body_force.empty() ||
-      view.body.thermal() || has_interface || is_axisymmetric(p))
+  if (!strain || !p.gravity.empty() || !p.body_force.empty() || view.body.thermal() || has_interface(p))
     return nullptr;
   return std::make_shared<NeglectedWeight>(view, strain);
 }

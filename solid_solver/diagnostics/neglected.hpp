@@ -18,6 +18,8 @@ using Opinion = std::optional<diagnostics::Finding>;
 Opinion neglected_inertia(const SolidParameters& parameters, double inertia_over_load);
 /// `kinetic_over_strain`: largest energy ratio in a dynamic run.
 Opinion spare_inertia(double kinetic_over_strain, double steps);
+/// `turns`: integral over time of the angular frequency and twice the kinetic energy, over the largest energy.
+Opinion neglected_damping(const SolidParameters& parameters, double turns);
 /// `large_strain`: absent if not known or, where the run `is_bounded` by its first terms, too small to matter. `buckling_factor`:
 /// NaN unless it is low.
 Opinion neglected_geometry(const SolidParameters& parameters, const Deformation& largest,
@@ -31,6 +33,8 @@ Opinion near_incompressibility(const SolidParameters& parameters);
 /// `gradient`: largest displacement gradient. `range`, `change`: of the temperatures, and from the reference [K].
 Opinion neglected_thermal_strain(const SolidParameters& parameters, double gradient, double range,
                                  double change);
+/// `kelvins`: farthest temperature from that of a room.
+Opinion properties_of_temperature(const SolidParameters& parameters, double kelvins);
 /// Stiffening by the heat of deformation, thesis (2.27), needed or not.
 Opinion thermoelastic_coupling(const SolidParameters& parameters, double coupling_number);
 

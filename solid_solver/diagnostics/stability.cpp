@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/vector_at.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"
@@ -114,22 +115,39 @@ std::string EnergyAudit::text() const {
       held, given, 100 * created());
 }
 
+void EnergyBalance::observe(diagnostics::Report& report) {
+  const SolidState &now = view_.now(), &before = view_.before();
+  const mesh::Mesh& mesh = view_.body.mesh();
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const double mass = view_.body.density(c) * view_.body.geometry().volume[c];
+    const Vec3 v = elastic::vector_at(now.cell_v, c, mesh.dim),
+               u = elastic::vector_at(before.cell_v, c, mesh.dim);
+    rates_[0] += 0.25 * mass * (v + u).squaredNorm() * now.dt;
+    rates_[1] += mass * (v - u).squaredNorm() / now.dt;
+  }
+  if (is_time_to_look(view_)) look(report);
+}
+
+double EnergyBalance::strain_energy() const {
+  if (!strain_) return view_.body.equilibrium().energy(view_.unknowns(), view_.now().known);
+  const StrainAudit& found = strain_->now(false);
+  return std::max(0.0, std::min(found.strain_energy, found.stress_work));
+}
+
 void EnergyBalance::look(diagnostics::Report& report) {
   const SolidBody& body = view_.body;
-  if (!body.prescribed().is_zero() || (strain_ && body.thermal())) return;
+  if (strain_ && body.thermal()) return;
   const SolidState& state = view_.now();
-  const SolidLedger& ledger = view_.stepper.ledger();
-  const StrainAudit found = strain_ ? strain_->now(false) : StrainAudit{};
-  const double strain = strain_ ? std::max(0.0, std::min(found.strain_energy, found.stress_work))
-                                : body.equilibrium().energy(view_.unknowns(), state.known);
-  const double work = parallel::sum(view_.comm(), state.load_work);
-  audit_.is_driven = work != 0;
-  audit_.given =
-      parallel::sum(view_.comm(), state.energies.initial_kinetic) + work + ledger.initial_contact();
-  const double kinetic = parallel::sum(view_.comm(), ledger.kinetic(state));
+  const double kinetic = parallel::sum(view_.comm(), view_.stepper.ledger().kinetic(state));
+  const double strain = strain_energy();
   largest_kinetic_ = std::max(largest_kinetic_, kinetic);
   largest_strain_ = std::max(largest_strain_, strain);
-  audit_.held = kinetic + strain + ledger.contact(state);
+  if (!body.prescribed().is_zero()) return;
+  const double work = parallel::sum(view_.comm(), state.load_work);
+  audit_.is_driven = work != 0;
+  audit_.given = parallel::sum(view_.comm(), state.energies.initial_kinetic) + work +
+                 view_.stepper.ledger().initial_contact() + by_changes_;
+  audit_.held = kinetic + strain + view_.stepper.ledger().contact(state);
   audit_.scale = std::max(audit_.scale, std::abs(audit_.given));
   if (audit_.is_hopeless())
     throw Error("t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.", state.time,
@@ -151,12 +169,24 @@ void EnergyBalance::conclude(diagnostics::Report& report) {
         "structural damping neglected: free vibration does not decay, and modes resolved by the time step "
         "may grow; a little 'damping: {stiffness: ...}' or 'time-scheme: {type: bathe}' prevents that; "
         "'output: {spectrum: true}' computes the rate on a coarse mesh of the same kind.");
+  const double velocity = parallel::sum(view_.comm(), rates_[0]),
+               acceleration = parallel::sum(view_.comm(), rates_[1]);
+  if (velocity > 0)
+    add(report, neglected_damping(view_.body.parameters(), std::sqrt(velocity * acceleration) /
+                                                               std::max(largest_kinetic_, largest_strain_)));
   if (largest_strain_ > 0)
     add(report, spare_inertia(largest_kinetic_ / largest_strain_, double(view_.now().steps)));
 }
 
 void EnergyBalance::visit(io::Archive& archive) {
-  archive.common("audit", audit_, largest_kinetic_, largest_strain_);
+  archive.common("audit", audit_, largest_kinetic_, largest_strain_, by_changes_);
+  archive.sums("rates", rates_);
+  if (strain_ && view_.body.thermal()) return;
+  const double kinetic = parallel::sum(view_.comm(), view_.stepper.ledger().kinetic(view_.now()));
+  const double now = kinetic + strain_energy() + view_.stepper.ledger().contact(view_.now());
+  double then = now;
+  archive.common("held", then);
+  if (std::abs(now - then) > 1e-9 * then) by_changes_ += now - then;
 }
 
 }  // namespace couplet::solid

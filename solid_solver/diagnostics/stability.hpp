@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/view.hpp"
@@ -69,19 +70,21 @@ class EnergyBalance final : public diagnostics::Diagnostic {
   EnergyBalance(const SolidView& view, std::shared_ptr<StrainEnergy> strain)
       : view_(view), strain_(std::move(strain)) {}
   const EnergyAudit& audit() const { return audit_; }
-  void observe(diagnostics::Report& report) override {
-    if (is_time_to_look(view_)) look(report);
-  }
+  void observe(diagnostics::Report& report) override;
   /// Throws Error if the result is unusable.
   void look(diagnostics::Report& report) override;
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;
 
  private:
+  double strain_energy() const;
+
   SolidView view_;
   std::shared_ptr<StrainEnergy> strain_;
   EnergyAudit audit_;
+  double by_changes_ = 0;                            // energy that the changes of restarts gave the body [J]
   double largest_kinetic_ = 0, largest_strain_ = 0;  // [J]
+  std::vector<double> rates_ = {0, 0};  // integrals over time of m v^2 and m a^2, this rank [J s], [J/s]
 };
 
 }  // namespace couplet::solid

@@ -13,8 +13,8 @@ namespace couplet::solid {
 namespace {
 
 constexpr int most_corrections = 60, most_multiplier_changes = 200, halvings = 50;
-// Loosest tolerance of a linear solve.
-constexpr double loosest_solve = 1e-3;
+// Tolerances of a linear solve. A stiff seat leaves no more digits than the finest one; the next correction gains others.
+constexpr double loosest_solve = 1e-3, finest_solve = 1e-8;
 
 class ContactNewton {
  public:
@@ -96,7 +96,7 @@ class ContactNewton {
       const double wanted = std::min(loosest_solve, 0.3 * p_.tolerance * scale_ / size);
       std::ranges::fill(du_, 0.0);
       const linalg::SolveStatistics one =
-          krylov_.solve(r_, du_, {std::max(wanted, 1e-14), p_.most_iterations, true});
+          krylov_.solve(r_, du_, {std::max(wanted, finest_solve), p_.most_iterations, true});
       statistics_.inner_iterations += one.iterations;
       ++statistics_.iterations;
       correct();

@@ -28,17 +28,16 @@ SolidStepper::SolidStepper(SolidBody& body)
   start_from_rest();
   body_.place_expansion(0);
   if (body.equilibrium().load_path()) body.set_load_factor(0);
-  if (body.is_dynamic() && has_finite_strain(parameters_)) announce_time_scheme();
+  if (body.is_dynamic()) announce_time_scheme();
 }
 
 void SolidStepper::announce_time_scheme() const {
   const time::TimeSchemeParameters scheme = scheme_of(parameters_);
   const bool by_auto = parameters_.time_scheme.type == time::TimeScheme::automatic;
   log::info("Time scheme: {}{}{}", time::name(scheme.type),
-            !by_auto ? ""
-            : scheme.type == time::TimeScheme::generalised_alpha
-                ? " (auto: a partner loads a body of large strain)"
-                : " (auto)",
+            !by_auto                                             ? ""
+            : scheme.type == time::TimeScheme::generalised_alpha ? " (auto: a partner loads the body)"
+                                                                 : " (auto)",
             scheme.type == time::TimeScheme::generalised_alpha
                 ? fmt::format(", which leaves {:g} of the highest modes after a step", scheme.spectral_radius)
             : parameters_.energy_momentum ? ", energy and momenta conserved"

@@ -7,8 +7,11 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/processor_clones.hpp"
+#include "common/elasticity/lanes.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/elasticity/vector_at.hpp"
+#include "common/fv/gradients.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
@@ -19,7 +22,6 @@ namespace couplet::solid {
 namespace {
 
 constexpr int curvatures = 6;  // second derivatives of a component
-constexpr double near_weight = 0.05, not_spanned = 1e-20, least_pivot = 1e-9;  // as in fv::NearQuadratic
 
 /// Second derivatives of the three components, each as xx, yy, zz, xy, yz, xz.
 using Curvature = std::array<Tensor3, 3>;
@@ -43,6 +45,65 @@ struct Cubic {
     return u;
   }
 };
+
+using elastic::Four;
+using FourVectors = std::array<Four, 3>;
+
+Vec3 at(const FourVectors& v, std::size_t lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
+
+/// Simplices of a cell's center, a center of a face and an edge of it, in lanes; at most four.
+struct Parts {
+  std::array<FourVectors, 4> x{};         // corners, from the cell's center
+  std::array<FourVectors, 4> area{};      // volume times the gradient of a corner's test function
+  FourVectors sum{};                      // of the corners
+  std::array<FourVectors, 3> gradient{};  // mean of the displacement's; vector j is that of component j
+  Four volume{};
+
+  void place(std::size_t corner, std::size_t lane, const Vec3& from) {
+    for (std::size_t k = 0; k < 3; ++k) x[corner][k][lane] = from[Eigen::Index(k)];
+  }
+};
+
+/// Volumes and mean gradients. The gradient is quadratic, so with one corner at the origin its mean follows from its values
+/// at the others and at their sum.
+COUPLET_PROCESSOR_CLONES void measure(Parts& parts, const Cubic& w, int dim) {
+  const FourVectors &a = parts.x[1], &b = parts.x[2], &c = parts.x[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    parts.area[1][k] = (b[i] * c[j] - b[j] * c[i]) / 6;
+    parts.area[2][k] = (c[i] * a[j] - c[j] * a[i]) / 6;
+    parts.area[3][k] = (a[i] * b[j] - a[j] * b[i]) / 6;
+    parts.sum[k] = a[k] + b[k] + c[k];
+  }
+  if (dim == 2) {
+    parts.area[1] = {0.5 * b[1], -0.5 * b[0], Four{}};
+    parts.area[2] = {-0.5 * a[1], 0.5 * a[0], Four{}};
+    parts.area[3] = {};
+  }
+  parts.volume = parts.area[1][0] * a[0] + parts.area[1][1] * a[1] + parts.area[1][2] * a[2];
+  const Four sign = parts.volume < 0 ? Four{-1, -1, -1, -1} : Four{1, 1, 1, 1};
+  parts.volume *= sign;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 1; i < 4; ++i) parts.area[i][k] *= sign;
+    parts.area[0][k] = -(parts.area[1][k] + parts.area[2][k] + parts.area[3][k]);
+  }
+  const double first = 1. / (dim + 1), half_second = 0.5 * first / (dim + 2);
+  const FourVectors& s = parts.sum;
+  std::array<FourVectors, 3> squares;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      squares[i][j] = half_second * (s[i] * s[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
+  for (std::size_t j = 0; j < std::size_t(dim); ++j)
+    for (int i = 0; i < 3; ++i) {
+      const Tensor3& h = w.curvature[j];
+      Four g = w.slope(i, Eigen::Index(j)) + first * (h(i, 0) * s[0] + h(i, 1) * s[1] + h(i, 2) * s[2]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Tensor3& t = w.change[k][j];
+        g += t(i, 0) * squares[0][k] + t(i, 1) * squares[1][k] + t(i, 2) * squares[2][k];
+      }
+      parts.gradient[j][std::size_t(i)] = g;
+    }
+}
 
 class Defect {
  public:
@@ -153,49 +214,27 @@ class Defect {
     Vec3 x, u;  // x from the cell's center
   };
 
-  /// Quadratic by least squares, near samples first. Terms that the samples do not determine are small.
-  template <int D>
-  Cubic fit_in(const std::vector<Sample>& samples) const {
-    constexpr int n = 1 + D + D * (D + 1) / 2;
-    using Terms = Eigen::Matrix<double, n, 1>;
+  Cubic fit(const std::vector<Sample>& samples) const {
     Cubic cubic;
     double reach = 0;
     for (const Sample& s : samples) reach = std::max(reach, s.x.squaredNorm());
     cubic.value = samples.front().u;
     if (!(reach > 0)) return cubic;
+    const int dim = mesh_.dim;
     const double inverse = 1 / std::sqrt(reach);
-    Eigen::Matrix<double, n, n> of = Eigen::Matrix<double, n, n>::Zero();
-    Eigen::Matrix<double, n, 3> right = Eigen::Matrix<double, n, 3>::Zero();
-    for (const Sample& s : samples) {
-      const Vec3 x = inverse * s.x;
-      Terms phi;
-      phi[0] = 1;
-      for (int a = 0, i = 1 + D; a < D; ++a) {
-        phi[1 + a] = x[a];
-        for (int b = a; b < D; ++b) phi[i++] = x[a] * x[b];
-      }
-      const Terms weighted = phi / (near_weight + x.squaredNorm());
-      of.noalias() += weighted * phi.transpose();
-      right.noalias() += weighted * s.u.transpose();
-    }
-    const double least = not_spanned * of(0, 0);
-    const Terms scale = of.diagonal().unaryExpr([&](double v) { return v > least ? 1 / std::sqrt(v) : 0; });
-    of = (scale.asDiagonal() * of * scale.asDiagonal()).eval();
-    of.diagonal().array() += least_pivot;
-    const Eigen::Matrix<double, n, 3> c = scale.asDiagonal() * of.llt().solve(scale.asDiagonal() * right);
+    fv::NearQuadratic quadratic(dim, Vec3::Zero(), 1 / inverse, 3);
+    for (const Sample& s : samples) quadratic.add(s.x, {s.u.data(), 3});
+    const auto c = quadratic.solve();
     cubic.value = c.row(0);
-    for (int j = 0; j < D; ++j)
-      for (int a = 0, i = 1 + D; a < D; ++a) {
+    for (int j = 0; j < dim; ++j)
+      for (int a = 0, i = 1 + dim; a < dim; ++a) {
         cubic.slope(a, j) = inverse * c(1 + a, j);
-        for (int b = a; b < D; ++b, ++i) {
+        for (int b = a; b < dim; ++b, ++i) {
           Tensor3& h = cubic.curvature[std::size_t(j)];
           h(a, b) = h(b, a) = (a == b ? 2 : 1) * inverse * inverse * c(i, j);
         }
       }
     return cubic;
-  }
-  Cubic fit(const std::vector<Sample>& samples) const {
-    return mesh_.dim == 2 ? fit_in<2>(samples) : fit_in<3>(samples);
   }
 
   /// Fit to the samples of the cell without their known cubic part.
@@ -277,19 +316,16 @@ class Defect {
     Eigen::Matrix3d of = Eigen::Matrix3d::Zero();
     Eigen::Matrix<double, 3, 3 * curvatures> right;
     right.setZero();
-    using Row = Eigen::Matrix<double, 1, 3 * curvatures>;
-    const auto at = [&](Index c) {
-      return Eigen::Map<const Row>(curvature_.data() + std::size_t(c) * 3 * curvatures);
-    };
+    const double* here = curvature_.data() + std::size_t(cell) * 3 * curvatures;
     for (const Index c : patch_) {
       const Vec3 x =
           elastic::vector_at(curvature_place_, c, 3) - elastic::vector_at(curvature_place_, cell, 3);
-      const Vec3 between_centres = geometry_.cell_centre[c] - geometry_.cell_centre[cell];
-      if (c == cell || !(between_centres.norm() > 0)) continue;
-      const double weight =
-          1 / between_centres.squaredNorm();  // the places of two cells across a body coincide
-      of += weight * x * x.transpose();
-      right += weight * x * (at(c) - at(cell));
+      const double far = (geometry_.cell_centre[c] - geometry_.cell_centre[cell]).squaredNorm();
+      if (c == cell || !(far > 0)) continue;
+      const Vec3 weighted = x / far;  // the places of two cells across a body coincide
+      of += weighted * x.transpose();
+      const double* there = curvature_.data() + std::size_t(c) * 3 * curvatures;
+      for (int i = 0; i < 3 * curvatures; ++i) right.col(i) += (there[i] - here[i]) * weighted;
     }
     of.diagonal().array() += 1e-6 * of.trace() + 1e-300;
     const Eigen::Matrix<double, 3, 3 * curvatures> slope = of.llt().solve(right);
@@ -313,29 +349,31 @@ class Defect {
               .squaredNorm();
   }
 
-  /// Corner of a part of a cell, and the force on it.
-  struct Corner {
-    Vec3 x;  // from the cell's center
-    Vec3 force = Vec3::Zero();
-  };
-
   void add_cell(Index c, const Cubic& w, const Cubic& body, const Pressure& heat) {
     const Vec3 centre = geometry_.cell_centre[c];
+    const bool is_ring = is_axisymmetric(rows_);
     Vec3 of_cell = Vec3::Zero();
     for (const Index f : faces_of_cell_[c]) {
       const bool second = f < mesh_.n_interior && mesh_.neighbour[f] == c && mesh_.owner[f] != c;
       const Vec3 from = centre + (second ? mesh_.shift(f) : Vec3(Vec3::Zero()));
       const auto points = mesh_.face_points[f];
-      Vec3 of_middle = Vec3::Zero();
-      std::array<Vec3, 4> of_point{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
       const std::size_t n = points.size();
+      Vec3 of_middle = Vec3::Zero();
+      std::array<Vec3, 5> of_point;
+      of_point.fill(Vec3::Zero());
+      Parts parts;
       for (std::size_t i = 0; i < n; ++i) {
-        std::array<Corner, 4> part{Corner{Vec3::Zero()}, Corner{geometry_.face_centre[f] - from},
-                                   Corner{geometry_.points[points[i]] - from},
-                                   Corner{geometry_.points[points[(i + 1) % n]] - from}};
-        add_part(c, w, body, heat, part);
-        of_cell += part[0].force, of_middle += part[1].force, of_point[i] += part[2].force;
-        if (mesh_.dim == 3) of_point[(i + 1) % n] += part[3].force;
+        parts.place(1, i, geometry_.face_centre[f] - from);
+        parts.place(2, i, geometry_.points[points[i]] - from);
+        if (mesh_.dim == 3) parts.place(3, i, geometry_.points[points[(i + 1) % n]] - from);
+      }
+      measure(parts, w, mesh_.dim);
+      for (std::size_t i = 0; i < n; ++i) {
+        if (!(parts.volume[i] > 0)) continue;
+        const auto force =
+            is_ring ? of_ring_part(c, w, body, heat, parts, i) : of_part(c, body, heat, parts, i);
+        of_cell += force[0], of_middle += force[1], of_point[i] += force[2];
+        of_point[(i + 1) % n] += force[3];
       }
       const bool has_node = f >= mesh_.n_interior && !rows_.mirrored(f);
       const auto shares = elastic::point_shares(mesh_, geometry_, f);
@@ -347,50 +385,29 @@ class Defect {
     space_.force(c) += of_cell;
   }
 
-  /// Adds the forces on the corners of a simplex. The gradient is quadratic, so with one corner at the origin its mean follows
-  /// from its values at the others and at their sum.
-  void add_part(Index c, const Cubic& w, const Cubic& body, const Pressure& heat,
-                std::array<Corner, 4>& part) {
+  using Forces = std::array<Vec3, 4>;
+
+  /// Forces on the corners of a simplex.
+  Forces of_part(Index c, const Cubic& body, const Pressure& heat, const Parts& parts, std::size_t i) {
     const int dim = mesh_.dim;
-    Vec3 sum = Vec3::Zero();
-    for (int i = 1; i <= dim; ++i) sum += part[std::size_t(i)].x;
-    std::array<Vec3, 4> area;  // volume times the gradient of a corner's test function
-    if (dim == 3) {
-      area[1] = part[2].x.cross(part[3].x) / 6, area[2] = part[3].x.cross(part[1].x) / 6;
-      area[3] = part[1].x.cross(part[2].x) / 6;
-    } else {
-      area[1] = 0.5 * Vec3(part[2].x[1], -part[2].x[0], 0),
-      area[2] = 0.5 * Vec3(-part[1].x[1], part[1].x[0], 0);
-      area[3].setZero();
-    }
-    double volume = area[1].dot(part[1].x);
-    if (volume < 0) {
-      for (int i = 1; i <= 3; ++i) area[std::size_t(i)] *= -1;
-      volume = -volume;
-    }
-    area[0] = -(area[1] + area[2] + area[3]);
-    if (!(volume > 0)) return;
-    if (is_axisymmetric(rows_)) return add_ring_part(c, w, body, heat, part, area, volume);
-    const double first = 1. / (dim + 1), second = first / (dim + 2);
-    Tensor3 gradient = w.slope;
-    Tensor3 squares = sum * sum.transpose();
-    for (int i = 1; i <= dim; ++i) squares += part[std::size_t(i)].x * part[std::size_t(i)].x.transpose();
-    squares *= 0.5 * second;
-    for (int j = 0; j < dim; ++j) {
-      gradient.col(j) += first * (w.curvature[std::size_t(j)] * sum);
-      for (int k = 0; k < dim; ++k)
-        gradient.col(j) += w.change[std::size_t(k)][std::size_t(j)] * squares.col(k);
-    }
+    const double first = 1. / (dim + 1), volume = parts.volume[i];
+    const Vec3 sum = at(parts.sum, i);
+    Tensor3 gradient;
+    for (int j = 0; j < 3; ++j) gradient.col(j) = at(parts.gradient[std::size_t(j)], i);
     const Tensor3 stress = stress_of(c, gradient, heat, first * sum, volume);
-    const Vec3 push = first * volume * (body.at(first * sum) - first * (body.slope.transpose() * sum));
-    for (int i = 0; i <= dim; ++i) {
-      Vec3& force = part[std::size_t(i)].force;
-      force += push - stress * area[std::size_t(i)];
+    Vec3 push = body.value;
+    if (!force_is_uniform_) push = body.at(first * sum) - first * (body.slope.transpose() * sum);
+    Forces force;
+    for (std::size_t k = 0; k <= std::size_t(dim); ++k) {
+      force[k] = first * volume * push - stress * at(parts.area[k], i);
       if (!force_is_uniform_)
-        force += second * volume * (body.slope.transpose() * (sum + part[std::size_t(i)].x));
+        force[k] += first / (dim + 2) * volume * (body.slope.transpose() * (sum + at(parts.x[k], i)));
     }
-    if (dim == 2)
-      for (Corner& k : part) k.force[2] = 0;
+    if (dim == 2) {
+      for (Vec3& each : force) each[2] = 0;
+      force[3].setZero();
+    }
+    return force;
   }
 
   Tensor3 stress_of(Index c, const Tensor3& gradient, const Pressure& heat, const Vec3& x, double volume) {
@@ -404,13 +421,16 @@ class Defect {
   }
 
   /// Integrates around the axis, with three points.
-  void add_ring_part(Index c, const Cubic& w, const Cubic& body, const Pressure& heat,
-                     std::array<Corner, 4>& part, const std::array<Vec3, 4>& area, double volume) {
+  Forces of_ring_part(Index c, const Cubic& w, const Cubic& body, const Pressure& heat, const Parts& parts,
+                      std::size_t part) {
+    Forces force;
+    force.fill(Vec3::Zero());
+    const double volume = parts.volume[part];
     for (std::size_t q = 0; q < 3; ++q) {
       Vec3 x = Vec3::Zero();
       std::array<double, 3> share{1. / 6, 1. / 6, 1. / 6};
       share[q] = 2. / 3;
-      for (std::size_t i = 0; i < 3; ++i) x += share[i] * part[i].x;
+      for (std::size_t i = 0; i < 3; ++i) x += share[i] * at(parts.x[i], part);
       const double radius = geometry_.cell_centre[c][0] + x[0], around = elastic::circumference(radius) / 3;
       Tensor3 gradient = w.slope;
       for (int j = 0; j < 2; ++j) gradient.col(j) += (w.curvature[std::size_t(j)] + 0.5 * w.third(j, x)) * x;
@@ -418,11 +438,12 @@ class Defect {
       const Tensor3 stress = stress_of(c, gradient, heat, x,
                                        around * volume / elastic::circumference(geometry_.cell_centre[c][0]));
       for (std::size_t i = 0; i < 3; ++i) {
-        part[i].force += around * (volume * share[i] * body.at(x) - stress * area[i]);
-        part[i].force[0] -= around * volume * stress(2, 2) * share[i] / radius;
-        part[i].force[2] = 0;
+        force[i] += around * (volume * share[i] * body.at(x) - stress * at(parts.area[i], part));
+        force[i][0] -= around * volume * stress(2, 2) * share[i] / radius;
+        force[i][2] = 0;
       }
     }
+    return force;
   }
 
   const SolidBody& body_;

@@ -24,6 +24,7 @@ struct HeatBoundary {
   config::ExpressionText value;        // temperature [K] or heat flux into the solid [W/m^2]
   config::ExpressionText coefficient;  // of convection [W/(m^2 K)]
   config::ExpressionText ambient;      // ambient temperature [K]
+  bool carries_heat() const { return type != Type::adiabatic && type != Type::symmetry; }
 };
 
 /// Heat conduction, thesis (2.35).

@@ -3,8 +3,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
 
 #include "common/base/error.hpp"
@@ -78,28 +76,6 @@ void declare(config::Section& s, InterfaceData& d) {
       .doc(
           "receive a temperature at the faces; the solid uses it along the interface, linear between the "
           "faces and constant through its thickness");
-  s.value("surface-density", d.surface_density)
-      .doc(
-          "also give the mass behind the faces [kg/m^2]: the solid's mass per interface area, as deep as a "
-          "pressure wave travels within a step; the impedance for a fluid with `impedance: structure` "
-          "(Robin)");
-}
-
-double WallImpedance::in_step(double dt) const {
-  const double x = 2 * crossing / dt;
-  return x > 1e-6 ? mass * std::tanh(x) / x : mass;
-}
-
-WallImpedance wall_impedance(MPI_Comm comm, std::span<const double> densities, std::span<const double> speeds,
-                             std::span<const double> volumes, std::span<const Vec3> areas) {
-  std::array<double, 3> sums{};  // mass, time times area, area
-  for (std::size_t c = 0; c < volumes.size(); ++c) {
-    sums[0] += densities[c] * volumes[c];
-    sums[1] += volumes[c] / speeds[c];
-  }
-  for (const Vec3& a : areas) sums[2] += a.norm();
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, comm);
-  return {sums[0] / sums[2], sums[1] / sums[2]};
 }
 
 std::vector<coupling::Interface::Datum> taken(const InterfaceData& data) {

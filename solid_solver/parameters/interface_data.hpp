@@ -20,25 +20,9 @@ struct InterfaceData {
     pressure,  ///< pressure [Pa], one value per face, positive into the solid
   };
   Load load = Load::forces;
-  bool temperature = false;      ///< temperature [K], one value per face
-  bool surface_density = false;  ///< gives the mass per area behind its faces [kg/m^2]
+  bool temperature = false;  ///< temperature [K], one value per face
 };
 void declare(config::Section& section, InterfaceData& data);
-
-/// Response of a body to a pressure that changes on all interface faces at once.
-struct WallImpedance {
-  double mass = 0;      ///< mass of the body over the area of its interface [kg/m^2]
-  double crossing = 0;  ///< thickness (volume over that area) over the speed of pressure waves [s]
-
-  /// Mass that responds within a step [kg/m^2]: mass tanh(x)/x, x = 2 crossing/dt. It equals Z dt/2 with the
-  /// impedance Z(s) = rho c tanh(s h/c) of a layer of thickness h with a free back, at s = 2/dt. It is the
-  /// whole mass in long steps, and rho c dt/2 if the wave does not cross the layer.
-  double in_step(double dt) const;
-};
-/// Density times thickness of a wall, half of that if wet on both sides. `densities`, `speeds` (of pressure waves,
-/// infinite if rigid) and `volumes` are values of this rank's cells; `areas` belong to interface faces. Collective.
-WallImpedance wall_impedance(MPI_Comm comm, std::span<const double> densities, std::span<const double> speeds,
-                             std::span<const double> volumes, std::span<const Vec3> areas);
 
 /// Data to declare at the interface faces.
 std::vector<coupling::Interface::Datum> taken(const InterfaceData& data);

@@ -160,8 +160,8 @@ time::TimeSchemeParameters scheme_of(const SolidParameters& p) {
   const bool keeps_contact = p.contact && p.contact->rule == contact::ContactRule::conserving;
   const bool is_loaded_by_partner =
       !(p.interface_data && p.interface_data->temperature) && any_condition(p, is_interface);
-  const bool damps = has_finite_strain(p) && !is_updated_lagrangian(p) && !p.energy_momentum &&
-                     !keeps_contact && is_loaded_by_partner;
+  const bool damps =
+      is_loaded_by_partner && !is_updated_lagrangian(p) && !p.energy_momentum && !keeps_contact;
   scheme.type = damps ? time::TimeScheme::generalised_alpha : time::TimeScheme::trapezoidal;
   return scheme;
 }

@@ -264,8 +264,7 @@ void declare(config::Section& s, SolidParameters& p) {
   s.section(
       "time-scheme",
       [&](config::Section& t) {
-        time::declare(t, p.time_scheme,
-                      "; auto: generalised-alpha at finite strain with an interface, else trapezoidal");
+        time::declare(t, p.time_scheme, "; auto: generalised-alpha with an interface, else trapezoidal");
       },
       "time integration of a dynamic analysis");
   s.optional_section<SolidDamping>(

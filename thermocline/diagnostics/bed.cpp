@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/io/checkpoint.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
@@ -11,51 +12,69 @@ namespace couplet::thermocline {
 namespace {
 
 /// Checks grains with a single shell. It assumes a parabolic profile (linear driving force), delayed by
-/// d^2/(60 a) for slow changes and inaccurate for fast ones: 1/h becomes (1 + Bi/5)/h. Behind a front the
-/// fluid was within 0.1 % of 20 shells at Bi 10, within 1.2 % at Bi 100 (docs/stability.md).
+/// d^2/(60 a) for slow changes and inaccurate for fast ones: 1/h becomes (1 + Bi/5)/h. With x the delay over the time in which a front
+/// crosses the bed, its transfer function 1/(1 + x) differs from that of a sphere by 3/7 x^2.
 class ResolvedGrains final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
   void look(diagnostics::Report& report) override {
     if (bed().shells() > 1 || !(seen_->flow > 0)) return;
-    const double biot = largest_biot();
+    const auto [biot, share] = largest_biot();
     tell(report, {.effect = "resolved grains",
                   .number = biot,
                   .what = fmt::format(
                       "Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
                       biot, biot / 5),
                   .advice = "set 'bed.shells': five resolve the grains",
-                  .share = 1.2e-4 * biot});
+                  .share = share});
     report.position.push_back({"Biot number of the grains", biot, 20, "tank-biot"});
   }
   void conclude(diagnostics::Report& report) override {
     if (!(seen_->flow > 0)) return;
     std::string layers;
+    double spread = 0;
+    bool is_outside = false;
     for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
       const BedGrid::Run& run = bed().grid().runs[r];
-      layers += fmt::format(
-          "{}{:.3g}", layers.empty() ? "" : ", ",
-          bed().closure(r).reynolds(bed().fluid()[run.first + run.count / 2], seen_->flow / bed().area()));
+      const double flux = seen_->flow / bed().area(), kelvin = bed().fluid()[run.first + run.count / 2];
+      const double reynolds = bed().closure(r).reynolds(kelvin, flux);
+      layers += fmt::format("{}{:.3g}", layers.empty() ? "" : ", ", reynolds);
+      if (run.layer.porosity >= 1 || (reynolds >= 15 && reynolds <= 8500)) continue;
+      is_outside = true;
+      // Each layer adds the delay by its film to the square of the width of a front, over the time of its passage.
+      const Filler& filler = run.layer.filler ? *run.layer.filler : view_.model.setup().filler;
+      const double delay =
+          run.layer.diameter * filler.volumetric() / (6 * bed().closure(r).at(kelvin, MassFlux(flux)).film);
+      spread += double(run.count) / double(bed().fluid().size()) * delay * seen_->flow / crossing_mass();
     }
     report.sentences.push_back(
-        fmt::format("closures: Re of the layers at the largest flow {} from the bottom up; the film "
-                    "correlation is fitted to Re from 15 to 8500",
-                    layers));
+        fmt::format("closures: Re of the layers at the largest flow {} from the bottom up", layers));
+    if (!is_outside || view_.parameters().bed.closures.film_coefficient > 0) return;
+    const double share = std::sqrt(spread);
+    tell(report, {.effect = "range of the film correlation",
+                  .number = share,
+                  .what = fmt::format("Re {} of the layers, fitted from 15 to 8500", layers),
+                  .advice = "give 'bed.closures.film-coefficient'",
+                  .share = share});
   }
 
  private:
-  /// Film times d/(2 conductivity) of grain layers at the largest flow and the bed's mean temperature.
-  double largest_biot() const {
-    double mean = 0, largest = 0;
+  /// Film times d/(2 conductivity) of grain layers at the largest flow and the bed's mean temperature; and its share of the result.
+  std::pair<double, double> largest_biot() const {
+    double mean = 0, largest = 0, share = 0;
     for (const double t : bed().fluid()) mean += t / double(bed().fluid().size());
     for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
       const BedLayer& layer = bed().grid().runs[r].layer;
       if (layer.porosity >= 1 || layer.melting) continue;
       const Filler& filler = layer.filler ? *layer.filler : view_.model.setup().filler;
       const double film = bed().closure(r).at(mean, MassFlux(seen_->flow / bed().area())).film;
-      largest = std::max(largest, film * layer.diameter / (2 * filler.conductivity));
+      const double biot = film * layer.diameter / (2 * filler.conductivity);
+      const double delay = layer.diameter * layer.diameter * filler.volumetric() / (60 * filler.conductivity);
+      const double x = delay * seen_->flow / crossing_mass();
+      largest = std::max(largest, biot);
+      share = std::max(share, biot / (5 + biot) * 3. / 7 * x * x / (1 + x * x));
     }
-    return largest;
+    return {largest, share};
   }
 };
 

@@ -49,9 +49,10 @@ struct KeyChanges {
 };
 KeyChanges changes_between(const std::string& then, const std::string& now);
 
-/// Reports the changes of the case since the checkpoint in this folder. Throws Error if they change the
-/// solution, unless there is `consent` (--restart-with-changes).
-void judge_changes(const std::filesystem::path& checkpoint, const std::string& now, bool consent);
+/// Returns the changes of the solution by those of the case since the checkpoint in this folder. Throws Error if there are any
+/// without `consent` (--restart-with-changes).
+std::vector<std::string> judge_changes(const std::filesystem::path& checkpoint, const std::string& now,
+                                       bool consent);
 
 /// Problems of the roles in a coupled case: unknown participants, participants without a role, programs that
 /// cannot play theirs (see roles.hpp). Every program of a job finds the same ones, at its roll call and by

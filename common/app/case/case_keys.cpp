@@ -100,7 +100,7 @@ KeyChanges changes_between(const std::string& then, const std::string& now) {
   return changes;
 }
 
-void judge_changes(const fs::path& checkpoint, const std::string& now, bool consent) {
+std::vector<std::string> judge_changes(const fs::path& checkpoint, const std::string& now, bool consent) {
   const fs::path file = checkpoint / "keys.txt";
   if (const std::string problem = io::problem_in_set(file); !problem.empty()) throw Error("{}", problem);
   std::ifstream stream(file, std::ios::binary);
@@ -108,14 +108,13 @@ void judge_changes(const fs::path& checkpoint, const std::string& now, bool cons
   then << stream.rdbuf();
   const KeyChanges changes = changes_between(then.str(), now);
   for (const std::string& change : changes.harmless) log::info("since the checkpoint: {}", change);
-  if (changes.physics.empty()) return;
-  if (!consent)
+  if (!changes.physics.empty() && !consent)
     throw Error(
         "The case differs from the one that {} was written with:\n"
         "  {}\n"
         "If this is intended, start all programs with --restart-with-changes as well.",
         checkpoint.string(), base::join(changes.physics, "\n  "));
-  for (const std::string& change : changes.physics) log::warn("since the checkpoint: {}", change);
+  return changes.physics;
 }
 
 }  // namespace couplet::app

@@ -45,7 +45,7 @@ FiniteKernel::FiniteKernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
     : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(of_materials)) {
   const SharedFaces shared = shared_faces(mesh, rows);
   if (parallel::any(mesh.comm, shared.n_mine > 0))
-    edges_ = std::make_unique<FiniteEdges>(mesh, rows, shared.faces, shared.volume, laws_);
+    edges_ = std::make_unique<FiniteEdges>(mesh, rows, shared, laws_);
   for (std::size_t m = 0; m < laws_.size(); ++m) {
     const auto takes = [&](Index f) {
       return laws_.size() == 1 || std::size_t(mesh.material_of(mesh.owner[f])) == m;
@@ -94,7 +94,8 @@ void FiniteKernel::deform(finite::Group& group) {
     if (!(worst_.ratio > 0)) continue;  // laws contain logarithms and roots
     group.evaluate(first, found, cells_.of_nodes.empty(), {energy.data(), n});
     for (std::size_t i = 0; i < n; ++i)
-      for (int k = 0; k < 4; ++k) energy_ += group.own * group.volumes[first + i].whole[k] * energy[i].w[k];
+      for (int k = 0; k < 4; ++k)
+        energy_ += group.volumes[first + i].own[k] * group.volumes[first + i].whole[k] * energy[i].w[k];
   }
 }
 
@@ -169,15 +170,16 @@ void FiniteKernel::visit(const Take& take) {
       finite::stress<true>(group.states[i], p);
       for (int k = 0; k < 4; ++k) {
         if (group.volumes[i].face[k] < 0) continue;
+        const double own = group.volumes[i].own[k];
         Tensor3 deformation, stress;
         for (int a = 0; a < 3; ++a)
           for (int b = 0; b < 3; ++b) {
-            double f = group.states[i].f[a][b][k], s = group.own * p[a][b][k];
+            double f = group.states[i].f[a][b][k], s = own * p[a][b][k];
             if (!group.edges.empty()) {
-              f = group.own * f + (a == b ? SharedEdges::share : 0);
+              f = own * f + (a == b ? 1 - own : 0);
               for (const Index edge : group.edges[i][std::size_t(k)]) {
-                f += SharedEdges::share / 3 * edges_->gradient(edge)[a * 3 + b];
-                s += SharedEdges::share / 3 * edges_->at(edge)[a * 3 + b];
+                f += (1 - own) / 3 * edges_->gradient(edge)[a * 3 + b];
+                s += (1 - own) / 3 * edges_->at(edge)[a * 3 + b];
               }
             }
             deformation(a, b) = f;
@@ -285,7 +287,8 @@ void FiniteKernel::conserving_forces() {
     // The tangent includes the pressure of the midpoint states.
     if (!cells_.of_nodes.empty())
       for (std::size_t i = 0; i < group.blocks.size(); ++i)
-        group.states[i].wj += finite::between(group, i, cells_.of_nodes.data()) / group.own;
+        group.states[i].wj +=
+            finite::between(group, i, cells_.of_nodes.data()) / blocks::wide(group.volumes[i].own);
     worst_.take(finite::least_end_ratio(group), worst_.face);
   }
   const bool is_sound = parallel::min(mesh_.comm, worst_.ratio) > 0;
@@ -342,7 +345,7 @@ void FiniteKernel::stretch_edges() {
     for (std::size_t i = 0; i < group.edges.size(); ++i)
       for (int k = 0; k < 4; ++k)
         for (const Index e : group.edges[i][std::size_t(k)])
-          edges_->at(e)[0] += SharedEdges::share / 3 * group.volumes[i].whole[k] * (group.stretch[i][k] - 1);
+          edges_->at(e)[0] += blocks::part_of_edges(group.volumes[i])[k] * (group.stretch[i][k] - 1);
   edges_->finish_means();
   edges_->take_stretch();
 }
@@ -364,8 +367,9 @@ void FiniteKernel::visit_tangents(const std::function<void(const FaceTangent&)>&
   for (const finite::Group& group : groups_)
     for (std::size_t i = 0; i < group.blocks.size(); ++i) {
       finite::State state = group.states[i];
-      if (group.own < 1 && !cells_.of_nodes.empty())
-        state.wj -= (1 - group.own) / group.own * finite::between(group, i, cells_.there.data());
+      const Four own = blocks::wide(group.volumes[i].own);
+      if (!group.edges.empty() && !cells_.of_nodes.empty())
+        state.wj -= (1 - own) / own * finite::between(group, i, cells_.there.data());
       FaceTangent of[4];
       take_cofactors(state, of);
       Four df[3][3] = {}, dp[3][3];

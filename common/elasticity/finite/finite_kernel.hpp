@@ -18,7 +18,7 @@ namespace couplet::elastic {
 /// The tangent is symmetric on any mesh and for any law. With one volume ratio per cell (near
 /// incompressibility, ElasticOperator::volume_by_cells) the bulk part of the law uses the mean
 ///   J_P = sum_f V_fP det F_f / V_P,   E = sum_f V_f [W - U](F_f) + sum_P V_P U(J_P)
-/// Triangles share 0.9 of their energy with their edges (SharedEdges). The rest is as in SymmetricKernel.
+/// Triangles share most of their energy with their edges (SharedEdges). The rest is as in SymmetricKernel.
 class FiniteKernel {
  public:
   /// `of_materials` has one law per material or one in total. Keeps references to mesh and rows.

@@ -36,7 +36,7 @@ template <int D>
 
 template <int D>
 [[gnu::always_inline]] inline void push_stress(const Group& group, std::size_t i, const Tensor4& p,
-                                               double share, double* forces) {
+                                               const Four& share, double* forces) {
   const Four weight = share * blocks::wide(group.volumes[i].whole);
   Four scaled[D][D];
   for (int a = 0; a < D; ++a)
@@ -44,7 +44,8 @@ template <int D>
   blocks::push<D>(group.blocks[i], scaled, forces);
 }
 
-inline void push_stress(const Group& group, std::size_t i, const Tensor4& p, double share, double* forces) {
+inline void push_stress(const Group& group, std::size_t i, const Tensor4& p, const Four& share,
+                        double* forces) {
   group.dim == 2 ? push_stress<2>(group, i, p, share, forces) : push_stress<3>(group, i, p, share, forces);
 }
 
@@ -68,11 +69,12 @@ template <int D>
 template <int D, bool HasSecond>
 [[gnu::always_inline]] inline void stress_loop(Group& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+    const Four own = blocks::wide(group.volumes[i].own);
     Four p[3][3];
     if (at.of_cells)
-      group.states[i].wj += blocks::between(group.blocks[i], group.volumes[i], at.of_cells) / group.own;
+      group.states[i].wj += blocks::between(group.blocks[i], group.volumes[i], at.of_cells) / own;
     stress<HasSecond>(group.states[i], p);
-    push_stress<D>(group, i, p, group.own, at.forces);
+    push_stress<D>(group, i, p, own, at.forces);
   }
 }
 
@@ -84,7 +86,7 @@ inline void pressure_loop(const Group& group, const Values& at) {
     const Four p = between(group, i, at.of_cells);
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) h[a][b] *= p;
-    push_stress(group, i, h, 1, at.forces);
+    push_stress(group, i, h, Four{1, 1, 1, 1}, at.forces);
   }
 }
 
@@ -102,38 +104,38 @@ template <int D>
 template <int D, bool HasSecond>
 [[gnu::always_inline]] inline void tangent_loop(const Group& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+    const Four own = blocks::wide(group.volumes[i].own);
     Four df[3][3], dp[3][3], dpressure{};
     deformation<D>(group.blocks[i], at.values, true, df);
-    if (at.of_cells) dpressure = blocks::between(group.blocks[i], group.volumes[i], at.of_cells) / group.own;
+    if (at.of_cells) dpressure = blocks::between(group.blocks[i], group.volumes[i], at.of_cells) / own;
     tangent<HasSecond>(group.states[i], df, dpressure, dp);
     if (D == 2 && !group.sheet.empty()) condense(group.sheet[i], df, dp);
-    push_stress<D>(group, i, dp, group.own, at.forces);
+    push_stress<D>(group, i, dp, own, at.forces);
   }
 }
 
 /// Adds t V / 3 (F - I), or its change, to the edges, gradient_stride numbers each.
-inline void to_edges(const FaceGroup& group, const double* values, double* edges) {
+[[gnu::always_inline]] inline void to_edges(const FaceGroup& group, const double* values, double* edges) {
   for (std::size_t i = 0; i < group.edges.size(); ++i) {
     Four g[3][3];
     blocks::gradient<3>(group.blocks[i], values, g);
-    for (int k = 0; k < 4; ++k) {
-      const double part = SharedEdges::share / 3 * group.volumes[i].whole[k];
+    const Four part = blocks::part_of_edges(group.volumes[i]);
+    for (int k = 0; k < 4; ++k)
       for (const Index e : group.edges[i][std::size_t(k)])
         for (int a = 0; a < 9; ++a)
-          edges[std::size_t(e) * SharedEdges::gradient_stride + a] += part * g[a / 3][a % 3][k];
-    }
+          edges[std::size_t(e) * SharedEdges::gradient_stride + a] += part[k] * g[a / 3][a % 3][k];
   }
 }
 
 /// Adds the forces of the edges' stress to the nodes.
-inline void from_edges(const FaceGroup& group, const double* edges, double* forces) {
+[[gnu::always_inline]] inline void from_edges(const FaceGroup& group, const double* edges, double* forces) {
   for (std::size_t i = 0; i < group.edges.size(); ++i) {
     Four p[3][3] = {};
     for (int k = 0; k < 4; ++k)
       for (const Index e : group.edges[i][std::size_t(k)])
         for (int a = 0; a < 9; ++a)
           p[a / 3][a % 3][k] += edges[std::size_t(e) * SharedEdges::gradient_stride + a];
-    const Four weight = SharedEdges::share / 3 * blocks::wide(group.volumes[i].whole);
+    const Four weight = blocks::part_of_edges(group.volumes[i]);
     for (int a = 0; a < 9; ++a) p[a / 3][a % 3] *= weight;
     blocks::push<3>(group.blocks[i], p, forces);
   }
@@ -173,10 +175,11 @@ inline double least_end_ratio(const Group& group) {
 inline void conserving_loop(const Group& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four p[3][3];
-    const Four pressure = at.of_cells ? between(group, i, at.of_cells) / group.own : Four{};
+    const Four own = blocks::wide(group.volumes[i].own);
+    const Four pressure = at.of_cells ? between(group, i, at.of_cells) / own : Four{};
     conserving_stress(*group.law, group.states[i].f, group.start[i].f, group.start[i].energy, !at.of_cells,
                       pressure, p);
-    push_stress(group, i, p, group.own, at.forces);
+    push_stress(group, i, p, own, at.forces);
   }
 }
 

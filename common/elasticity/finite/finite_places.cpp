@@ -146,15 +146,13 @@ void scatter(const Four (&t)[3][3], const std::array<Index, 4>& at, double* valu
 
 }  // namespace
 
-FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
-                         std::span<const double> volume, std::span<const FiniteLaw> laws)
-    : edges_(mesh, rows, faces, volume),
-      value_(edges_.n_edges() * SharedEdges::gradient_stride, 0),
-      kept_(value_) {
+FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, const SharedFaces& shared,
+                         std::span<const FiniteLaw> laws)
+    : edges_(mesh, rows, shared), value_(edges_.n_edges() * SharedEdges::gradient_stride, 0), kept_(value_) {
   std::vector<int> material(edges_.n_edges(), 0);
   if (laws.size() > 1)
-    for (std::size_t i = 0; i < faces.size(); ++i)
-      for (const Index e : edges_.edges_of(i)) material[e] = mesh.material_of(mesh.owner[faces[i]]);
+    for (std::size_t i = 0; i < shared.faces.size(); ++i)
+      for (const Index e : edges_.edges_of(i)) material[e] = mesh.material_of(mesh.owner[shared.faces[i]]);
   for (std::size_t m = 0; m < laws.size(); ++m) {
     Group group;
     group.law = &laws[m];

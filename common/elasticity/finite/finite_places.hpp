@@ -75,8 +75,8 @@ class FiniteEdges {
 
   /// `faces` are the triangular flux faces, this rank's first. `volume` is V_f of this rank's, else 0. `laws`
   /// has one entry per material or one in total. Collective.
-  FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
-              std::span<const double> volume, std::span<const FiniteLaw> laws);
+  FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, const SharedFaces& shared,
+              std::span<const FiniteLaw> laws);
 
   const SharedEdges& edges() const { return edges_; }
   double* at(Index edge) { return value_.data() + std::size_t(edge) * SharedEdges::gradient_stride; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,22 +15,26 @@ namespace couplet::elastic {
 /// G_f. Triangles share it with their edges (SharedEdges). It includes the tangent of the loads.
 class StressStiffness {
  public:
-  /// Keeps references to mesh and rows, and the needed parts of `of`. Collective.
+  /// Own part of V sigma of four faces, entries as in SharedEdges.
+  using FaceStress = std::array<std::array<double, 4>, SharedEdges::size>;
+
+  /// Keeps references to mesh and rows. Collective.
   StressStiffness(const mesh::Mesh& mesh, const ElasticOperator& rows, Prestress of);
   /// Computes y = K_sigma x on the rows of ElasticOperator. Collective.
   void apply(std::span<const double> x, std::span<double> y);
 
  private:
-  template <int D>
-  void push(const FaceGroup& group);
+  struct Group : FaceGroup {
+    std::vector<FaceStress> stress;
+  };
   void push_edges();
 
   SymmetricSpace space_;
-  std::vector<FaceGroup> groups_;
+  std::vector<Group> groups_;
   std::unique_ptr<SharedEdges> edges_;
   std::vector<Tensor3> edge_stress_;
   std::vector<double> edge_value_;
-  Prestress of_;
+  std::vector<PlaceBlock> loads_;
 };
 
 }  // namespace couplet::elastic

@@ -34,19 +34,18 @@ std::vector<GlobalIndex> names_of_points(const mesh::Mesh& mesh, const mesh::Geo
 
 }  // namespace
 
-SharedEdges::SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
-                         std::span<const double> volume)
-    : edges_of_(faces.size()),
+SharedEdges::SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, const SharedFaces& shared)
+    : edges_of_(shared.faces.size()),
       parallel_(parallel::comm_size(mesh.comm) > 1),
       names_(names_of_points(mesh, rows.geometry())) {
-  number(mesh, faces);
+  number(mesh, shared.faces);
   const std::size_t n = end_points_.size();
   value_.assign(n * stride, 0);
   std::vector<double> sums(n * 3, 0);  // V_E, and mu and lambda times volume
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const LameConstants whole = face_lame(mesh, rows, faces[i]);
+  for (std::size_t i = 0; i < shared.n_mine; ++i) {
+    const LameConstants whole = face_lame(mesh, rows, shared.faces[i]);
     const LameConstants lame = part_of_faces(whole, rows.volume_strain());
-    const double part = share * volume[i] / 3;
+    const double part = shared.part[i];
     for (const Index e : edges_of_[i]) {
       sums[std::size_t(e) * 3] += part;
       sums[std::size_t(e) * 3 + 1] += part * lame.mu;
@@ -63,7 +62,7 @@ SharedEdges::SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
       lame_.push_back({sums[3 * e + 1] * inverse_volume_[e], sums[3 * e + 2] * inverse_volume_[e]});
   }
   if (rows.is_uniform()) lame_.push_back(part_of_faces(rows.lame(0), rows.volume_strain()));
-  if (rows.is_anisotropic()) find_matrices(mesh, rows, faces, volume);
+  if (rows.is_anisotropic()) find_matrices(mesh, rows, shared);
   find_mirrors(mesh, rows);
   end_points_ = {};
   names_ = {};
@@ -71,12 +70,11 @@ SharedEdges::SharedEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, st
 
 /// Averages the matrices of the faces by volume.
 void SharedEdges::find_matrices(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                std::span<const Index> faces, std::span<const double> volume) {
+                                const SharedFaces& shared) {
   constexpr int entries = 36;
   std::vector<double> sums(inverse_volume_.size() * entries, 0);
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (volume[i] == 0) continue;  // belongs to another rank
-    const ElasticMatrix part = share * volume[i] / 3 * face_matrix(mesh, rows, faces[i]);
+  for (std::size_t i = 0; i < shared.n_mine; ++i) {
+    const ElasticMatrix part = shared.part[i] * face_matrix(mesh, rows, shared.faces[i]);
     for (const Index e : edges_of_[i])
       for (int k = 0; k < entries; ++k) sums[std::size_t(e) * entries + k] += part.data()[k];
   }
@@ -219,6 +217,20 @@ void SharedEdges::to_stress() {
 SharedFaces shared_faces(const mesh::Mesh& mesh, const ElasticOperator& rows) {
   SharedFaces result;
   if (mesh.dim == 2) return result;
+  std::vector<std::uint8_t> at_surface(mesh.points.n_local(), 0);
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)
+    if (!rows.mirrored(f))
+      for (const Index v : mesh.face_points[f]) at_surface[v] = 1;
+  const auto share_of = [&](Index f) {
+    constexpr double near_surface[4] = {0, 0, 1. / 3, 1};
+    const auto p = mesh.face_points[f];
+    const std::vector<Vec3>& x = rows.geometry().points;
+    const auto [least, most] =
+        std::minmax({(x[p[1]] - x[p[0]]).norm(), (x[p[2]] - x[p[1]]).norm(), (x[p[0]] - x[p[2]]).norm()});
+    const double stretched = std::clamp((most / least - 1.7) / 1.3, 0., 1.);
+    const auto n = std::ranges::count_if(p, [&](Index v) { return at_surface[v] != 0; });
+    return 0.8 + 0.15 * std::max(near_surface[n], stretched);
+  };
   std::vector<Index> elsewhere;
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (mesh.face_points[f].size() != 3) continue;
@@ -227,11 +239,12 @@ SharedFaces shared_faces(const mesh::Mesh& mesh, const ElasticOperator& rows) {
       continue;
     }
     result.faces.push_back(f);
-    result.volume.push_back(symmetric_rows(mesh, rows, f).volume);
+    result.part.push_back(share_of(f) * symmetric_rows(mesh, rows, f).volume / 3);
   }
   result.n_mine = result.faces.size();
   result.faces.insert(result.faces.end(), elsewhere.begin(), elsewhere.end());
-  result.volume.resize(result.faces.size(), 0);
+  result.part.resize(result.faces.size(), 0);
+  for (const Index f : result.faces) result.share.push_back(share_of(f));
   return result;
 }
 
@@ -239,7 +252,7 @@ void find_edge_stresses(const SharedFaces& shared, std::span<const Tensor3> stre
   edges.clear();
   for (std::size_t i = 0; i < shared.n_mine; ++i) {
     const Tensor3& s = stress[std::size_t(shared.faces[i])];
-    const double part = SharedEdges::share * shared.volume[i] / 3;
+    const double part = shared.part[i];
     const double entries[6] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
     for (const Index e : edges.edges_of(i))
       for (int k = 0; k < 6; ++k) edges.at(e)[k] += part * entries[k];
@@ -269,6 +282,7 @@ FaceGroup make_group(const mesh::Mesh& mesh, const ElasticOperator& rows, std::v
       block.minus[j][k] = face.row[j == 0 ? 0 : 2 * j + 1].place;
     }
     volumes.face[k] = is_filling ? -1 : f;
+    volumes.own[k] = 1;
     if (is_filling) continue;
     for (std::size_t j = 0; j < std::size_t(mesh.dim); ++j)
       for (int a = 0; a < mesh.dim; ++a) block.b[j][a][k] = face.row[j == 0 ? 1 : 2 * j].b[a];

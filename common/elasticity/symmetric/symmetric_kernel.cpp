@@ -24,10 +24,11 @@ SymmetricKernel::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& 
   plain_ = {make_group(mesh, rows, shared, nullptr, all), {}, {}};
   add_laws(plain_);
   if (parallel::any(mesh.comm, shared.n_mine > 0)) {
-    edges_ = std::make_unique<SharedEdges>(mesh, rows, shared.faces, shared.volume);
+    edges_ = std::make_unique<SharedEdges>(mesh, rows, shared);
     sharing_ = {make_group(mesh, rows, shared, edges_.get(), all), {}, {}};
     add_laws(sharing_);
     kept_.resize(sharing_.blocks.size());
+    share_ = shared.share;
     shared_index_.assign(mesh.n_flux_faces(), -1);
     for (std::size_t i = 0; i < shared.faces.size(); ++i) shared_index_[shared.faces[i]] = Index(i);
   }
@@ -153,10 +154,11 @@ inline void SymmetricKernel::shared_first_loop() {
     Four g[3][3], stress[3][3];
     blocks::gradient<3>(sharing_.blocks[i], values, g);
     stress_of<3>(sharing_, i, g, stress);
-    const Four scale = blocks::wide(sharing_.volumes[i].whole) * (SharedEdges::share / 6);
+    const Four own = blocks::wide(sharing_.volumes[i].own),
+               scale = 0.5 * blocks::part_of_edges(sharing_.volumes[i]);
     Four strain[6];
     for (int k = 0; k < 6; ++k) {
-      lanes::store<3>(kept_[i].stress[k], sharing_.own * stress[first_index[k]][second_index[k]]);
+      lanes::store<3>(kept_[i].stress[k], own * stress[first_index[k]][second_index[k]]);
       strain[k] = scale * (g[first_index[k]][second_index[k]] + g[second_index[k]][first_index[k]]);
     }
     const Four xyz[3] = {strain[0], strain[1], strain[2]}, rest[3] = {strain[3], strain[4], strain[5]};
@@ -176,7 +178,7 @@ inline void SymmetricKernel::shared_second_loop() {
   double* forces = space_.forces();
   for (std::size_t i = 0; i < sharing_.blocks.size(); ++i) {
     Four stress[3][3];
-    const Four weight = blocks::wide(sharing_.volumes[i].whole) * (SharedEdges::share / 3);
+    const Four weight = blocks::part_of_edges(sharing_.volumes[i]);
     for (int k = 0; k < 6; ++k) {
       Four of_edges{};
       for (int j = 0; j < 4; ++j) {
@@ -294,7 +296,7 @@ void SymmetricKernel::face_gradients(const ElasticKernel::TakeGradient& take, In
       const Tensor3 own = 0.5 * (gradient + gradient.transpose());
       Tensor3 of_edges = Tensor3::Zero();
       for (const Index e : edges_->edges_of(shared_index_[f])) of_edges += edge_tensor(*edges_, e) / 3;
-      gradient += SharedEdges::share * (of_edges - own);
+      gradient += share_[std::size_t(shared_index_[f])] * (of_edges - own);
     }
     if (!pressure_.empty()) {
       // With Hooke's law this gives 2 mu dev(e) + p I.
@@ -319,13 +321,13 @@ std::vector<double> SymmetricKernel::shared_pressure(std::span<const double> pre
     for (const Index e : edges_->edges_of(i))
       for (int a = 0; a < 3; ++a)
         edges_->at(e)[a] +=
-            SharedEdges::share / 3 * sharing_.volumes[i / 4].whole[i % 4] * pressure[sharing_.faces[i]];
+            share_[i] / 3 * sharing_.volumes[i / 4].whole[i % 4] * pressure[sharing_.faces[i]];
   edges_->finish_means();
   for (std::size_t i = 0; i < sharing_.faces.size(); ++i) {
     double of_edges = 0;
     for (const Index e : edges_->edges_of(i)) of_edges += edges_->at(e)[0] / 3;
     double& here = result[sharing_.faces[i]];
-    here = sharing_.own * here + SharedEdges::share * of_edges;
+    here += share_[i] * (of_edges - here);
   }
   return result;
 }

@@ -85,6 +85,7 @@ class SymmetricKernel {
   Group plain_, sharing_;  // sharing_: faces with shared edges
   std::vector<RingFace> rings_;
   std::vector<Index> shared_index_;  // of each flux face in edges_, or -1
+  std::vector<double> share_;        // of the faces in edges_
   std::vector<Kept> kept_;           // own part of V sigma of the blocks of sharing_
   std::unique_ptr<SharedEdges> edges_;
   std::vector<double> pressure_, bulk_;  // of nodes; K / V of owned cells [Pa/m^3]

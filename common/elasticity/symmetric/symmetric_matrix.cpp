@@ -54,7 +54,7 @@ std::vector<FaceTermList> edge_terms(const mesh::Mesh& mesh, FaceTerms& terms, c
   for (std::size_t i = 0; i < shared.n_mine; ++i) {
     const FaceTermList& of_face = terms.of_face(shared.faces[i]);
     for (const Index e : edges.edges_of(i)) {
-      const double part = SharedEdges::share * shared.volume[i] / 3 / edges.volume(e);
+      const double part = shared.part[i] / edges.volume(e);
       for (const FaceTerm& t : of_face) add_term(result[std::size_t(e)], {t.block, part * t.b, t.turn});
     }
   }
@@ -129,7 +129,9 @@ void Assembly::add(const FaceTermList& terms, const GradientStiffness& stiffness
   }
 }
 
-void Assembly::add_faces(const EnergyParts& parts, double own) {
+void Assembly::add_faces(const EnergyParts& parts, bool shares) {
+  const SharedFaces shared = shares ? shared_faces(mesh_, rows_) : SharedFaces{};
+  std::size_t next = 0;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;  // its owner's rank adds it
     const FaceRows face = face_rows(mesh_, rows_, f);
@@ -140,15 +142,15 @@ void Assembly::add_faces(const EnergyParts& parts, double own) {
                ? stiffness_of(face_matrix(mesh_, rows_, f))
                : stiffness_of(part_of_faces(face_lame(mesh_, rows_, f), rows_.volume_strain())));
     if (parts.stress != 0) c += parts.stress * stiffness_of_stress(parts.prestress->stress[std::size_t(f)]);
-    const bool shares = mesh_.dim == 3 && mesh_.face_points[f].size() == 3;
-    add(terms_.of_face(face), (shares ? own : 1) * face.volume * c);
+    const double own = next < shared.n_mine && shared.faces[next] == f ? 1 - shared.share[next++] : 1;
+    add(terms_.of_face(face), own * face.volume * c);
   }
 }
 
 void Assembly::add_edges(const EnergyParts& parts) {
   const SharedFaces shared = shared_faces(mesh_, rows_);
   if (!parallel::any(mesh_.comm, shared.n_mine > 0)) return;
-  SharedEdges edges(mesh_, rows_, shared.faces, shared.volume);
+  SharedEdges edges(mesh_, rows_, shared);
   if (parts.stress != 0) find_edge_stresses(shared, parts.prestress->stress, edges);
   const std::vector<FaceTermList> terms = edge_terms(mesh_, terms_, shared, edges);
   for (Index e = 0; e < Index(edges.n_edges()); ++e) {
@@ -289,7 +291,7 @@ linalg::SparseMatrix symmetric_matrix(const mesh::Mesh& mesh, const ElasticOpera
                                       std::span<const double> inertia) {
   const Numbering number{fv::number_nodes(mesh, rows.unknown_faces()), {}};
   Assembly assembly(mesh, rows, number);
-  assembly.add_faces({}, 1);
+  assembly.add_faces({}, false);
   assembly.add_volumes({});
   assembly.add_supports();
   if (!inertia.empty()) assembly.add_mass(1, inertia);
@@ -462,7 +464,7 @@ void TiedMatrix::add_ties(Assembly& assembly) const {
 linalg::SparseMatrix TiedMatrix::assemble(const EnergyParts& parts) {
   number_all();
   Assembly assembly(mesh_, rows_, number_);
-  assembly.add_faces(parts, 1 - SharedEdges::share);
+  assembly.add_faces(parts, true);
   assembly.add_edges(parts);
   assembly.add_volumes(parts);
   if (parts.stiffness != 0) assembly.add_supports();

@@ -49,9 +49,9 @@ class Assembly {
   void add(GlobalIndex i, GlobalIndex j, const Tensor3& block);
   /// Adds sum_ij T_i^T [b_i . stiffness . b_j] T_j for one gradient; `stiffness` includes the volume [N m].
   void add(const FaceTermList& terms, const GradientStiffness& stiffness);
-  /// Adds stiffness and stress of the faces of owned cells. `own` is the share of triangles in 3-D that is
-  /// not assigned to their edges, see SharedEdges.
-  void add_faces(const EnergyParts& parts, double own);
+  /// Adds stiffness and stress of the faces of owned cells. If `shares`, triangles in 3-D omit what they
+  /// share with their edges, see SharedEdges.
+  void add_faces(const EnergyParts& parts, bool shares);
   /// Adds the share of the edges. Collective.
   void add_edges(const EnergyParts& parts);
   /// Adds the bulk modulus that acts on the volume strain of cells.

@@ -178,22 +178,34 @@ def all_studies(job):
 FRESH = pathlib.Path(__file__).resolve().parents[1] / "estimates"
 
 
+def launched(job, folder, case, sets=()):
+    """Reports of a run of a case of our own, in a folder with the geometries of such cases; `case`: its data, or the file of a shipped one."""
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "case.yaml"
+    if isinstance(case, str):
+        file = case
+    else:
+        for one in FRESH.parent.glob("e*s/*.geo"):
+            (folder / one.name).write_text(one.read_text())
+        file.write_text(json.dumps(case).replace("<root>", str(job.root)))
+    return ablation.launch(job.build / "bin", file, sets, folder / "out")
+
+
+def numbers(one, folder):
+    """The numbers that `profile`, or `read` with `beyond` and `history`, names in the results of a run."""
+    if "profile" in one:
+        return ablation.profile(one["profile"])(folder)
+    file, *columns = one["read"]
+    values = ablation.probe(*columns, participant=file.split("/")[0], history=one.get("history", False))(folder)
+    return values if one.get("history") else [v - one.get("beyond", 0) for v in values]
+
+
 def fresh_run(job, one, n, name):
     """Numbers of a case of estimates/cases.yaml at one size, and the estimated error of its run."""
-    folder, names = job.scratch / f"fresh-{name.replace(' ', '-').replace(':', '').replace(',', '')}-{n}", {"n": n, "root": str(job.root)}
-    folder.mkdir(parents=True, exist_ok=True)
-    for file in FRESH.glob("*.geo"):
-        (folder / file.name).write_text(file.read_text())
-    text = re.sub(r'"<([^">]+)>"', lambda m: json.dumps(eval(m[1], {}, names)), json.dumps(one["case"]))  # expressions of our own file
-    (folder / "case.yaml").write_text(text.replace("<root>", names["root"]))
-    reports = ablation.launch(job.build / "bin", folder / "case.yaml", [], folder / "out")
-    if "profile" in one:
-        return ablation.profile(one["profile"])(folder / "out"), ablation.estimated(reports, "all")
-    file, *columns = one["read"]
-    with open(folder / "out" / file, newline="") as rows:
-        last = list(csv.DictReader(rows))[-1]
-    at = lambda column: float(next(v for k, v in last.items() if k.startswith(column)))
-    return [at(column) - one.get("beyond", 0) for column in columns], ablation.estimated(reports, "all")
+    text = re.sub(r'"<([^">]+)>"', lambda m: json.dumps(eval(m[1], {}, {"n": n})), json.dumps(one["case"]))  # expressions of our own file
+    folder = job.scratch / f"fresh-{re.sub('[ :,]+', '-', name)}-{n}"
+    reports = launched(job, folder, json.loads(text))
+    return numbers(one, folder / "out"), ablation.estimated(reports, "all")
 
 
 def fresh(job, least=(0.75, 0.92), only=""):
@@ -241,7 +253,7 @@ def fresh_targets(job):
                 (folder / file.name).write_text(file.read_text())
             (file, column, *_), case = one["read"], filled(one["case"])
             fresh_run(job, one, one["sizes"][0], name)
-            with open(next(job.scratch.glob(f"fresh-{name.replace(' ', '-').replace(',', '')}-*/out/{file}"))) as table:
+            with open(next(job.scratch.glob(f"fresh-{re.sub('[ :,]+', '-', name)}-*/out/{file}"))) as table:
                 head = next(h for h in next(csv.reader(table)) if h.startswith(column))
             case["study"] = {"axes": {"mesh": {"sizes": one["sizes"], "set": settings}}, "quantities": {"q": {"probe": head}}}
             (folder / "case.yaml").write_text(json.dumps(case))

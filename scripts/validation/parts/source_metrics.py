@@ -166,10 +166,10 @@ def largest_class(job, most):
 
 
 def single_implementations(job):
-    """Classes with a pure virtual function from which exactly one class derives."""
+    """Classes with a pure virtual function from which exactly one class derives, those of tests included."""
     abstract, derived = {}, {}
-    for f, text in texts(job).items():
-        text = plain(text)
+    tests = [(job.root / f).read_text() for f in tracked(job, "tests") if f.endswith((".cpp", ".hpp"))]
+    for text in map(plain, [*texts(job).values(), *tests]):
         for match in CLASS.finditer(text):
             name, body = match[1].split("::")[-1], text[match.end():closing(text, match.end())]
             if re.search(r"\)\s*(?:const\s*)?(?:noexcept\s*)?=\s*0\s*;", body):

@@ -162,7 +162,7 @@ def flap_settings(step, end, tolerance):
 
 SLOW = {"coupling.predictor.order": "0", "coupling.acceleration": "{type: constant, initial-relaxation: 0.1}"}
 COUPLED = {  # cells, settings, the part
-    "flap, coarse mesh": (10, flap_settings(0.005, 0.2, 1e-6), "mesh"), "flap, long step": (20, flap_settings(0.08, 0.4, 1e-5), "step"),
+    "flap, coarse mesh": (10, flap_settings(0.005, 0.2, 1e-6), "mesh"), "flap, long step": (30, flap_settings(0.1, 0.4, 1e-5), "step"),
     "flap, loose coupling": (10, {**flap_settings(0.02, 0.2, 0.9), **SLOW}, "coupling tolerance")}
 
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Findings act: exit code 4 for a useless answer, what is accepted passes, what is neglected is another channel, ten halvings end a run,
 all programs of a job agree. Each is shown to fire and not to fire.
-Usage: run.py BIN CONFIGS accept|strict|stress|scenes|sound|plant|coupled"""
+Usage: run.py BIN CONFIGS accept|strict|stress|scenes|sound|plant|coupled|effects|resumed"""
 import json
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
+import types
 
 import yaml
 
@@ -16,6 +17,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[3] / place) for pla
 import scenes  # noqa: E402
 from checks import check, end, mpmd  # noqa: E402
 import atlas  # noqa: E402
+from validation.parts import effects  # noqa: E402
 
 LE1 = 92.66e6  # Pa, stress yy at D (NAFEMS); the other components are zero there
 programs, configs, kind = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
@@ -157,5 +159,34 @@ def coupled():
     check("accepted by all it ends with 0", code == 0, (code, text[-300:]))
 
 
-{"accept": accept, "strict": strict, "stress": stress, "scenes": scenes_, "sound": sound, "plant": plant, "coupled": coupled}[kind]()
+def effects_():
+    """Effects of scripts/validation/effects/scenes.yaml are named where they matter, and only there; the weight of a body under heat alone is not judged."""
+    judged = ("damping", "gravity", "inertia", "storage-of-heat", "properties-of-temperature", "resolved-grains", "waves-of-pressure", "shear-and-rotary-inertia")
+    with tempfile.TemporaryDirectory() as folder:
+        job = types.SimpleNamespace(root=configs.parent, build=programs.parent, scratch=pathlib.Path(folder))
+        for name, one in effects.scenes().items():
+            if one["effect"] in judged and "heat bends" not in name:
+                share = effects.said(job, name, one)
+                check(f"{name}: {one['truth']:g}", (share is not None) == (one["truth"] >= effects.MATTERS), share)
+        pebbles = {**effects.scenes()["bed of pebbles of one temperature each"], "effect": "range-of-the-film-correlation"}
+        fast = {"flow.rows": [{"at": "0 s", "mass-flow": "2 kg/s", "inlet-temperature": "300 K"}]}
+        for reynolds, more in ((5, {}), (51, fast)):
+            share = effects.said(job, f"Re {reynolds}", {**pebbles, "set": {**pebbles["set"], **more}})
+            check(f"film correlation at Re {reynolds}, fitted from 15", (share is not None) == (reynolds < 15), share)
+
+
+def resumed():
+    """The energy of a stiffer material is no growth, and the change is a finding."""
+    sets = [*beam(0.5, 12), "simulation.checkpoint.interval=6"]
+    with tempfile.TemporaryDirectory() as folder:
+        line = [programs / "solid_solver", configs / "vibrating-cantilever/case.yaml", *(f"--set={s}" for s in sets), f"--set=simulation.output.folder={folder}/out"]
+        subprocess.run([*line, "--set=simulation.end-time=6"], capture_output=True, check=True)
+        done = subprocess.run([*line, "--set=participants.solid.material.youngs-modulus=20 MPa", "--restart", f"{folder}/out/checkpoints", "--restart-with-changes"],
+                              capture_output=True, text=True)
+        report = pathlib.Path(f"{folder}/out/solid/run.json")
+        ids = {f["id"] for f in json.loads(report.read_text())["findings"]} if report.exists() else done.stdout[-400:]
+    check("resumed with another modulus", done.returncode == 0 and "changed-since-checkpoint" in ids and "energy-growth" not in ids, (done.returncode, ids))
+
+
+{"accept": accept, "strict": strict, "stress": stress, "scenes": scenes_, "sound": sound, "plant": plant, "coupled": coupled, "effects": effects_, "resumed": resumed}[kind]()
 end()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fluid, solid and mover on several ranks each where the first rank holds no part of the interface: the same motion as on one, and a
-mesh that follows it. Such a mover once left its mesh at rest silently. With default tolerances, added masses up to 1000 times the
+mesh that follows it. Such a mover once left its mesh at rest silently. With default tolerances, added masses up to 91 times the
 bar's: the fluid answers each pass, though its first guess meets its own tolerance.
 Usage: run.py PROGRAMS"""
 import pathlib
@@ -38,11 +38,13 @@ for ranks in ((1, 1, 2), (2, 1, 1), (3, 2, 3)):
     check(f"ranks {ranks}: the motion of one rank each", abs(moved - alone[0]) < 1e-5 * alone[0], f"{moved} and {alone[0]} m")
     check(f"ranks {ranks}: the mesh follows", abs(volume - alone[1]) < 1e-8, f"{volume} and {alone[1]} m^3")
 
-# rho_f L over rho_s times 1 m. Passes of ten steps with a pressure tolerance of 1e-9 were 34, 37 and 44. At 1000 rounding
-# decides (37 or 60, by the BLAS of the machine): of densities that differ by 1e-4 a third have failed steps, with a pressure tolerance of
-# 1e-9 as well, since each pass that shows the quasi-Newton method a new mode multiplies it by 1e4 (docs/validation/coupling-accuracy.md).
-DEFAULTS = ("--set=participants.fluid.pressure-tolerance=1e-6", "--set=coupling.convergence.relative=1e-5")
-for ratio, most in ((10, 36), (91, 40), (1000, 66)):
+# rho_f L over rho_s times 1 m. Passes of ten steps with a pressure tolerance of 1e-9 were 34 and 37. At 1000 rounding
+# decides, so that it is a row of validation (docs/validation/coupling-accuracy.md): of densities that differ by 1e-4 a third
+# have failed steps, since each pass that shows the quasi-Newton method a new mode multiplies it by 1e4. The trapezoidal rule keeps
+# the response of the bar the same in all steps. Generalized alpha, whose first step is a trapezoidal one, takes 41 passes at 91.
+DEFAULTS = ("--set=participants.fluid.pressure-tolerance=1e-6", "--set=coupling.convergence.relative=1e-5",
+            "--set=participants.solid.time-scheme.type=trapezoidal")
+for ratio, most in ((10, 36), (91, 40)):
     moved, _, passes, halvings = run((1, 1, 1), f"--set=participants.fluid.density={1000 * ratio}", *DEFAULTS)
     check(f"added mass {ratio}, default tolerances: each step converges", halvings == 0, f"{halvings} halvings")
     check(f"added mass {ratio}, default tolerances: at most {most} passes", passes <= most, f"{passes} passes")

@@ -27,4 +27,4 @@ while p.is_coupling_ongoing():
     if p.requires_reading_checkpoint():
         own = kept
 p.finalize()
-print(f"{name} ends with {own!r}", flush=True)
+print(f"{name} ends with {float(own)!r}", flush=True)

@@ -84,6 +84,8 @@ def shipped(folder):
         here = folder / f"{file.parent.name}-{file.stem}" / file.parent.name
         # Its own files, and those of the cases beside it whose meshes it takes.
         for source in [file.parent, *(file.parents[1] / name for name in set(re.findall(r"\.\./([\w-]+)/", file.read_text())))]:
+            if not source.is_dir():  # the results of another case, which a plot shows
+                continue
             (here.parent / source.name).mkdir(parents=True, exist_ok=True)
             for other in source.iterdir():
                 if other.is_file() and other.stat().st_size < 5e7:

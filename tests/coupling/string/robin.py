@@ -21,9 +21,6 @@ CLOSED = "participants.fluid.boundaries.ends={type: no-slip}"
 PUMP = "participants.fluid.boundaries.bottom={type: inlet, velocity: [0, 1e-7 * sin(100 * pi * t)]}"
 
 
-TOLD = ["coupling.order=structure-first", "participants.fluid.boundaries.wall.impedance=structure", "participants.wall.gives-density=true"]
-
-
 def launch(inverse, sets, ranks, restart):
     sets = [f"participants.wall.surface-density={MU * inverse}", "simulation.end-time=0.008", "coupling.predictor.order=2",
             "coupling.acceleration.filter=1e-5", "coupling.acceleration.type=iqn-ils", "simulation.output.interval=0", *sets]
@@ -73,17 +70,6 @@ with tempfile.TemporaryDirectory(prefix="couplet-robin-") as folder:
         require(f"rho_s h/(rho_f mu_1) {inverse}: the same motion", apart(motion, same) < 1e-5, apart(motion, same))
     quarter, motion = run("quarter", 0.05, *robin(0.05, 0.25))
     require("a quarter of the mass given: passes a step, and the same motion", quarter <= 6 and apart(motion, table("robin-0.05/wall/mode.csv")) < 1e-5, quarter)
-
-    told, motion = run("told", 0.05, *TOLD)
-    require("the structure says its mass: as the number that it is", motion == table("robin-0.05/wall/mode.csv"), f"{told} passes a step")
-    run("first-told", 0.05, *TOLD, "simulation.end-time=0.004")
-    _, second = run("second-told", 0.05, *TOLD, restart="first-told/checkpoints")
-    require("restart bit for bit", second == motion[4:], f"{len(second)} rows")
-    silent = launch(0.05, [*TOLD[:2], "simulation.output.folder=silent"], (1, 1, 1), None)
-    require("a structure that says nothing: refused", silent.returncode != 0 and "takes 'surface-density', which no participant gives" in silent.stdout,
-          f"exit code {silent.returncode}")
-    light = launch(0.05, [*TOLD, "participants.fluid.boundaries.wall.surface-density=1"], (1, 1, 1), None)
-    require("both keys: refused", light.returncode == 2 and "the structure gives it" in light.stdout, f"exit code {light.returncode}")
 
     few, motion = run("closed", 0.5, *robin(0.5), CLOSED, PUMP, WATCH)
     require("closed and pumped: passes a step at most 4.5", few <= 4.5, few)

@@ -27,7 +27,6 @@ struct ModalParameters {
   double inlet_pressure = 0;          // over the fluid, times sin^2(pi t / duration) [Pa]
   double push = 0;                    // on the wall, the same [Pa]
   double pulse_duration = 1;          // [s]
-  bool gives_density = false;         // at its faces, as 'surface-density'
   double peak = 0;                    // place of the largest load, in lengths; 0: 1 - x / L, a pressure drop
 };
 
@@ -37,7 +36,6 @@ inline void declare(config::Section& s, ModalParameters& p) {
   s.value("radius", p.radius).unit("m").positive().doc("height of the fluid under it");
   s.value("density", p.density).unit("kg/m^3").positive().doc("of the fluid");
   s.value("surface-density", p.surface_density).unit("kg/m^2").positive().doc("of the wall");
-  s.value("gives-density", p.gives_density).doc("'surface-density' is given at the faces");
   s.value("stiffness", p.stiffness).not_negative().doc("force per area and displacement [N/m^3]");
   s.value("tension", p.tension).unit("N/m").not_negative().doc("along the wall");
   s.value("inlet-pressure", p.inlet_pressure).unit("Pa").doc("of the pulse");
@@ -171,8 +169,6 @@ class ModalWall final : public coupling::Participant {
     line.takes = {{"pressure-force", "N", coupling::Interface::Place::faces}};
     line.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
                   {"velocity", "m/s", coupling::Interface::Place::vertices}};
-    if (p_.gives_density)
-      line.gives.push_back({"surface-density", "kg/m^2", coupling::Interface::Place::faces, 1});
     return line;
   }
   void begin_step(const coupling::Step& step) override { time_ = step.time, dt_ = step.dt; }
@@ -187,10 +183,7 @@ class ModalWall final : public coupling::Participant {
       next_v_[i] = (m / dt_ * v_[i] - s * (eta_[i] + dt_ / 4 * v_[i]) + p[i]) / (m / dt_ + s * dt_ / 4);
       next_eta_[i] = eta_[i] + dt_ / 2 * (v_[i] + next_v_[i]);
     }
-    coupling::Exchange out{{"displacement", modes_.at_vertices(next_eta_)},
-                           {"velocity", modes_.at_vertices(next_v_)}};
-    if (p_.gives_density) out["surface-density"].assign(std::size_t(p_.vertices - 1), p_.surface_density);
-    return out;
+    return {{"displacement", modes_.at_vertices(next_eta_)}, {"velocity", modes_.at_vertices(next_v_)}};
   }
   coupling::StepReport accept_step() override {
     eta_ = next_eta_, v_ = next_v_;

@@ -230,7 +230,7 @@ TEST(LostLoad, forces_that_nobody_takes_are_compared_with_those_taken) {
 TEST(StructureAtRest, ten_steps_of_load_without_motion_are_flagged_once) {
   const auto found = Scene{}.findings("structure-at-rest");
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_THAT(found[0].sentence, HasSubstr("'solid': 0 m at every interface vertex for 10 steps under a load "
+  EXPECT_THAT(found[0].sentence, HasSubstr("'solid': 0 m at every interface vertex for 25 steps under a load "
                                            "of up to 3 N per face"));
   const auto flagged = [](Scene scene) { return scene.findings("structure-at-rest").size(); };
   EXPECT_EQ(flagged({.pressure = 0}), 0u) << "nothing pushes";

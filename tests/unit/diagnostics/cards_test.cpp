@@ -77,7 +77,7 @@ TEST(EffectCards, without_evidence_there_is_no_verdict) {
 TEST(EffectCards, neglected_effects_say_what_share_of_the_answer_they_change) {
   const SolidParameters p = static_solid();
   const auto model = [&](const Opinion& opinion) { return model_of({opinion.value()}); };
-  EXPECT_DOUBLE_EQ(model(neglected_inertia(p, 0.04)).model, 0.04);
+  EXPECT_DOUBLE_EQ(model(neglected_inertia(p, 0.2)).model, 0.25);
   EXPECT_DOUBLE_EQ(model(neglected_inertia(p, 430)).model, 1);
   const diagnostics::ErrorParts hot = model(neglected_thermal_strain(p, 1e-6, 75, unknown));
   EXPECT_NEAR(hot.model, 750, 1e-9);
@@ -103,8 +103,8 @@ TEST(EffectCards, what_does_next_to_nothing_could_be_omitted) {
 TEST(EffectCards, solid_verdicts_turn_at_their_thresholds) {
   const SolidParameters p = static_solid();
   const auto sound = [](const Opinion& opinion) { return opinion.value().severity == base::Severity::note; };
-  EXPECT_TRUE(sound(neglected_inertia(p, 0.049)));
-  EXPECT_FALSE(sound(neglected_inertia(p, 0.051)));
+  EXPECT_TRUE(sound(neglected_inertia(p, 0.047)));
+  EXPECT_FALSE(sound(neglected_inertia(p, 0.048)));
   EXPECT_TRUE(sound(on_geometry(0.0199)));
   EXPECT_FALSE(sound(on_geometry(0.0201)));
   for (const double gradient : {1e-6, 0.0199, 0.0201})

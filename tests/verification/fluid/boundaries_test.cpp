@@ -45,6 +45,108 @@ TEST(Inlet, parabolic_profile_is_the_poiseuille_flow_of_that_mean_speed) {
   EXPECT_LT(c.velocity_error([](const Vec3& x) { return Vec3(12 * x.y() * (1 - x.y()), 0, 0); }), 0.02);
 }
 
+TEST(Inlet, parabolic_profile_is_largest_where_it_meets_a_symmetry_plane) {
+  for (const char* plane : {"ymin", "ymax"}) {
+    FluidParameters p = duct();
+    p.boundaries[plane] = boundary(BoundaryType::symmetry);
+    p.boundaries["xmin"] = inlet(InletProfile::parabolic, "2");
+    FluidCase<2> c(MPI_COMM_WORLD, quads(24, 16, 1.5), p);
+    c.run(3, 30);
+    EXPECT_NEAR(flow_through(c, "xmin"), -2, 1e-12);
+    EXPECT_LT(c.velocity_error([&](const Vec3& x) {
+      const double r = plane == std::string("ymin") ? x.y() : 1 - x.y();
+      return Vec3(3 * (1 - r * r), 0, 0);
+    }),
+              0.02)
+        << plane;
+  }
+  FluidParameters p = duct();
+  p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::symmetry);
+  p.boundaries["xmin"] = inlet(InletProfile::parabolic, "2");
+  EXPECT_THROW(FluidCase<2>(MPI_COMM_WORLD, quads(8, 8, 1), p), Error);
+}
+
+/// Velocity of the faces of xmin along x, as set in the flow, with its flow rate and largest error against a profile of the place.
+struct AtInlet {
+  double flow = 0, apart = 0;
+  template <int D>
+  static AtInlet of(RawMesh raw, FluidParameters p, const std::function<double(const Vec3&)>& profile) {
+    p.dimension = D;
+    const auto [mesh, geometry] =
+        distribute(MPI_COMM_WORLD, parallel::comm_rank(MPI_COMM_WORLD) == 0 ? std::move(raw) : RawMesh{});
+    const Boundary<D> boundary(mesh, geometry, p);
+    const auto at = make_placement<D>(mesh, geometry);
+    Vectors<D> w(mesh.boundary.n_owned(), Vec<D>::Zero());
+    boundary.velocity_at(0, at->boundary_centre, w);
+    AtInlet found;
+    const Patch& inlet = *mesh.find_patch("xmin");
+    for (Index f = inlet.first; f < inlet.first + inlet.count; ++f) {
+      const Index b = f - mesh.n_interior;
+      found.flow += w[b].dot(at->area[f]);
+      found.apart = std::max(found.apart, std::abs(w[b][0] - profile(at->boundary_centre[b])));
+    }
+    return {parallel::sum(MPI_COMM_WORLD, found.flow), parallel::max(MPI_COMM_WORLD, found.apart)};
+  }
+};
+
+/// Whole disk, half and quarter of one whose cut sides are symmetry planes.
+TEST(Inlet, parabolic_profile_of_a_part_of_a_disk_is_that_of_the_disk) {
+  for (const int part : {1, 2, 4}) {
+    FluidParameters p = duct();
+    for (const char* side : {"ymin", "ymax", "zmin", "zmax"})
+      p.boundaries[side] = boundary(BoundaryType::no_slip);
+    const double y0 = part < 2 ? -1 : 0, z0 = part < 4 ? -1 : 0;
+    if (part > 1) p.boundaries["ymin"] = boundary(BoundaryType::symmetry);
+    if (part > 2) p.boundaries["zmin"] = boundary(BoundaryType::symmetry);
+    p.boundaries["xmin"] = inlet(InletProfile::parabolic, "2");
+    RawMesh raw = make_box(BoxCells::hexahedra, {1, part < 2 ? 24 : 12, part < 4 ? 24 : 12}, Vec3(0, y0, z0),
+                           Vec3(0.2, 1, 1));
+    for (Vec3& x : raw.points)  // a square becomes a disk
+      x = Vec3(x.x(), x.y() * std::sqrt(1 - x.z() * x.z() / 2), x.z() * std::sqrt(1 - x.y() * x.y() / 2));
+    const AtInlet found =
+        AtInlet::of<3>(raw, p, [](const Vec3& x) { return 4 * (1 - x.y() * x.y() - x.z() * x.z()); });
+    EXPECT_NEAR(found.flow, -2 * pi / part, 0.01 * 2 * pi / part) << part;  // area of the polygon
+    EXPECT_LT(found.apart, 0.1) << part;
+  }
+}
+
+/// A profile is averaged over each face: the flow rate is that of the profile on any mesh.
+TEST(Inlet, flow_rate_is_that_of_the_profile) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("couplet-inlet-" + std::to_string(parallel::comm_size(MPI_COMM_WORLD)) + ".csv");
+  for (const int n : {1, 3, 8}) {
+    const auto flow = [&](const std::string& u, auto dimension) {
+      constexpr int D = decltype(dimension)::value;
+      FluidParameters p = duct();
+      if (D == 3) p.boundaries["zmin"] = p.boundaries["zmax"] = boundary(BoundaryType::slip);
+      p.boundaries["xmin"] =
+          D == 2 ? boundary(BoundaryType::inlet, {u, "0"}) : boundary(BoundaryType::inlet, {u, "0", "0"});
+      if (u.empty()) {
+        p.boundaries["xmin"] = boundary(BoundaryType::inlet);
+        p.boundaries["xmin"].table.emplace();
+        p.boundaries["xmin"].table->file = file;
+        MPI_Barrier(MPI_COMM_WORLD);
+        if (parallel::comm_rank(MPI_COMM_WORLD) == 0)
+          std::ofstream(file) << (D == 2 ? "y [m],u [m/s],v\n0,0,0\n0.37,1,0\n1,0,0\n"
+                                         : "y [m],u [m/s],v,w\n0,0,0,0\n0.37,1,0,0\n1,0,0,0\n");
+        MPI_Barrier(MPI_COMM_WORLD);
+      }
+      return AtInlet::of<D>(D == 2 ? quads(4, n, 1)
+                                   : make_box(BoxCells::hexahedra, {4, n, n}, Vec3::Zero(), Vec3(1, 1, 1)),
+                            p, [](const Vec3&) { return 0.0; })
+          .flow;
+    };
+    const std::integral_constant<int, 2> plane{};
+    const std::integral_constant<int, 3> space{};
+    EXPECT_NEAR(flow("6*y*(1-y)", plane), -1, 1e-12) << n;
+    EXPECT_NEAR(flow("6*y*(1-y)", space), -1, 1e-12) << n;
+    EXPECT_NEAR(flow("36*y*(1-y)*z*(1-z)", space), -1, 2e-3) << n;
+    EXPECT_NEAR(flow("1.5*(1-y^2)", plane), -1, 1e-12) << n;
+    EXPECT_NEAR(flow("", plane), -0.5, 1e-3) << n;
+    EXPECT_NEAR(flow("", space), -0.5, 1e-3) << n;
+  }
+}
+
 TEST(Inlet, mean_speed_follows_time_and_ramp) {
   FluidParameters p = duct();
   p.boundaries["xmin"] = inlet(InletProfile::uniform, "1+t");

@@ -294,4 +294,46 @@ TEST(PrescribedMotion, that_turns_cells_over_fails_in_solve) {
   EXPECT_EQ(run.state().time, 0);
 }
 
+/// A plate presses a film out of a gap that it closes to 28 % by 0.8 s: mu V L^3/H^3 per width, in the middle of the step.
+TEST(PrescribedMotion, a_squeezed_film_has_the_force_of_lubrication_theory_also_after_a_restart) {
+  const double pi = std::numbers::pi, dt = 0.01;
+  const auto gap = [&](double t) { return 0.1 * (1 - 0.4 * (1 - std::cos(pi * t))); };
+  FluidParameters p = fluid_of(1, 5, 1e-8);
+  p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.boundaries["ymin"] = boundary(BoundaryType::no_slip);
+  p.boundaries["ymax"] = boundary(BoundaryType::body);
+  FluidCase<2> film(
+      MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {40, 8, 1}, Vec3::Zero(), Vec3(1, 0.1, 1)), p,
+      [&](const Vec3& x, GlobalIndex, double t) { return Vec3(x.x(), x.y() / 0.1 * gap(t), 0); });
+  const auto plate = [&](const Vec3&, double t) { return Vec3(0, (gap(t) - gap(t - dt)) / dt, 0); };
+  while (film.state().time < 0.79 - 1e-9) film.step(dt, plate);
+  const double t = film.state().time;
+  Fluid<2> other(film.mesh(), film.geometry(), film.fluid().parameters(), true);
+  io::StateInMemory memory;
+  {
+    io::CheckpointWriter writer(memory);
+    film.fluid().solvers().save(writer);
+    writer.close();
+  }
+  other.restore(film.state());
+  io::CheckpointReader reader(memory);
+  other.solvers().load(reader);
+  for (Fluid<2>* fluid : {&film.fluid(), &other}) {
+    fluid->begin_step(t, dt);
+    fluid->solve(film.points(t + dt), film.wall(plate, t + dt));
+    fluid->accept();
+    double force = 0;
+    const Patch& top = *film.mesh().find_patch("ymax");
+    for (Index f = top.first; f < top.first + top.count; ++f)
+      force += fluid->pressure_force()[f - film.mesh().n_interior].y();
+    const double middle = t + dt / 2, speed = 0.04 * pi * std::sin(pi * middle),
+                 theory = 5 * speed / std::pow(gap(middle), 3);
+    EXPECT_NEAR(parallel::sum(MPI_COMM_WORLD, force), theory, 0.05 * theory);
+  }
+  double apart = 0;
+  for (std::size_t c = 0; c < other.state().u.size(); ++c)
+    apart = std::max(apart, (other.state().u[c] - film.state().u[c]).norm());
+  EXPECT_EQ(parallel::max(MPI_COMM_WORLD, apart), 0);
+}
+
 }  // namespace couplet::fluid::test::prescribed_motion_test

@@ -67,37 +67,6 @@ TEST(InterfaceData, pressure_and_temperature_deform_a_box_as_they_must) {
   EXPECT_LT(largest_error(*solid, -2e7, -20), 1e-9);
 }
 
-TEST(InterfaceData, the_mass_behind_the_interface_is_that_of_the_body_over_its_area) {
-  SolidParameters p = testing::box_parameters(3);
-  p.analysis = SolidParameters::Analysis::dynamic;
-  p.material.density = 800;
-  for (const char* name : {"ymin", "ymax"}) p.boundaries[name] = boundary(Type::symmetry);
-  p.boundaries["zmin"] = p.boundaries["zmax"] =
-      boundary(Type::interface_);  // a sheet of 0.5 m that is wet on both sides
-  p.interface_data.emplace();
-  p.interface_data->surface_density = true;
-  const auto solid = testing::make_solid(raw_box(), p);
-  const Interface interface = solid->initialise();
-  ASSERT_EQ(interface.gives.size(), 3u);
-  EXPECT_EQ(interface.gives[2].name, "surface-density");
-  const auto behind = [&](double dt) {
-    solid->begin_step({0, dt, Scheme::implicit, 0});
-    const Exchange out = solid->solve({});
-    EXPECT_EQ(out.at("surface-density").size(), interface.face_centres.size());
-    for (const double m : out.at("surface-density")) EXPECT_EQ(m, out.at("surface-density")[0]);
-    return out.at("surface-density")[0];
-  };
-  const double nu = p.material.poissons_ratio,
-               speed = std::sqrt(p.material.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * 800));
-  EXPECT_NEAR(behind(1), 800 * 0.5 / 2, 1e-6) << "all of it answers";
-  // The wave gets a tenth of the way to the middle: the impedance of a half space, rho c dt/2.
-  const double short_step = 0.1 * 0.25 / speed;
-  EXPECT_NEAR(behind(short_step), 800 * speed * short_step / 2, 1e-6);
-  EXPECT_NEAR(behind(2 * 0.25 / speed), 800 * 0.25 * std::tanh(1.), 1e-9) << "x = 1";
-  p.analysis = SolidParameters::Analysis::static_;
-  EXPECT_THROW(testing::make_solid(raw_box(), p), Error);
-}
-
 TEST(InterfaceData, before_anything_is_given_the_solid_has_its_reference_temperature) {
   const auto solid = testing::make_solid(raw_box(), pressed_box());
   solid->initialise();

@@ -193,10 +193,10 @@ TEST(SolidMethods, slender_bodies_bend) {
   EXPECT_NEAR(same, bent, 3e-2 * std::abs(bent));  // the springs give a little
 }
 
-// A thousand times as long as thick: conjugate gradients with multigrid do not converge, and factors, which the program takes
+// Five thousand times as long as thick: conjugate gradients with multigrid do not converge, and factors, which the program takes
 // then, give F L^3 / (3 E I).
 TEST(SolidMethods, a_foil_is_solved_by_factors_where_the_iteration_that_was_chosen_fails) {
-  constexpr double thickness = 1e-3;
+  constexpr double thickness = 2e-4;
   SolidParameters p = box_parameters(2);
   p.plane = SolidParameters::Plane::stress;
   p.boundaries["xmin"] = clamped(2);
@@ -206,7 +206,7 @@ TEST(SolidMethods, a_foil_is_solved_by_factors_where_the_iteration_that_was_chos
   const double bent = 4 * 10 * thickness / (200e9 * std::pow(thickness, 3));
   EXPECT_NEAR(displacement_at(*solid, Vec3(1, thickness, 0))[1] / bent, 1, 0.15);
   std::vector<double> again(solid->stepper().last_solve().rhs.size(), 0);
-  EXPECT_LE(solid->stepper().method()->solve(solid->stepper().last_solve().rhs, again).iterations, 5);
+  EXPECT_LE(solid->stepper().method()->solve(solid->stepper().last_solve().rhs, again).iterations, 20);
   EXPECT_THAT(solid->stepper().method()->name(), HasSubstr("multigrid"));
   expect_same_after_restart(foil, p, 0.5, 0.5);
   p.method.preconditioner = Preconditioner::multigrid;

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """docs/benchmarks.md: the coupled benchmarks beside the figures of others, from the committed tables: ours from docs/validation, theirs from
-the reference of FSI1 and FSI3 and from OTHER. Usage: page.py [--check] (without: writes the page)."""
+the reference of FSI1 to FSI3 and from OTHER. Usage: page.py [--check] (without: writes the page)."""
 import csv
 import pathlib
 import re
@@ -16,7 +16,7 @@ NUMBER = r"[-+]?[\d.]+(e[-+]?\d+)?"
 HEAD = """# Coupled benchmarks beside others
 
 Written by `scripts/validation/parts/benchmarks/page.py` from the committed tables: ours from [validation](validation/coupled-benchmarks.md)
-(`scripts/validate coupled-benchmarks` repeats them), those of others on FSI1 and FSI3 from the reference
+(`scripts/validate coupled-benchmarks` repeats them), those of others on FSI1 to FSI3 from the reference
 data of the case, each with its source, in the other tables as the publications named there give them. A test
 compares this page with the tables.
 
@@ -31,10 +31,12 @@ PEERS = {  # source: (name, fluid and solid cells, step, core-hours); the figure
     "FF_2": ("Featflow, level 2", "-", "0.25 ms", "-"), "FF_3": ("Featflow, level 3", "-", "0.25 ms", "-"), "FF": ("Featflow, finest: the reference", "-", "0.25 ms", "-")}
 OURS = {  # case: [(name, cells, step, beginning of our rows)]
     "FSI1": [("Couplet", "20.8 k, 2.5 k", "20 ms", "FSI1, about 21 k fluid and 2.5 k solid cells"), ("Couplet", "4.8 k, 0.6 k", "20 ms", "FSI1, 4.8 k fluid cells")],
+    "FSI2": [("Couplet", "4.8 k, 0.6 k", "4 ms", "FSI2, 4.8 k fluid cells, dt 4 ms")],
     "FSI3": [("Couplet", "20.8 k, 2.5 k", "0.5 ms", "FSI3, about 21 k fluid and 2.5 k solid cells"), ("Couplet", "4.8 k, 0.6 k", "2 ms", "FSI3, coarse, ten minutes")]}
 SHOWN = {  # quantity: (head, factor, digits)
     "FSI1": {"ux_mean": ("u_x [1e-5 m]", 1e5, 4), "uy_mean": ("u_y [1e-4 m]", 1e4, 4), "drag_mean": ("drag [N]", 1, 5), "lift_mean": ("lift [N]", 1, 4)},
     "FSI3": {"uy_amp": ("u_y, amplitude [mm]", 1e3, 4), "uy_f": ("frequency [Hz]", 1, 3), "drag_mean": ("drag, mean [N]", 1, 4), "lift_amp": ("lift, amplitude [N]", 1, 4)}}
+SHOWN["FSI2"] = SHOWN["FSI3"]
 OTHER = {  # title: (what is compared, [(who, how, figure, core-hours)]); a figure that begins with 'row:' is that of our row
     "Elastic tube in three dimensions": ("largest radial motion of A [m]", [
         ("Couplet, 16 000 and 6400 cells that match, second order", "0.1 ms", "row:tube, 16 000 and 6400 cells", "cost"),
@@ -107,7 +109,7 @@ def figure(text, rows, flagship):
 
 def text():
     rows, flagship = (table.read(ROOT / "docs/validation" / f"{name}.md") for name in ("coupled-benchmarks", "flagship"))
-    found = [HEAD, *flag("FSI1", rows), *flag("FSI3", rows)]
+    found = [HEAD, *(line for case in ("FSI1", "FSI2", "FSI3") for line in flag(case, rows))]
     for title, (what, entries) in OTHER.items():
         body = []
         for who, step, given, cost in entries:
