@@ -219,7 +219,7 @@ def stop(folder):
             call(bin_, command, hostile)
     check("nothing that a case names was started", not (folder / "EXECUTED").exists())
     again = start(bin_, "run", case, "--set", "simulation.checkpoint.interval=0", "--set", "participants.solid.material.density=2000 kg/m^3")
-    check("another run in the same folder steps", until(lambda: (folder / "a/out/job.json").exists() and "2000" in (folder / "a/out/job.json").read_text()))
+    check("another run in the same folder steps", until(lambda: "2000 kg" in (folder / "a/out/job.json").read_text() and "density: 2000" in (folder / "a/out/solid/effective.yaml").read_text()))
     subprocess.run(["pkill", "-9", "-f", f"^{bin_}/coupler {folder / 'a'}"], check=True)
     _, said = again.communicate(timeout=60)
     check("its coupler is killed: named, and nothing to resume", again.returncode not in (0, 3) and "'coupler'" in said and "couplet resume" not in said, f"{again.returncode} {said[-300:]}")
