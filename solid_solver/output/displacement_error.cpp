@@ -476,7 +476,7 @@ double displacement_error(const SolidBody& body, const SolidState& state, const 
         [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
         [&](std::span<const double> x, std::span<double> z) { method.approximate_inverse(x, z); });
     std::ranges::fill(e, 0.0);
-    krylov.solve(r, e, {.relative_tolerance = 1e-2, .max_iterations = 200, .is_symmetric = true});
+    krylov.solve(r, e, {.relative_tolerance = 1e-3, .max_iterations = 200, .is_symmetric = true});
   }
   const int dim = body.mesh().dim;
   std::array<double, 3> sums{};  // volume, squares of the error and of the displacement
