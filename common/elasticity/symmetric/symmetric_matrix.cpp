@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 
 #include <algorithm>
@@ -27,10 +26,9 @@ GradientStiffness stiffness_of(const LameConstants& lame) {
 }
 
 GradientStiffness stiffness_of(const ElasticMatrix& matrix) {
-  constexpr int strain[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
   GradientStiffness c;
-  for (int i = 0; i < 9; ++i)
-    for (int j = 0; j < 9; ++j) c(i, j) = matrix(strain[i / 3][i % 3], strain[j / 3][j % 3]);
+  for (std::size_t i = 0; i < 81; ++i)
+    c(int(i / 9), int(i % 9)) = matrix(SharedEdges::of_strain[i / 9], SharedEdges::of_strain[i % 9]);
   return c;
 }
 
