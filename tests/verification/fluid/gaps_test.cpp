@@ -24,7 +24,7 @@ FluidParameters valve(bool with_gap, double opening = limit) {
   p.boundaries["xmin"] = boundary(BoundaryType::outlet, {}, "1");
   p.boundaries["xmax"] = boundary(BoundaryType::outlet);
   p.boundaries["ymin"] = boundary(BoundaryType::no_slip);
-  p.boundaries["ymax"] = boundary(BoundaryType::interface);
+  p.boundaries["ymax"] = boundary(BoundaryType::body);
   if (with_gap)
     p.gaps["slot"] = {.between = {"ymin", "ymax"}, .opening = opening, .height = {}, .direction = {}};
   return p;
