@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mesh/load.hpp"
-#include "support.hpp"
+#include "tests/unit/mesh/support.hpp"
 
 namespace couplet::distribute_test {
 using namespace mesh;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/plant/plant.hpp"
 
-#include "tests/unit/thermocline_plant/support.hpp"
+#include "tests/unit/thermocline/support.hpp"
 #include "thermocline/plant/flow.hpp"
 
 namespace couplet::thermocline::plant_test {

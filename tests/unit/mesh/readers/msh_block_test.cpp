@@ -3,7 +3,7 @@
 
 #include <iterator>
 
-#include "support.hpp"
+#include "tests/unit/mesh/support.hpp"
 
 namespace couplet::msh_block_test {
 using namespace mesh;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the report says of a year that is none, and its time series.
-#include "tests/unit/thermocline_plant/support.hpp"
+#include "tests/unit/thermocline/support.hpp"
 #include "thermocline/plant/report.hpp"
 #include "thermocline/weather/weather.hpp"
 

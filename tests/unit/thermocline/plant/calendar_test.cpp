@@ -2,7 +2,7 @@
 // Load and tariff by weekday and season.
 #include "thermocline/plant/plant.hpp"
 
-#include "tests/unit/thermocline_plant/support.hpp"
+#include "tests/unit/thermocline/support.hpp"
 #include "thermocline/weather/weather_file.hpp"
 
 namespace couplet::thermocline::calendar_test {

@@ -2,7 +2,7 @@
 // Universal files, MED and Exodus, read by a Python script. data/groups.med and .exo: two cubes, one on the other, written by
 // meshio 5.0; sides.exo: the same with named blocks and sets of sides, written by netCDF4 1.6; groups.unv: as Salome writes it.
 #include "common/mesh/gmsh/gmsh.hpp"
-#include "support.hpp"
+#include "tests/unit/mesh/support.hpp"
 
 namespace couplet::foreign_test {
 using namespace mesh;

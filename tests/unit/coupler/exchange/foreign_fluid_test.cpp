@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A fluid with vertices alone and names of its own, as a program on preCICE's interface.
-#include "tests/coupling/unit/foreign.hpp"
+#include "tests/unit/coupler/foreign.hpp"
 
 namespace couplet::foreign_fluid_test {
 using namespace coupling;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/weather/weather.hpp"
 
-#include "tests/unit/thermocline_plant/support.hpp"
+#include "tests/unit/thermocline/support.hpp"
 #include "thermocline/weather/made_days.hpp"
 #include "thermocline/weather/weather_file.hpp"
 

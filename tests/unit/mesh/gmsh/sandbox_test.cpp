@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "support.hpp"
+#include "tests/unit/mesh/support.hpp"
 
 namespace couplet::sandbox_test {
 using namespace mesh;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files in data/ were made from the .geo files beside them by gmsh 4.8.4.
 #include "common/mesh/load.hpp"
-#include "support.hpp"
+#include "tests/unit/mesh/support.hpp"
 
 namespace couplet::read_msh_test {
 using namespace mesh;

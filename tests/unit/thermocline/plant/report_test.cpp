@@ -2,7 +2,7 @@
 #include "thermocline/plant/report.hpp"
 #include "common/base/numbers.hpp"
 #include "common/io/series.hpp"
-#include "tests/unit/thermocline_plant/support.hpp"
+#include "tests/unit/thermocline/support.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::report_test {

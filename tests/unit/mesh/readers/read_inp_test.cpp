@@ -3,7 +3,7 @@
 #include <ctime>
 
 #include "common/mesh/load.hpp"
-#include "support.hpp"
+#include "tests/unit/mesh/support.hpp"
 
 namespace couplet::read_inp_test {
 using namespace mesh;

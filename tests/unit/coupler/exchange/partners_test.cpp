@@ -3,7 +3,7 @@
 #include "coupler/exchange/partners.hpp"
 
 #include "tests/coupling/support/local_channel.hpp"
-#include "tests/coupling/unit/foreign.hpp"
+#include "tests/unit/coupler/foreign.hpp"
 
 namespace couplet::introductions_test {
 using namespace coupling;

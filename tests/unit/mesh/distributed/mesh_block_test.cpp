@@ -5,7 +5,7 @@
 #include "common/mesh/load.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/mesh/touching_faces.hpp"
-#include "support.hpp"
+#include "tests/unit/mesh/support.hpp"
 #include "tests/support/apart.hpp"
 
 namespace couplet::distributed_test {

@@ -2,7 +2,7 @@
 // A structure with vertices alone, names of its own and no velocity, as a program on preCICE's interface.
 #include "common/app/loop/step_loop.hpp"
 #include "coupler/output/record.hpp"
-#include "tests/coupling/unit/foreign.hpp"
+#include "tests/unit/coupler/foreign.hpp"
 
 namespace couplet::foreign_structure_test {
 using namespace coupling;

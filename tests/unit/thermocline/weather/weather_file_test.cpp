@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/unit/thermocline_plant/support.hpp"
+#include "tests/unit/thermocline/support.hpp"
 #include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline::weather_errors_test {
