@@ -169,18 +169,22 @@ bool recovers_stress(const SolidBody& body) {
   return body.equilibrium().means().recovers_stress && !is_axisymmetric(body.elastic());
 }
 
+const StressRecovery& SolidFields::recovery() const {
+  if (!recovery_)
+    recovery_ = std::make_unique<StressRecovery>(
+        mesh_, elastic_, mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress);
+  return *recovery_;
+}
+
 SidedTensors SolidFields::stress_sides(std::span<const double> points, std::span<const std::uint8_t> wanted,
                                        std::vector<std::vector<double>>* left) const {
   if (!recovers_stress(body_)) {
     const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
     return point_tensors().interpolate(cell_stress(points), faces);
   }
-  if (!recovery_)
-    recovery_ = std::make_unique<StressRecovery>(
-        mesh_, elastic_, mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress);
   const DiscreteStress found = discrete_stress(points);
-  SidedTensors sides = recovery_->at_points(found, wanted);
-  if (left) *left = recovery_->left_at_points(found, wanted, sides);
+  SidedTensors sides = recovery().at_points(found, wanted);
+  if (left) *left = recovery().left_at_points(found, wanted, sides);
   return sides;
 }
 

@@ -21,7 +21,7 @@ namespace couplet::solid {
 namespace {
 
 constexpr double grown =
-    1.1;  // strain energy over the largest so far with which what the mesh misses of it is looked at again
+    2;  // strain energy over the largest so far with which what the mesh misses of it is looked at again
 
 double product(MPI_Comm comm, std::span<const double> a, std::span<const double> b) {
   return parallel::sum(comm, std::inner_product(a.begin(), a.end(), b.begin(), 0.0));

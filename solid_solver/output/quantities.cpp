@@ -12,7 +12,6 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/diagnostics/results.hpp"
 #include "common/elasticity/vector_at.hpp"
-#include "common/fv/gradients.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/quadratic_fit.hpp"
@@ -39,12 +38,13 @@ Vec3 quadratic_displacement(const mesh::Mesh& mesh, const elastic::ElasticOperat
     for (const Index f : faces_of_cell[c])
       if (rows.mirrored(f)) add_mirror(g, f, mirrors);
   }
-  fv::NearQuadratic fit(dim, centre, reach > 0 ? reach : std::pow(g.volume[cell], 1. / dim), 3);
+  QuadraticFit fit;
+  fit.start(dim, 3, centre, reach > 0 ? reach : std::pow(g.volume[cell], 1. / dim));
   const auto add = [&](const Vec3& x, const Vec3& value) {
-    fit.add(x, {value.data(), 3});
+    fit.add_near(x, {value.data(), 3});
     for (const MirrorPlane& m : mirrors) {
       const Vec3 image = m.reflect(value);
-      fit.add(m.image(x), {image.data(), 3});
+      fit.add_near(m.image(x), {image.data(), 3});
     }
   };
   for (const Index c : cells) {
@@ -52,7 +52,8 @@ Vec3 quadratic_displacement(const mesh::Mesh& mesh, const elastic::ElasticOperat
     for (const Index f : faces_of_cell[c])
       if (!rows.mirrored(f)) add(g.face_centre[f], elastic::vector_at(face_u, f - mesh.n_interior, dim));
   }
-  return fit.solve().transpose() * fit.terms(place);
+  fit.solve_near();
+  return fit.coefficients().transpose() * fit.terms(place);
 }
 
 namespace {
