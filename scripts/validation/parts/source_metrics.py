@@ -138,7 +138,7 @@ def data_members(body):
         body = body[:match.start()] + "struct X " + body[end + 1:]
         at = match.start() + 9
     while True:  # bodies of functions, initializers, arguments of templates
-        shorter = re.sub(r"<[^<>;{}()]*>", "", re.sub(r"\{[^{}]*\}", "{}", body.replace("->", "").replace("operator<", "operator")))
+        shorter = re.sub(r"<[^<>;{}()]*>", "", re.sub(r"\{(?:[^{}]|\{\})*\}", "{}", body.replace("->", "").replace("operator<", "operator")))
         shorter = re.sub(r"\{\}(?=\s*[,;])", "", re.sub(r"=[^,;{}()]*(?=[,;])", "", shorter))
         if shorter == body:
             break
