@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/output/heat_quantities.hpp"
+#include "solid_solver/output/quantities.hpp"
 
 #include <algorithm>
 #include <cmath>
