@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of a thermocline study: figures 5.9, 5.11, 5.12 and 5.13 of the thesis."""
+"""Pictures of the study of a tank of case A or G: figures 5.9, 5.11, 5.12 and 5.13 of the thesis."""
 import pathlib
 import re
 
