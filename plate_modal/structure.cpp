@@ -176,14 +176,13 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   fluid_force_.resize(std::max(fluid_force_.size(), viscous.size()), 0.);
   for (std::size_t i = 0; i < viscous.size(); ++i) fluid_force_[i] += viscous[i];
   surface_.add_load(fluid_force_, fluid);
-  pressure_acts_ = false;
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     // A partner's load is its mean over the step, valid at mid-step; schemes that solve later extrapolate it.
     const time::TimeScheme scheme = parameters_.time_scheme.type;
     const bool looks_back = time::uses_acceleration(scheme) || time::uses_old_level(scheme);
     const auto load = [&](double after, std::span<double> total) {
       if (pressure_)
-        add_pressure(step_.time + after, total);
+        pressure_->at(step_.time + after, total);
       else
         std::ranges::fill(total, 0);
       for (std::size_t m = 0; m < fluid.size(); ++m) total[m] += fluid[m];
@@ -209,15 +208,10 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   return out;
 }
 
-void Structure::add_pressure(double t, std::span<double> load) {
-  pressure_->at(t, load);
-  pressure_acts_ = pressure_acts_ || std::ranges::any_of(load, [](double f) { return f != 0; });
-}
-
 /// q = Q/omega^2 of each mode; K u = f on rank 0.
 void Structure::solve_static(double t, std::span<const double> fluid) {
   std::vector<double> load(fluid.size(), 0);
-  if (pressure_) add_pressure(t, load);
+  if (pressure_) pressure_->at(t, load);
   for (std::size_t m = 0; m < load.size(); ++m) {
     trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (surface_.omega()[m] * surface_.omega()[m]);
     trial_.v[m] = 0;

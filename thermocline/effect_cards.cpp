@@ -23,9 +23,6 @@ const std::array cards{
     Card{"range of the film correlation", "`bed.closures.film-coefficient`",
          [](const P& p) { return when(p, p.tank.bed.closures.film_coefficient > 0, "film-coefficient"); }, "",
          "where Re is outside: width of the front that the film makes, over the bed"},
-    Card{"implicit advection", "`bed.advection: implicit`",
-         [](const P& p) { return when(p, p.tank.bed.advection == Advection::implicit, "bed.advection"); }, "",
-         "smearing of a front by the step, over the bed's height, 0.05", true},
     Card{"mixing of inverted fluid", "`bed.mix-inversions`",
          [](const P& p) { return when(p, p.tank.bed.mix_inversions, "bed.mix-inversions"); }, "",
          "largest inversion over the run's range of temperatures"},
@@ -33,8 +30,6 @@ const std::array cards{
          [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },
          "Ergun's equation in each bed step",
          "power of a pump or fan over the heat transported by the largest flow"},
-    Card{"work of pump or fan", "`pump`", [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },
-         "", "power of pump or fan over the heat transported by the largest flow, 0.1", true},
     Card{"melting capsules", "`bed.layers[].melting`",
          [](const P& p) {
            const auto& layers = p.tank.bed.layers;
