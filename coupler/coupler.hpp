@@ -76,6 +76,7 @@ class Coupler {
   /// Forgets what was learned from passes of another kind.
   void start_acceleration();
   app::StepFailure cause_of(const std::string& reported) const;
+  void visit(io::Archive archive);
   void save(const std::filesystem::path& folder);
   void load();
   void finalise(const std::string& problem);

@@ -326,9 +326,9 @@ void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   write_state(file, fluid_->state());
   fluid_->solvers().save(file);
-  // Writing does not change the statistics.
+  // Writing changes neither.
   if (statistics_) const_cast<RunningStatistics<D>&>(*statistics_).visit(io::Archive(file));
-  file.write_scalar("slowest-contraction", renewal_.slowest());
+  io::Archive(file).common("slowest-contraction", const_cast<Renewal<D>&>(renewal_).slowest());
 }
 
 template <int D>
@@ -337,7 +337,7 @@ void FluidParticipant<D>::load(io::CheckpointReader& file) {
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   fluid_->solvers().load(file);
   if (statistics_) statistics_->visit(io::Archive(file));
-  renewal_.restore(file.read_scalar("slowest-contraction"));
+  io::Archive(file).common("slowest-contraction", renewal_.slowest());
 }
 
 template <int D>

@@ -246,9 +246,10 @@ MeshState Mover::state() {
 void Mover::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   file.write(mesh::Entries::points, "displacement", accepted_);
-  file.write_scalar("barrier-in-force", parameters_.method == Method::barrier && !laplacian_ ? 1 : 0);
-  // The incremental form has no state between steps.
   io::Archive archive(file);
+  bool by_barrier = parameters_.method == Method::barrier && !laplacian_;
+  archive.common("barrier-in-force", by_barrier);
+  // The incremental form has no state between steps.
   if (!incremental()) (laplacian_ ? laplacian_ : method_)->visit(archive);
 }
 
@@ -257,20 +258,19 @@ void Mover::load(io::CheckpointReader& file) {
   file.read(mesh::Entries::points, "displacement", accepted_);
   displacement_ = accepted_;
   laplacian_.reset();
+  io::Archive archive(file);
+  bool by_barrier = false;
+  archive.common("barrier-in-force", by_barrier);
   // A later end time includes more motions: then the barrier is used from here on, from the mesh as read.
-  const bool by_barrier = file.read_scalar("barrier-in-force") > 0,
-             begins = chooses_ && ahead_ && !by_barrier;
+  const bool begins = chooses_ && ahead_ && !by_barrier;
   const Method wanted = by_barrier || ahead_ ? Method::barrier : Method::automatic;
   if (chooses_ && (begins || parameters_.method != wanted)) {
     parameters_.method = wanted;
     make_method();
   }
   placed_ = false;
-  io::Archive archive(file);
-  if (incremental())
-    make_method();
-  else if (!begins)
-    method_->visit(archive);
+  if (incremental()) make_method();
+  if (!incremental() && !begins) method_->visit(archive);
 }
 
 void Mover::write_monitors(double time) {

@@ -265,17 +265,12 @@ coupling::StepReport Structure::accept_step() {
 }
 
 void Structure::save(io::CheckpointWriter& file) const {
-  file.write_common("omega", surface_.omega());
-  file.write_common("state", base::to_numbers(state_));
+  const_cast<Structure*>(this)->visit(io::Archive(file));  // writing changes nothing
 }
 
 void Structure::load(io::CheckpointReader& file) {
-  if (file.read_common("omega") != surface_.omega())
-    throw Error(
-        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
-        "supports or the number of modes differ.");
   const ModalState fresh = initial_state();
-  base::from_numbers(file.read_common("state"), state_, "modes");
+  visit(io::Archive(file));
   for (const auto part :
        {&ModalState::q, &ModalState::v, &ModalState::a, &ModalState::q_old, &ModalState::v_old})
     if ((state_.*part).size() != (fresh.*part).size())
@@ -283,6 +278,16 @@ void Structure::load(io::CheckpointReader& file) {
   take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
   trial_ = state_;
   displacement_ = surface_.motion(state_.q);
+}
+
+void Structure::visit(io::Archive archive) {
+  std::vector<double> omega = surface_.omega();
+  archive.common("omega", omega);
+  if (omega != surface_.omega())
+    throw Error(
+        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
+        "supports or the number of modes differ.");
+  archive.common("state", state_);
 }
 
 void Structure::write_output(double time, int) { results_->write_fields(time); }

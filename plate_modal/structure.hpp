@@ -50,6 +50,7 @@ class Structure final : public coupling::Participant {
   std::vector<double> received(const coupling::Exchange& in, const char* name) const;
   void make_contact();
   void refuse_wound_springs() const;
+  void visit(io::Archive archive);
   void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;

@@ -128,28 +128,20 @@ void QuasiNewton::add(Pair pair) {
   while (columns() > parameters_.maximum_columns) drop_oldest();
 }
 
-void QuasiNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
-  qr_.save(file, "iqn", order.unknown);
-  Columns unknown, rider;
-  for (const Iterate& image : images_) unknown.emplace_back(image.unknown), rider.emplace_back(image.rider);
-  write_columns(file, order.unknown, "iqn.images", unknown);
-  write_columns(file, order.rider, "iqn.riders", rider);
-  file.write_common("iqn.step-of", std::vector<double>(step_of_.begin(), step_of_.end()));
-  file.write_scalar("iqn.step", step_);
-}
-
-void QuasiNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
-  qr_.load(file, "iqn", order.unknown);
+void QuasiNewton::visit(io::Archive& archive, const IterateOrder& order) {
+  qr_.visit(archive, "iqn", order.unknown);
   const auto m = std::size_t(columns());
-  std::vector<std::vector<double>> unknown = read_columns(file, order.unknown, "iqn.images", m),
-                                   rider = read_columns(file, order.rider, "iqn.riders", m);
+  std::vector<std::vector<double>> unknown, rider;
+  if (!archive.reads())
+    for (const Iterate& image : images_) unknown.push_back(image.unknown), rider.push_back(image.rider);
+  visit_columns(archive, order.unknown, "iqn.images", unknown, m);
+  visit_columns(archive, order.rider, "iqn.riders", rider, m);
+  archive.common("iqn.step", step_, step_of_);
+  if (!archive.reads()) return;
   images_.clear();
   for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(rider[j])});
-  const std::vector<double> steps = file.read_common("iqn.step-of");
-  if (steps.size() != m)
-    throw Error("The checkpoint's steps of differences ('iqn.step-of') are damaged. Use an earlier one.");
-  step_of_.assign(steps.begin(), steps.end());
-  step_ = file.read_scalar("iqn.step");
+  if (step_of_.size() != m)
+    throw Error("The checkpoint's steps of differences ('iqn.step') are damaged. Use an earlier one.");
 }
 
 namespace {
@@ -270,19 +262,12 @@ Eigen::VectorXd GrowingQr::minimise(std::span<const double> r) const {
   return -r_.triangularView<Eigen::Upper>().solve(t);
 }
 
-void GrowingQr::save(io::CheckpointWriter& file, const std::string& name,
-                     const parallel::GlobalOrder& order) const {
-  file.write_scalar(name + ".columns", columns());
-  write_columns(file, order, name + ".q", {q_.begin(), q_.end()});
-  file.write_common(name + ".r", {r_.data(), std::size_t(r_.size())});
-}
-
-void GrowingQr::load(io::CheckpointReader& file, const std::string& name,
-                     const parallel::GlobalOrder& order) {
-  const std::size_t m = file.read_count(name + ".columns", most_columns);
-  std::vector<double> r(m * m);
-  q_ = read_columns(file, order, name + ".q", m);
-  file.read_common(name + ".r", r);
+void GrowingQr::visit(io::Archive& archive, const std::string& name, const parallel::GlobalOrder& order) {
+  std::vector<double> r(r_.data(), r_.data() + r_.size());
+  archive.common(name + ".r", r);
+  const auto m = static_cast<std::size_t>(std::lround(std::sqrt(double(r.size()))));
+  if (r.size() != m * m) throw Error("The checkpoint's '{}.r' is damaged. Use an earlier one.", name);
+  visit_columns(archive, order, name + ".q", q_, m);
   r_ = Eigen::Map<Eigen::MatrixXd>(r.data(), Eigen::Index(m), Eigen::Index(m));
 }
 

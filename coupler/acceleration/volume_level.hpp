@@ -44,8 +44,7 @@ class VolumeLevel {
   void find(std::vector<coupling::Exchange>& known, const std::function<void()>& answer);
   void accept(const std::vector<coupling::Exchange>& given);
 
-  void save(io::CheckpointWriter& file, const std::vector<Side>& sides) const;
-  void load(io::CheckpointReader& file, const std::vector<Side>& sides);
+  void visit(io::Archive& archive, const std::vector<Side>& sides);
   /// Data for volume.csv.
   std::vector<std::string> columns() const;
   std::vector<double> row() const;

@@ -100,8 +100,7 @@ class Record {
   Monitor& monitor() { return *monitor_; }
   const Mechanics& mechanics() const { return mechanics_; }
   const std::vector<SideBalance>& balances() const { return balances_; }
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  void visit(io::Archive& archive);
 
  private:
   parallel::GlobalOrder order_of_wall(std::size_t i) const;

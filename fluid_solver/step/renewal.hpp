@@ -22,8 +22,7 @@ class Renewal {
   const Vectors<D>& guess() const { return guess_; }
   int count() const { return count_; }
   /// Largest contraction from a second to a third pass over the run, for checkpoints.
-  double slowest() const { return slowest_; }
-  void restore(double slowest) { slowest_ = slowest; }
+  double& slowest() { return slowest_; }
 
  private:
   double contraction(MPI_Comm comm, const Vectors<D>& w);

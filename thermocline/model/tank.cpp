@@ -214,17 +214,19 @@ void Tank::save(io::CheckpointWriter& file) const {
 }
 
 void Tank::load(io::CheckpointReader& file) {
-  const std::size_t n = file.read_common("tank").size(), needed = base::to_numbers(accepted_).size();
-  if (n != needed)
-    throw Error(
-        "The checkpoint's 'tank' has {} values, this tank needs {}; run with the same elements and cells.", n,
-        needed);
   io::Archive archive(file);
   visit(archive);
   accepted_.resume();
 }
 
 void Tank::visit(io::Archive& archive) {
+  const std::size_t needed = base::to_numbers(accepted_).size();
+  std::size_t n = needed;
+  archive.common("tank-size", n);
+  if (n != needed)
+    throw Error(
+        "The checkpoint's 'tank' has {} values, this tank needs {}; run with the same elements and cells.", n,
+        needed);
   archive.common("tank", accepted_);
   archive.common("flow-control", memory_);
   if (report_) archive.common("report", *report_);

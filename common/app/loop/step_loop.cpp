@@ -85,14 +85,16 @@ void on_first_rank(MPI_Comm comm, const std::function<void()>& action) {
   if (!problem.empty()) throw Error("{}", problem);
 }
 
+void visit(io::Archive archive, RunState& state) {
+  archive.common("run", state.time, state.outputs, state.plan);
+}
+
 }  // namespace
 
-void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& state) {
+void write_run_state(MPI_Comm comm, const fs::path& folder, RunState state) {
   if (parallel::comm_rank(comm) == 0) {
     io::CheckpointWriter file(MPI_COMM_SELF, folder / run_file);
-    file.write_scalar("time", state.time);
-    file.write_scalar("outputs", state.outputs);
-    file.write_common("plan", state.plan);
+    visit(io::Archive(file), state);
     file.close();
   }
   MPI_Barrier(comm);
@@ -101,9 +103,7 @@ void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& stat
 RunState read_run_state(const fs::path& folder) {
   io::CheckpointReader file(MPI_COMM_SELF, folder / run_file);
   RunState state;
-  state.time = file.read_scalar("time");
-  state.outputs = int(file.read_count("outputs", std::numeric_limits<int>::max()));
-  file.read_common("plan", state.plan);
+  visit(io::Archive(file), state);
   return state;
 }
 

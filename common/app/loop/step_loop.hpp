@@ -51,7 +51,7 @@ struct RunState {
 };
 inline constexpr const char* run_file = "run.h5";  ///< in a checkpoint
 /// Rank 0 writes the state (collective). Each rank reads it by itself.
-void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, const RunState& state);
+void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, RunState state);
 RunState read_run_state(const std::filesystem::path& folder);
 
 /// Returns `folder` if it is a complete checkpoint, else the one in it with the latest time, regardless of

@@ -37,7 +37,9 @@ class RecordingMover final : public Participant {
     log_.push_back("accept_step");
     return {};
   }
-  void save(io::CheckpointWriter& file) const override { file.write_scalar("nothing", 0); }
+  void save(io::CheckpointWriter& file) const override {
+    file.write_common("nothing", std::array<double, 1>{0});
+  }
   void load(io::CheckpointReader&) override {}
   void write_output(double, int) override {}
   void write_monitors(double) override {}

@@ -46,8 +46,10 @@ class Lump final : public Participant {
     now_ = next_;
     return {.dt = dt_};
   }
-  void save(io::CheckpointWriter& file) const override { file.write_scalar("temperature", now_); }
-  void load(io::CheckpointReader& file) override { now_ = file.read_scalar("temperature"); }
+  void save(io::CheckpointWriter& file) const override {
+    file.write_common("temperature", std::array<double, 1>{now_});
+  }
+  void load(io::CheckpointReader& file) override { io::Archive(file).common("temperature", now_); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
   double temperature() const { return now_; }

@@ -270,10 +270,12 @@ TEST(Accelerators, continue_from_a_checkpoint_bit_for_bit) {
     io::CheckpointWriter writer(MPI_COMM_SELF, file);
     const IterateOrder order =
         IterateOrder::as_they_are(MPI_COMM_SELF, {std::vector<double>(40), std::vector<double>(40)});
-    whole->save(writer, order);
+    io::Archive saved(writer);
+    whole->visit(saved, order);
     writer.close();
     io::CheckpointReader reader(MPI_COMM_SELF, file);
-    second->load(reader, order);
+    io::Archive read(reader);
+    second->visit(read, order);
     for (int n = 5; n < 9; ++n) {
       Iterate a, b;
       EXPECT_EQ(step(*whole, 10, 0.1 * n, 200, &a), step(*second, 10, 0.1 * n, 200, &b)) << int(type);

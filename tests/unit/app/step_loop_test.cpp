@@ -42,13 +42,13 @@ class Checkpoints : public testing::Test {
     actions.report = [](const coupling::Step&, double) {};
     actions.save = [&](const fs::path& place) {
       CheckpointWriter file(MPI_COMM_SELF, place / "one.h5");
-      file.write_scalar("time", time);
+      file.write_common("time", std::array<double, 1>{time});
       file.close();
     };
     ASSERT_EQ(loop.run(actions), "");
   }
   double saved_time(const fs::path& place) {
-    return CheckpointReader(MPI_COMM_SELF, place / "one.h5").read_scalar("time");
+    return CheckpointReader(MPI_COMM_SELF, place / "one.h5").read_common("time").front();
   }
   static std::string error_of(const std::function<void()>& action) {
     return support::error_of([&] { action(); });
@@ -174,7 +174,7 @@ TEST_F(Checkpoints, what_a_run_left_half_written_is_no_checkpoint_and_is_cleared
   const fs::path half = begin_checkpoint_set(folder, stamp);
   {
     CheckpointWriter file(MPI_COMM_SELF, half / "one.h5");
-    file.write_scalar("time", 3);
+    file.write_common("time", std::array<double, 1>{3});
     file.close();
   }
   EXPECT_EQ(find_checkpoint(folder), folder / "step-00000002");
