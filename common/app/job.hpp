@@ -10,7 +10,7 @@
 
 #include "common/app/case/case_file.hpp"
 #include "common/app/case/roll_call.hpp"
-#include "common/app/loop/simulation.hpp"
+#include "common/app/loop/step_loop.hpp"
 #include "common/app/watch/watch.hpp"
 
 namespace couplet::app {

@@ -11,7 +11,7 @@
 #include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
-#include "common/coupling/serve.hpp"
+#include "common/coupling/channel.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/diagnostics/finding.hpp"

@@ -12,7 +12,7 @@
 #include "plate_modal/model/build_model.hpp"
 #include "plate_modal/motion/contact.hpp"
 #include "plate_modal/motion/oscillators.hpp"
-#include "plate_modal/motion/pressure_load.hpp"
+#include "plate_modal/motion/surface.hpp"
 
 namespace couplet::plate {
 

@@ -12,7 +12,7 @@
 #include "common/contact/contact.hpp"
 #include "common/diagnostics/effects.hpp"
 #include "common/time/time_scheme.hpp"
-#include "plate_modal/model/skin.hpp"
+#include "plate_modal/model/plate_model.hpp"
 
 namespace couplet::plate {
 

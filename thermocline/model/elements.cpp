@@ -10,7 +10,7 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "thermocline/model/questions.hpp"
+#include "thermocline/model/model.hpp"
 #include "thermocline/model/tank.hpp"
 
 namespace couplet::thermocline {

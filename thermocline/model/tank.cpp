@@ -12,7 +12,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "thermocline/model/questions.hpp"
+#include "thermocline/model/model.hpp"
 
 namespace couplet::thermocline {
 

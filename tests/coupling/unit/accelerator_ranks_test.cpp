@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors spread over ranks give what one rank gives.
-#include "common/coupling/serve.hpp"
+#include "common/coupling/channel.hpp"
 #include "coupler/acceleration/accelerator.hpp"
 #include "tests/support/test.hpp"
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/gmsh/geo_script.hpp"
 
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "tests/support/test.hpp"

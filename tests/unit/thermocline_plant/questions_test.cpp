@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is asked about before a run: each sentence where it belongs, and none where all is well.
-#include "thermocline/model/questions.hpp"
 #include "tests/support/test.hpp"
+#include "thermocline/model/model.hpp"
 
 namespace couplet::thermocline::questions_test {
 using testing::HasSubstr;

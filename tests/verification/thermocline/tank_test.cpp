@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tank as a whole: books, subsets of elements, the participant's contract.
+#include "thermocline/model/tank.hpp"
 #include "common/io/checkpoint.hpp"
 #include "tests/support/own_folder.hpp"
 #include "tests/verification/thermocline/support.hpp"
-#include "thermocline/model/output.hpp"
 
 namespace couplet::thermocline::tank_test {
 using namespace coupling;
