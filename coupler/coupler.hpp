@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/app/loop/step_loop.hpp"
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "coupler/acceleration/accelerator.hpp"
 #include "coupler/acceleration/unknown.hpp"

@@ -81,7 +81,7 @@ struct Parameters {
 
 void declare(config::Section& section, Parameters& parameters);
 
-using Card = diagnostics::EffectCard<Parameters>;
+using Card = diagnostics::EffectEntry<Parameters>;
 std::span<const Card> effect_cards();
 
 }  // namespace couplet::mesh_mover

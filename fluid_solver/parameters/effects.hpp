@@ -19,7 +19,7 @@ struct FluidScene {
   bool coupled = false;
 };
 
-using FluidCard = diagnostics::EffectCard<FluidScene>;
+using FluidCard = diagnostics::EffectEntry<FluidScene>;
 std::span<const FluidCard> fluid_effect_cards();
 
 /// A place of a patch at which its expressions are looked at. Velocities along the face carry no volume through it.

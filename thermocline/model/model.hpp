@@ -30,7 +30,7 @@ struct TankSetup {
 std::vector<ColumnLayer> ground_layers(const GroundParameters& parameters);
 
 /// Heat that crossed the boundaries of the tank since the start [J].
-struct Ledger {
+struct HeatSums {
   double flow = 0, side = 0, roof = 0, ground = 0;  ///< flow: into the bed; the others are losses
   double bed = 0;                                   ///< total into the bed
   double turnover = 0;                              ///< sum of the absolute values
@@ -82,7 +82,7 @@ class TankModel {
   double stable_ground() const;
   const WallStress& stress() const { return wall_->stress; }  ///< only with a shell
   const std::optional<Column>& ground() const { return ground_; }
-  const Ledger& ledger() const { return ledger_; }
+  const HeatSums& ledger() const { return ledger_; }
   /// Heat content of all elements at `t` relative to their initial temperature [J].
   double energy(double t) const;
   /// Errors of the energy balances of the tank and of the bed since the start [J].
@@ -153,7 +153,7 @@ class TankModel {
   std::vector<double> into_blanket_;  // heat flow from each ring [W]
   std::vector<double> owed_;          // heat taken by the shell and not yet given by the bed, per cell [J]
   Ullage::Heat gas_heat_;             // during an exchange step
-  Ledger ledger_;
+  HeatSums ledger_;
   Work work_;
 };
 

@@ -198,7 +198,7 @@ TankRecord Tank::record() const {
     r.equivalent_stress = m.stress().equivalent;
     r.yield_strength = m.stress().yield;
   }
-  const Ledger &now = m.ledger(), &before = next_.ledger();
+  const HeatSums &now = m.ledger(), &before = next_.ledger();
   r.stored = now.bed - before.bed;
   r.losses = now.losses() - before.losses();
   const PlantParameters& plant = m.setup().parameters.flow.plant;

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
@@ -194,7 +194,7 @@ std::string StepLoop::stop(const StepActions& actions) {
   if (!is_written_) actions.write_stop(plan_.time() * later_than_saved, outputs_);
   if (folder.empty())
     return fmt::format("Stopped at t = {:g} s by a signal.{}", plan_.time(), what_is_kept(actions));
-  Watch::stopped();
+  Supervisor::stopped();
   if (parallel::comm_rank(comm_) == 0)
     log::info("stopped at t = {:g} s by a signal; the state is saved: continue with --restart {}",
               plan_.time(), folder.string());
@@ -238,7 +238,7 @@ std::string StepLoop::run(const StepActions& actions) {
   });
   if (!restarted_) actions.write_start(outputs_++), is_written_ = true;
   while (!plan_.finished()) {
-    if (parallel::any(comm_, Watch::stop_requested())) return stop(actions);
+    if (parallel::any(comm_, Supervisor::stop_requested())) return stop(actions);
     plan_.limit(actions.advised_dt());
     const coupling::Step step{.time = plan_.time(),
                               .dt = plan_.dt(),

@@ -117,7 +117,7 @@ class StepLoop {
   /// Continues from this state. `from` is its checkpoint. Earlier checkpoints of that run in the same folder
   /// then belong to this run and are removed like its own.
   void restart(const RunState& state, const std::filesystem::path& from = {});
-  /// Runs to the end, or after a stop request (Watch::stop_requested) to the next accepted step, which is
+  /// Runs to the end, or after a stop request (Supervisor::stop_requested) to the next accepted step, which is
   /// saved and written. Returns an empty text on success. Otherwise it states when and why no step was found;
   /// the state before was saved unless the job is stateless.
   std::string run(const StepActions& actions);

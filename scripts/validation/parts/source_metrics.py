@@ -84,9 +84,11 @@ def judging(job, most):
 
 
 def judging_words(job):
-    """Words that names of files and classes must not contain."""
-    text = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items()).lower()
-    found = [word for word in JUDGING_WORDS if word in text]
+    """Words that names of files and classes must not contain. The words of snake case and of camel case count, in the singular and in the plural, and not parts of them:
+    `lookup` is no `look`, and `discard` no `card`."""
+    names = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items())
+    there = {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", names)}
+    found = [word for word in JUDGING_WORDS if {word, f"{word}s"} & there]
     return f"{len(found)} beside diagnostic and finding: {', '.join(found) or 'none'}", not found
 
 

@@ -26,13 +26,13 @@ std::vector<Attendant> come(const std::vector<std::string>& names) {
 }
 
 TEST(RollCall, passes_when_all_are_there_in_any_order) {
-  const Verdict verdict = judge(come({"solid", "coupler", "fluid"}), expected, true);
-  EXPECT_EQ(verdict.problem, "");
-  EXPECT_FALSE(verdict.alone);
+  const Attendance attendance = attendance_of(come({"solid", "coupler", "fluid"}), expected, true);
+  EXPECT_EQ(attendance.problem, "");
+  EXPECT_FALSE(attendance.alone);
 }
 
 TEST(RollCall, names_who_is_missing_and_how_to_start) {
-  EXPECT_EQ(judge(come({"coupler", "fluid"}), expected, true).problem,
+  EXPECT_EQ(attendance_of(come({"coupler", "fluid"}), expected, true).problem,
             "The job cannot start:\n"
             "  participant 'solid' (solid_solver) is missing: it was not started.\n"
             "  Start it with: couplet run case.yaml");
@@ -43,29 +43,29 @@ TEST(RollCall, launch_line_has_a_placeholder_for_a_program_that_is_not_there) {
   foreign[1].program = "no-such-program";
   std::vector<Attendant> list = come({"fluid", "coupler"});
   list.front().case_file = "(guest)", list.front().case_hash = 0;
-  EXPECT_THAT(judge(list, foreign, true).problem,
+  EXPECT_THAT(attendance_of(list, foreign, true).problem,
               HasSubstr("couplet run case.yaml --with fluid='COMMAND ...'"));
 }
 
 TEST(RollCall, launch_line_keeps_the_ranks_that_have_come) {
   std::vector<Attendant> list = come({"coupler", "fluid"});
   list.push_back(list.back());
-  EXPECT_THAT(judge(list, expected, true).problem, HasSubstr("couplet run case.yaml -n fluid=2"));
+  EXPECT_THAT(attendance_of(list, expected, true).problem, HasSubstr("couplet run case.yaml -n fluid=2"));
 }
 
 TEST(RollCall, ranks_of_one_part_are_one_participant_and_two_parts_are_two) {
   std::vector<Attendant> list = come({"coupler", "fluid", "solid", "solid"});
-  EXPECT_THAT(judge(list, expected, true).problem,
+  EXPECT_THAT(attendance_of(list, expected, true).problem,
               HasSubstr("2 programs were started as participant 'solid' (solid_solver)"));
   list[3].application = list[2].application;
-  EXPECT_EQ(judge(list, expected, true).problem, "");
+  EXPECT_EQ(attendance_of(list, expected, true).problem, "");
 }
 
 TEST(RollCall, other_file_contents_are_named_with_both_sides) {
   std::vector<Attendant> list = come({"coupler", "fluid", "solid"});
   list[2].case_file = "old.yaml";
   list[2].case_hash = 8;
-  EXPECT_THAT(judge(list, expected, true).problem,
+  EXPECT_THAT(attendance_of(list, expected, true).problem,
               HasSubstr("'coupler' reads case.yaml and 'solid' reads old.yaml, and the contents differ."));
 }
 
@@ -74,17 +74,17 @@ TEST(RollCall, configuration_errors_come_once_with_their_senders) {
   for (Attendant& a : list) a.errors = {"case.yaml:1:1: of all"};
   list[2].errors.push_back("case.yaml:9:3: of one");
   list[3].errors.push_back("case.yaml:9:3: of one");
-  EXPECT_EQ(judge(list, expected, true).problem,
+  EXPECT_EQ(attendance_of(list, expected, true).problem,
             "The job cannot start:\n  case.yaml:1:1: of all\n  [solid] case.yaml:9:3: of one");
 }
 
 TEST(RollCall, one_program_runs_alone_if_nothing_else_is_asked_for) {
   std::vector<Attendant> list = come({"solid"});
-  EXPECT_TRUE(judge(list, {{"solid", "solid_solver"}}, false).alone);
-  EXPECT_THAT(judge(list, expected, true).problem,
+  EXPECT_TRUE(attendance_of(list, {{"solid", "solid_solver"}}, false).alone);
+  EXPECT_THAT(attendance_of(list, expected, true).problem,
               HasSubstr("To run 'solid' alone: solid_solver case.yaml --participant solid"));
   list[0].named = true;
-  EXPECT_TRUE(judge(list, expected, true).alone);
+  EXPECT_TRUE(attendance_of(list, expected, true).alone);
 }
 
 TEST(RollCall, all_processes_hear_all_answers) {

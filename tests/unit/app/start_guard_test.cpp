@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::start_guard_test {
@@ -9,7 +9,7 @@ TEST(StartGuardDeathTest, ends_a_start_that_takes_too_long) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
-        app::StartGuard guard(0.05, "fluid");
+        app::StartDeadline guard(0.05, "fluid");
         std::this_thread::sleep_for(30s);
         std::_Exit(0);
       },
@@ -20,8 +20,8 @@ TEST(StartGuardDeathTest, is_silent_once_disarmed_and_where_no_timeout_is_asked_
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
-        std::optional<app::StartGuard> guard(std::in_place, 0.05, "fluid");
-        const app::StartGuard never(0, "solid");
+        std::optional<app::StartDeadline> guard(std::in_place, 0.05, "fluid");
+        const app::StartDeadline never(0, "solid");
         guard.reset();
         std::this_thread::sleep_for(300ms);
         std::_Exit(0);

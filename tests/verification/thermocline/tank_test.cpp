@@ -273,7 +273,7 @@ TEST_F(Participation, the_records_of_the_steps_add_up_to_the_ledger) {
     const TankRecord r = tank->record();
     all.stored += r.stored, all.losses += r.losses;
   }
-  const Ledger& whole = tank->model().ledger();
+  const HeatSums& whole = tank->model().ledger();
   EXPECT_GT(std::abs(whole.ground), 1);
   EXPECT_NEAR(all.stored, whole.bed - start, 1e-9 * std::abs(whole.bed - start));
   EXPECT_NEAR(all.losses, whole.losses(), 1e-9 * std::abs(whole.losses()));

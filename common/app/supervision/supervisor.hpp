@@ -28,12 +28,12 @@ const char* name(Phase phase);
 /// memory. MPI's launcher ends a job with SIGTERM when a process dies. The first survivor to handle the
 /// signal then prints one line with the dead processes and their last phase. If none is dead, SIGTERM is a
 /// stop request: the step loop saves the state and ends the run. A job whose processes all wait for each
-/// other is ended, too. One Watch per process stays in force until it ends.
-class Watch {
+/// other is ended, too. One Supervisor per process stays in force until it ends.
+class Supervisor {
  public:
   /// Must be called right after MPI_Init. Collective over `world`.
-  Watch(MPI_Comm world, const std::string& participant);
-  Watch(const Watch&) = delete;
+  Supervisor(MPI_Comm world, const std::string& participant);
+  Supervisor(const Supervisor&) = delete;
   /// Installs the signal handlers, again after libraries that replace them, such as PETSc.
   static void install();
   /// Sets the rank within the participant, once it is known.
@@ -67,7 +67,7 @@ class Watch {
 /// Fault injection for tests: COUPLET_FAULT="solid:solve:2" kills rank 0 of participant 'solid' with SIGKILL
 /// at its second solve; "solid:solve:2:1" kills rank 1. A fifth part selects another fault: hang (without a
 /// sign of life), work (7 s, with signs of life), wait (for a message that is never sent), stop (SIGSTOP).
-/// Phases are those of app/watch.hpp. Without the variable nothing happens.
+/// Phases are those of app/supervision/supervisor.hpp. Without the variable nothing happens.
 class FaultInjection {
  public:
   FaultInjection(std::string_view participant, int rank);
@@ -79,12 +79,12 @@ class FaultInjection {
   int remaining_ = 0;
 };
 
-/// Ends the job if its start exceeds the hang timeout. A Watch cannot do so, because processes wait in
+/// Ends the job if its start exceeds the hang timeout. A Supervisor cannot do so, because processes wait in
 /// MPI_Init before they know each other. Create it before MPI_Init; the destructor disarms it.
-class StartGuard {
+class StartDeadline {
  public:
   /// `seconds` is 0 for never. `label` starts the message.
-  StartGuard(double seconds, std::string label);
+  StartDeadline(double seconds, std::string label);
 
  private:
   std::jthread guard_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Page of shared memory by which processes of a job on one machine watch each other (see watch.hpp).
+/// Page of shared memory by which processes of a job on one machine watch each other (see supervisor.hpp).
 
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 
 namespace couplet::app::watching {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -21,7 +21,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/app/watch/watch_board.hpp"
+#include "common/app/supervision/board.hpp"
 #include "common/base/error.hpp"
 #include "common/coupling/wait.hpp"
 #include "common/log/progress.hpp"
@@ -114,7 +114,7 @@ const char* name(Phase phase) {
   return names[std::size_t(phase)];
 }
 
-Watch::Watch(MPI_Comm world, const std::string& participant) {
+Supervisor::Supervisor(MPI_Comm world, const std::string& participant) {
   MPI_Comm machine;
   MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, parallel::comm_rank(world), MPI_INFO_NULL, &machine);
   board.count = parallel::comm_size(machine);
@@ -140,19 +140,19 @@ Watch::Watch(MPI_Comm world, const std::string& participant) {
   install();
 }
 
-void Watch::install() {
+void Supervisor::install() {
   if (board.slots == nullptr) return;
   struct sigaction action {};
   action.sa_handler = on_terminate;
   sigaction(SIGTERM, &action, nullptr);
 }
 
-void Watch::set_rank(int rank) {
+void Supervisor::set_rank(int rank) {
   if (board.slots) board.slots[board.mine].rank = rank;
 }
 
 /// Each process of the machine writes the same.
-void Watch::add_guest(const std::string& participant, const std::string& process) {
+void Supervisor::add_guest(const std::string& participant, const std::string& process) {
   char machine[256] = "";
   ::gethostname(machine, sizeof machine - 1);
   const std::size_t at = process.find('@');
@@ -168,7 +168,7 @@ void Watch::add_guest(const std::string& participant, const std::string& process
   ++board.count;
 }
 
-void Watch::enter(Phase phase) {
+void Supervisor::enter(Phase phase) {
   phase_ = phase;
   if (!board.slots) return;
   if (phase == Phase::finalise)  // guests may be gone from now on
@@ -178,11 +178,11 @@ void Watch::enter(Phase phase) {
   board.slots[board.mine].alive = now();
 }
 
-void Watch::set_time(double time) {
+void Supervisor::set_time(double time) {
   if (board.slots) board.slots[board.mine].time = time;
 }
 
-void Watch::limit_silence(double seconds) {
+void Supervisor::limit_silence(double seconds) {
   if (!board.slots || seconds <= 0 || board.count < 2) return;
   guard_ = std::jthread([seconds](const std::stop_token& stop) {
     // Signals are handled by the main thread.
@@ -198,15 +198,15 @@ void Watch::limit_silence(double seconds) {
   });
 }
 
-bool Watch::stop_requested() { return board.slots && board.slots[0].stop_requested; }
+bool Supervisor::stop_requested() { return board.slots && board.slots[0].stop_requested; }
 
-void Watch::stopped() {
+void Supervisor::stopped() {
   if (board.slots) board.slots[0].stopped = 1;
 }
 
-bool Watch::has_stopped() { return board.slots && board.slots[0].stopped; }
+bool Supervisor::has_stopped() { return board.slots && board.slots[0].stopped; }
 
-bool Watch::claim_report() {
+bool Supervisor::claim_report() {
   if (!board.slots) return true;
   for (int i = 0; i < board.count; ++i)
     if (std::strcmp(board.slots[i].participant, board.slots[board.mine].participant) == 0)
@@ -214,11 +214,11 @@ bool Watch::claim_report() {
   return true;
 }
 
-void Watch::ending() {
+void Supervisor::ending() {
   if (board.slots) board.slots[board.mine].ending = 1;
 }
 
-void Watch::finished() {
+void Supervisor::finished() {
   if (board.slots) board.slots[board.mine].finished = 1;
   // A launcher that clears up after another process's exit code must not spoil this one's.
   std::signal(SIGTERM, SIG_IGN);
@@ -270,7 +270,7 @@ std::string stopped_ones() {
 
 }  // namespace
 
-StartGuard::StartGuard(double seconds, std::string label) {
+StartDeadline::StartDeadline(double seconds, std::string label) {
   if (!(seconds > 0)) return;
   guard_ = std::jthread([seconds, label = std::move(label)](const std::stop_token& stop) {
     sigset_t all;  // signals are handled by the main thread

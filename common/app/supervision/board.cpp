@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/watch/watch_board.hpp"
+#include "common/app/supervision/board.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -8,7 +8,7 @@ namespace couplet::thermocline {
 namespace {
 
 using P = ElementParameters;
-using Card = diagnostics::EffectCard<P>;
+using Card = diagnostics::EffectEntry<P>;
 
 /// Reason why a tank has the effect, if it is `on`. Other elements have one effect each.
 std::string when(const P& p, bool on, const char* reason) {
