@@ -216,7 +216,7 @@ void FluidParticipant<D>::begin_step(const coupling::Step& step) {
   step_ = step;
   if (interface_) {
     std::vector<Vec3> points = fluid_->state().points;
-    fluid_->keep_volume(points, step.time);
+    keep_volume(*fluid_, points, step.time);
   }
   if (step.number == 0) tell_impulse();
   predicted_ = renewed_now_ = false;
@@ -236,7 +236,7 @@ std::vector<Vec3> FluidParticipant<D>::receive_points() {
   } else {
     return {};
   }
-  if (!interface_) fluid_->keep_volume(points, end);
+  if (!interface_) keep_volume(*fluid_, points, end);
   return points;
 }
 

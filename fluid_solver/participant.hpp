@@ -100,6 +100,24 @@ class FluidParticipant final : public coupling::Participant {
   int told_sub_steps_ = 1;   // number of sub-steps last logged
 };
 
+/// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its
+/// volume, beyond the error of faces that stand for curved walls. Sets the walls back along their normals by that error, unless
+/// a structure moves them. Collective.
+template <int D>
+void keep_volume(const Fluid<D>& fluid, std::vector<Vec3>& points, double time);
+
+/// Throws Error for an incompressible fluid with a trapped volume, or with a `volume-level` that it does not
+/// need. Without an outlet, walls may change the volume only if something sets the pressure level.
+/// Collective.
+template <int D>
+void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
+
+/// Area shares of the interface faces in the inflow of the given velocities [m^3/s], two values per face: at
+/// t^{n+1} and t^n. They sum to the inflows. Collective.
+template <int D>
+std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
+                                  double dt);
+
 /// Adds the diagnostics of a participant created by make_participant(). Call after its initialise().
 void add_diagnostics(const coupling::Participant& participant, diagnostics::Diagnostics& all);
 

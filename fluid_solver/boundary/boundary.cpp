@@ -160,7 +160,8 @@ std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& paramete
 
 namespace {
 
-fv::Expression turning_of(const BoundaryParameters& b, const std::string& where) {
+fv::Expression turning_of(const BoundaryParameters& b, int dim, const std::string& where) {
+  fv::check_axis(b.rotation->axis, dim, where + ".rotation.axis");
   fv::Expression speed(b.rotation->speed, where + ".rotation.speed");
   if (speed.uses_space()) throw Error("{}.rotation.speed: it may depend on t only.", where);
   return speed;
@@ -194,7 +195,7 @@ GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& ge
       parameters_(boundaries.at(patch.name)) {
   const BoundaryParameters& b = parameters_;
   const std::string where = "boundaries." + patch.name;
-  if (b.rotation) turning_ = turning_of(b, where);
+  if (b.rotation) turning_ = turning_of(b, D, where);
   if (b.table) {
     table_ = velocity_table(b.table->file, b.table->outside, D);
   } else if (b.mean_speed) {

@@ -35,6 +35,7 @@ class Compression final : public Term<D> {
     for (Index c = 0; c < owned; ++c) storage_[c] = factor * step_.to->volume[c];
     scene_.obstacles->clear(storage_);
   }
+  bool keeps_pressure() const override { return true; }
   bool sets_level() const override { return rate_ > 0; }
   double version() const override { return (rate_ > 0 ? rate_ : -1) / step_.dt; }
   void add_to_diagonal(Diagonal& diagonal) override {

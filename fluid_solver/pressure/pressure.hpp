@@ -147,6 +147,10 @@ class Term {
   /// Called after the prediction from a level. Collective.
   virtual void prepare(const State<D>&) {}
 
+  /// True if the term may change the matrix.
+  virtual bool is_in_matrix() const { return true; }
+  /// True if the pressure is part of the state, not only the impulse of a step.
+  virtual bool keeps_pressure() const { return false; }
   /// True if the term determines the pressure level of a closed domain in this step.
   virtual bool sets_level() const { return false; }
   /// Changes whenever the matrix entries do, on a mesh at rest. 0 stands for a matrix without terms.
@@ -155,6 +159,8 @@ class Term {
   /// Called with a new matrix. Collective.
   virtual void respond(PressureEquation<D>&) {}
 
+  /// Changes given fluxes of the boundary for which the equation has no solution. Collective.
+  virtual void balance(const PressureEquation<D>&, Projected<D>&) {}
   /// Sets pressures, velocities and fluxes of the boundary that are known before p. Collective.
   virtual void foresee(const State<D>&, Projected<D>&) {}
   /// Adds to the right-hand side. Collective.
@@ -185,6 +191,9 @@ class Term {
 
 template <int D>
 using MakeTerm = std::unique_ptr<Term<D>>(const Scene<D>&, const Step<D>&, const Prediction<D>&);
+/// A fluid without an outlet.
+template <int D>
+MakeTerm<D> make_closed_domain;
 /// Walls of known mass (Robin condition). Collective.
 template <int D>
 MakeTerm<D> make_yielding_walls;

@@ -52,7 +52,6 @@ class PressureProjection {
   void extrapolate_pressure();
   void assemble();
   void set_obliqueness(const Placement<D>& at);
-  void balance_closed_domain();
   void add_oblique_pressure(const std::vector<double>& phi);
   bool mix_gradients(int pass);
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);

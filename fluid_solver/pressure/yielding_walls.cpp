@@ -16,22 +16,26 @@ class YieldingWalls final : public Term<D> {
  public:
   using Term<D>::Term;
 
+  void prepare(const State<D>&) override {
+    const std::vector<double>& mass = scene_.boundary.wall_mass();
+    resistance_.assign(std::size_t(mesh_.boundary.n_owned()), 0.);
+    for (std::size_t b = 0; step_.yields && b < mass.size(); ++b)
+      if (mass[b] > 0)
+        resistance_[b] =
+            (mass[b] + scene_.fluid.rho * area(b).norm() / step_.to->conductance[face(b)]) / step_.dt;
+  }
   bool sets_level() const override { return step_.yields; }
   double version() const override { return step_.yields; }
   void add_to_diagonal(Diagonal& diagonal) override {
     std::vector<double>& admittance = diagonal.faces;
     admittance.resize(std::size_t(mesh_.boundary.n_owned()), 0.);
-    if (!step_.yields) return;
-    set_resistances();
     const double factor = scene_.fluid.rho / step_.dt;
     for (std::size_t b = 0; b < resistance_.size(); ++b)
       if (resistance_[b] > 0) admittance[b] += factor * area(b).norm() / resistance_[b];
   }
   void foresee(const State<D>& from, Projected<D>& out) override {
-    if (!step_.yields) return;
     const Placement<D>& at = *step_.to;
     const double dt = step_.dt;
-    set_resistances();
     for (std::size_t b = 0; b < resistance_.size(); ++b) {
       if (resistance_[b] == 0) continue;
       const Index f = face(b), p = mesh_.owner[f];
@@ -44,7 +48,6 @@ class YieldingWalls final : public Term<D> {
     }
   }
   void after(Projected<D>& out) override {
-    if (!step_.yields) return;
     for (std::size_t b = 0; b < resistance_.size(); ++b)
       if (resistance_[b] > 0) add_answer(b, out.p[mesh_.owner[face(b)]], out);
   }
@@ -56,14 +59,6 @@ class YieldingWalls final : public Term<D> {
   using Term<D>::prediction_;
   Index face(std::size_t b) const { return mesh_.n_interior + static_cast<Index>(b); }
   auto area(std::size_t b) const { return step_.to->area[face(b)]; }
-  void set_resistances() {
-    const std::vector<double>& mass = scene_.boundary.wall_mass();
-    resistance_.assign(std::size_t(mesh_.boundary.n_owned()), 0.);
-    for (std::size_t b = 0; b < mass.size(); ++b)
-      if (mass[b] > 0)
-        resistance_[b] =
-            (mass[b] + scene_.fluid.rho * area(b).norm() / step_.to->conductance[face(b)]) / step_.dt;
-  }
   /// Adds the response of a wall to a pressure on it to its velocity and flux.
   void add_answer(std::size_t b, double pressure, Projected<D>& out) {
     const double flux = area(b).norm() * pressure / resistance_[b];

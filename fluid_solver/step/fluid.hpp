@@ -57,10 +57,6 @@ class Fluid {
   /// |w - w*| S/dt, relative to the load of the last solve_pressure() less a uniform pressure. Both are root
   /// mean squares over the interface. Collective.
   double unseen_share(const Vectors<D>& w) const;
-  /// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its
-  /// volume, beyond the error of faces that stand for curved walls. Sets the walls back along their normals by that error, unless
-  /// a structure moves them. Collective.
-  void keep_volume(std::vector<Vec3>& points, double time) const;
   /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// Makes the step level n. Cannot fail.
@@ -130,25 +126,10 @@ class Fluid {
   FluidStatistics statistics_;
 };
 
-/// Resolves `surface: auto` of bodies. Throws Error if two bodies differ.
-FluidParameters with_surfaces(FluidParameters parameters, bool moving);
-
 /// Throws Error for incompatible effects. Where one effect leaves a single choice for another, sets it.
 /// `moving`: the mesh will move. Collective.
 template <int D>
 void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
                     bool moving);
-
-/// Throws Error for an incompressible fluid with a trapped volume, or with a `volume-level` that it does not
-/// need. Without an outlet, walls may change the volume only if something sets the pressure level.
-/// Collective.
-template <int D>
-void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
-
-/// Area shares of the interface faces in the inflow of the given velocities [m^3/s], two values per face: at
-/// t^{n+1} and t^n. They sum to the inflows. Collective.
-template <int D>
-std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
-                                  double dt);
 
 }  // namespace couplet::fluid

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -62,6 +63,10 @@ class FractionalStep {
   /// Replaces level n by level n+1 by swapping. Computes it first if complete() was not called since the last
   /// project(). Cannot fail. Collective.
   void commit(State<D>& state);
+  /// True if the pressure is part of the state, not only the impulse of a step.
+  bool pressure_is_state() const {
+    return std::ranges::any_of(projection_.terms(), [](const auto& term) { return term->keeps_pressure(); });
+  }
   /// Makes the initial velocity divergence-free. Reads state.u, w and u_boundary (u at the faces), sets phi.
   void project_initial(State<D>& state);
   /// Sets the data of the pressure terms in a state that no step computed. Collective.
@@ -80,8 +85,11 @@ class FractionalStep {
   /// Forces on the surroundings after the last project() [N], see Loads.
   const Vectors<D>& pressure_force() const { return loads_.pressure; }
   const Vectors<D>& viscous_force() const { return loads_.viscous; }
-  /// state.eddy, if there is a turbulence model. Collective.
-  void set_eddy_viscosity(State<D>& state);
+  /// Sets the data of the momentum terms in a new state. Collective.
+  void start_momentum(State<D>& state) {
+    for (const auto& term : momentum_terms()) term->start(state);
+  }
+  const MomentumTerms<D>& momentum_terms() { return predictor_.rate_operator().terms(); }
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
   const Scene<D>& scene() const { return scene_; }
@@ -118,8 +126,6 @@ class FractionalStep {
   double splitting_error(const PressureLevel<D>& now, double enough);
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
-  void set_body_force();
-  void find_potential(const Placement<D>& at);
   bool too_fast() const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);

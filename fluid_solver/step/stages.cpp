@@ -42,7 +42,8 @@ Predictor<D>::Predictor(const Scene<D>& scene, const Step<D>& step, const KnownG
       step_(step),
       gradient_(gradient),
       out_(result),
-      rate_operator_(scene.mesh, scene.boundary, scene.fluid.nu, scene.is_compressible()),
+      rate_operator_(scene.mesh, scene.boundary, scene.fluid.nu,
+                     make_momentum_terms<D>(scene.mesh, scene.parameters)),
       friction_(scene, step, rate_operator_) {}
 
 template <int D>
@@ -56,8 +57,7 @@ void Predictor<D>::predict(const State<D>& from) {
   side_.resize(from.u.size());
   out_.u.resize(from.u.size());
   out_.viscous_flux.resize(out_.w.size());
-  const bool forced =
-      scene_.frame || (!scene_.body_force.empty() && !std::ranges::all_of(scene_.balanced, std::identity()));
+  const bool forced = std::ranges::any_of(scene_.forces, [](const auto& force) { return force->acts(); });
   if (!moving && !implicit && !given && !forced) {
     explicit_pass<D>(std::span(from.placement->volume).first(mesh_.cells.n_owned()), from.u, dt * e0,
                      out_.rates.rate.data(), dt * e1, ratio > 0 ? from.rates_old.rate.data() : nullptr,
@@ -69,7 +69,7 @@ void Predictor<D>::predict(const State<D>& from) {
     side_[c] = volume[c] * from.u[c] + (given ? dt * step_.rate[c] : dt * e0 * out_.rates.rate[c]);
   if (ratio > 0 && !given)
     for (Index c = 0; c < mesh_.cells.n_local(); ++c) side_[c] += dt * e1 * from.rates_old.rate[c];
-  if (forced) add_body_force(from, e0, e1);
+  if (forced) add_forces(from, e0, e1);
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   if (implicit) {
@@ -110,15 +110,12 @@ void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
 
 // Volume-integrated at t^{n+1/2}, the time of the pressure that may balance it.
 template <int D>
-void Predictor<D>::add_body_force(const State<D>& from, double e0, double e1) {
+void Predictor<D>::add_forces(const State<D>& from, double e0, double e1) {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
   out_.force.assign(places.size(), Vec<D>::Zero());
-  for (std::size_t c = 0; c < scene_.body_force.size(); ++c)
-    if (!scene_.balanced[c])
-      scene_.body_force[c].evaluate(places, step_.middle(), flat<D>(out_.force), D, int(c));
-  if (scene_.frame)
-    scene_.frame->add_force(step_.begin(), step_.dt, places, from.u, from.u_old, {e0, e1}, out_.force);
+  for (const auto& force : scene_.forces)
+    force->add(step_.begin(), step_.dt, places, from.u, from.u_old, {e0, e1}, out_.force);
   for (std::size_t c = 0; c < places.size(); ++c) side_[c] += step_.dt * step_.to->volume[c] * out_.force[c];
 }
 

@@ -44,7 +44,7 @@ class Predictor {
 
  private:
   void set_explicit_friction(const State<D>& from, double e0, double e1);
-  void add_body_force(const State<D>& from, double e0, double e1);
+  void add_forces(const State<D>& from, double e0, double e1);
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
   void solve_viscous(const State<D>& from, double a);
@@ -164,10 +164,9 @@ class EnergyGuard {
   double rho_, mu_, pressure_tolerance_, bulk_;
 };
 
-/// Likely cause of a failed step in one cell, as a sentence; local. `cell`: owned. `frame_rate`: |2 omega| of
-/// a rotating frame [1/s], 0 without one.
+/// Likely cause of a failed step in one cell, as a sentence; empty if it is none of those known here. Local. `cell`: owned.
 template <int D>
 std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& step,
-                         Index cell, double kinematic_viscosity, bool implicit, double frame_rate);
+                         Index cell, double kinematic_viscosity, bool implicit);
 
 }  // namespace couplet::fluid

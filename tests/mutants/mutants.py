@@ -32,7 +32,7 @@ MUTANTS = [
            "stability_fluid_energy_guard", "EnergyGuard.*"),
     Mutant("an infinite tolerance of the pressure equation", "fluid_solver/pressure/pressure.cpp",
            "if (!std::isfinite(absolute))", "if (absolute < 0)", "stability_fluid_energy_guard", "EnergyGuard.*"),
-    Mutant("closed fluids whose interface displaces volume", "fluid_solver/step/checks.cpp",
+    Mutant("closed fluids whose interface displaces volume", "fluid_solver/closed_fluid.cpp",
            "if (share <= largest_open_share) return;", "if (share <= 10 * largest_open_share + 10) return;", "contract_fluid", "ClosedFluid.*"),
     Mutant("cells that cross themselves", "common/mesh/quality.cpp", "return other == 2;", "return other == 5;", "unit_mesh", "FindCrossed.*"),
     Mutant("growth of the coupling's iteration", "coupler/diagnostics/guards.cpp", "if (growing_ < patience && !ran_away) return;",

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/pressure/pressure.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Share of the boundary fluxes that a moving wall may leave as a discretization error, and the speed of a
+// fluid at rest [m/s]. Walls that move tangentially leave a share of their speeds as the error.
+constexpr double largest_open_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
+
+/// An incompressible fluid without an outlet requires boundary fluxes that sum to zero. The discretization
+/// error of moving walls is distributed by area over the interface, or over all moving faces; a convective
+/// outlet takes the net inflow.
+template <int D>
+class ClosedDomain final : public Term<D> {
+ public:
+  using Term<D>::Term;
+
+  bool is_in_matrix() const override { return false; }
+  void balance(const PressureEquation<D>& equation, Projected<D>& out) override {
+    if (!equation.singular()) return;
+    enum { total, size, adjustable_area, other_area, speeds };
+    double sums[5] = {};
+    for (std::size_t b = 0; b < out.w.size(); ++b) {
+      const Index f = mesh_.n_interior + static_cast<Index>(b);
+      const double area = step_.to->area[f].norm();
+      sums[total] += out.phi[f];
+      sums[size] += std::abs(out.phi[f]);
+      sums[speeds] += out.w[b].norm() * area;
+      sums[scene_.boundary.is_adjustable(b) ? adjustable_area : other_area] += area;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    const bool adjustable = sums[adjustable_area] > 0;
+    // The flux through rotating walls is only round-off of their speeds.
+    if (!adjustable && std::abs(sums[total]) > std::max(1e-6 * sums[size], 1e-12 * sums[speeds]))
+      throw Error(
+          "The fluid domain is closed, but the prescribed velocities give a net outflow of {:.6g} m^3/s. Add "
+          "an outlet or correct the velocities.",
+          sums[total]);
+    // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over. Of walls
+    // without a structure keep_volume() has compared the displacements.
+    if (adjustable && !scene_.boundary.has_convective_outlet() &&
+        !(scene_.boundary.sealed() && scene_.boundary.interface_patches().empty()) &&
+        scene_.parameters.volume_level == VolumeLevelBy::nobody && !scene_.boundary.yields() &&
+        std::abs(sums[total]) > largest_open_leftover * sums[size] &&
+        std::abs(sums[total]) > round_speed * sums[speeds] &&
+        sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
+      throw Error(
+          "The fluid domain is closed: at t = {:.6g} s the net outflow is {:.6g} m^3/s, which neither the "
+          "prescribed velocities nor the interface motion balance. The pressure level that would push it "
+          "through the interface is not computed: add an outlet (a small one far from the interface is "
+          "enough).",
+          step_.end(), sums[total]);
+    const double correction = sums[total] / (adjustable ? sums[adjustable_area] : sums[other_area]);
+    for (std::size_t b = 0; b < out.w.size(); ++b) {
+      const Index f = mesh_.n_interior + static_cast<Index>(b);
+      if (adjustable && !scene_.boundary.is_adjustable(b)) continue;
+      out.phi[f] -= correction * step_.to->area[f].norm();
+      if (scene_.boundary.is_convective(b)) out.w[b] -= correction * step_.to->area[f].normalized();
+    }
+  }
+
+ private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+};
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_closed_domain(const Scene<D>& scene, const Step<D>& step,
+                                            const Prediction<D>& prediction) {
+  return std::make_unique<ClosedDomain<D>>(scene, step, prediction);
+}
+
+template decltype(make_closed_domain<2>) make_closed_domain<2>;
+template decltype(make_closed_domain<3>) make_closed_domain<3>;
+
+}  // namespace couplet::fluid
