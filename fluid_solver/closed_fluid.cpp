@@ -15,6 +15,37 @@ namespace {
 constexpr double largest_leftover = 0.02, round_off = 1e-12;
 constexpr double allowed = 1e-10;  // change of volume that remains
 
+// Largest share of an interface's area that faces one way for it to enclose a body; above, it is a cavity
+// wall.
+constexpr double largest_open_share = 0.3;
+
+/// Share of the interface's area that faces one way, and the area [m^2].
+template <int D>
+std::pair<double, double> open_share(const Fluid<D>& fluid) {
+  double sums[4] = {};  // S, |S|
+  for (const std::string& name : fluid.boundary().interface_patches()) {
+    const mesh::Patch& patch = *fluid.mesh().find_patch(name);
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec<D>& area = fluid.state().placement->area[f];
+      for (int c = 0; c < D; ++c) sums[c] += area[c];
+      sums[3] += area.norm();
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, fluid.mesh().comm);
+  return {Vec3(sums[0], sums[1], sums[2]).norm() / sums[3], sums[3]};
+}
+
+/// Inflow through faces of given velocity except the interface's [m^3/s]; this rank's part.
+template <int D>
+double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
+  const Boundary<D>& boundary = fluid.boundary();
+  Vectors<D> w(boundary.rows().pressure.size(), Vec<D>::Zero());  // stays so at the interface
+  boundary.velocity_at(t, at.boundary_centre, w);
+  double inflow = 0;
+  for (const Index b : boundary.rows().of_velocity) inflow -= w[b].dot(at.area[fluid.mesh().n_interior + b]);
+  return inflow;
+}
+
 }  // namespace
 
 template <int D>
@@ -70,41 +101,6 @@ void keep_volume(const Fluid<D>& fluid, std::vector<Vec3>& points, double time) 
   }
   if (std::abs(net) > allowed * volume) refuse();
 }
-
-namespace {
-
-// Largest share of an interface's area that faces one way for it to enclose a body; above, it is a cavity
-// wall.
-constexpr double largest_open_share = 0.3;
-
-/// Share of the interface's area that faces one way, and the area [m^2].
-template <int D>
-std::pair<double, double> open_share(const Fluid<D>& fluid) {
-  double sums[4] = {};  // S, |S|
-  for (const std::string& name : fluid.boundary().interface_patches()) {
-    const mesh::Patch& patch = *fluid.mesh().find_patch(name);
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec<D>& area = fluid.state().placement->area[f];
-      for (int c = 0; c < D; ++c) sums[c] += area[c];
-      sums[3] += area.norm();
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, fluid.mesh().comm);
-  return {Vec3(sums[0], sums[1], sums[2]).norm() / sums[3], sums[3]};
-}
-
-/// Inflow through faces of given velocity except the interface's [m^3/s]; this rank's part.
-template <int D>
-double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
-  const Boundary<D>& boundary = fluid.boundary();
-  Vectors<D> w(boundary.rows().pressure.size(), Vec<D>::Zero());  // stays so at the interface
-  boundary.velocity_at(t, at.boundary_centre, w);
-  double inflow = 0;
-  for (const Index b : boundary.rows().of_velocity) inflow -= w[b].dot(at.area[fluid.mesh().n_interior + b]);
-  return inflow;
-}
-
-}  // namespace
 
 template <int D>
 void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme) {

@@ -29,6 +29,11 @@ std::vector<double> datum(const coupling::Exchange& in, const char* name) {
   return given == in.end() ? std::vector<double>{} : given->second;
 }
 
+// Ratio of the number of sub-steps to the one last logged, or its inverse, that is logged again.
+constexpr double most_times_as_many = 2;
+
+bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
+
 }  // namespace
 
 /// One value per corner of each face of the patch, at the end of the step. Call after receive_points().
@@ -110,15 +115,6 @@ double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) cons
   }
   return parallel::max(mesh_.comm, largest);
 }
-
-namespace {
-
-// Ratio of the number of sub-steps to the one last logged, or its inverse, that is logged again.
-constexpr double most_times_as_many = 2;
-
-bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
-
-}  // namespace
 
 template <int D>
 FluidParticipant<D>::FluidParticipant(mesh::LoadedMesh loaded, const FluidParameters& parameters,

@@ -59,6 +59,10 @@ std::vector<std::string> interface_patches(const Parameters& parameters) {
   return names;
 }
 
+// Times at which prescribed motions are tested: one per five steps, which costs a fifth of the mesh motion.
+constexpr int most_looks = 40;
+constexpr double looks_per_step = 0.2;
+
 }  // namespace
 
 Mover::Mover(const Parameters& parameters, const app::ParticipantContext& context)
@@ -304,14 +308,6 @@ void Mover::write_output(double time, int) {
                   {"scaled-jacobian", "1", Place::cells, 1, jacobian},
                   {"edge-ratio", "1", Place::cells, 1, edges}});
 }
-
-namespace {
-
-// Times at which prescribed motions are tested: one per five steps, which costs a fifth of the mesh motion.
-constexpr int most_looks = 40;
-constexpr double looks_per_step = 0.2;
-
-}  // namespace
 
 void Mover::tell_choice() const {
   if (parallel::comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason_);

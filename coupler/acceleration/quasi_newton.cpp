@@ -31,6 +31,43 @@ void add_to(std::vector<double>& y, const Eigen::VectorXd& c, Column column) {
     }
 }
 
+/// Rotates rows `row` and `row` + 1 of R and the corresponding columns of Q.
+struct Rotation {
+  int row;
+  double c, s;
+};
+
+/// Eliminates R_{i+1,column}; Q must be rotated accordingly.
+void rotate(Eigen::MatrixXd& r, int i, int column, std::vector<Rotation>& turns) {
+  const double a = r(i, column), b = r(i + 1, column);
+  if (b == 0) return;
+  const double length = std::hypot(a, b), c = a / length, s = b / length;
+  for (int j = 0; j < r.cols(); ++j) {
+    const double up = r(i, j), down = r(i + 1, j);
+    r(i, j) = c * up + s * down;
+    r(i + 1, j) = -s * up + c * down;
+  }
+  r(i + 1, column) = 0;
+  turns.push_back({i, c, s});
+}
+
+void turn(std::vector<std::vector<double>>& q, const std::vector<Rotation>& turns, std::size_t first,
+          std::size_t count) {
+  for (const Rotation& t : turns) {
+    double *up = q[std::size_t(t.row)].data() + first, *down = q[std::size_t(t.row) + 1].data() + first;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double u = up[k], d = down[k];
+      up[k] = t.c * u + t.s * d;
+      down[k] = -t.s * u + t.c * d;
+    }
+  }
+}
+
+/// v -= t q.
+void take_away(double t, const double* q, double* v, std::size_t count) {
+  for (std::size_t k = 0; k < count; ++k) v[k] -= t * q[k];
+}
+
 }  // namespace
 
 QuasiNewton::QuasiNewton(const AccelerationParameters& parameters, MPI_Comm comm)
@@ -151,47 +188,6 @@ void QuasiNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
   step_of_.assign(steps.begin(), steps.end());
   step_ = file.read_scalar("iqn.step");
 }
-
-namespace {
-
-/// Rotates rows `row` and `row` + 1 of R and the corresponding columns of Q.
-struct Rotation {
-  int row;
-  double c, s;
-};
-
-/// Eliminates R_{i+1,column}; Q must be rotated accordingly.
-void rotate(Eigen::MatrixXd& r, int i, int column, std::vector<Rotation>& turns) {
-  const double a = r(i, column), b = r(i + 1, column);
-  if (b == 0) return;
-  const double length = std::hypot(a, b), c = a / length, s = b / length;
-  for (int j = 0; j < r.cols(); ++j) {
-    const double up = r(i, j), down = r(i + 1, j);
-    r(i, j) = c * up + s * down;
-    r(i + 1, j) = -s * up + c * down;
-  }
-  r(i + 1, column) = 0;
-  turns.push_back({i, c, s});
-}
-
-void turn(std::vector<std::vector<double>>& q, const std::vector<Rotation>& turns, std::size_t first,
-          std::size_t count) {
-  for (const Rotation& t : turns) {
-    double *up = q[std::size_t(t.row)].data() + first, *down = q[std::size_t(t.row) + 1].data() + first;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double u = up[k], d = down[k];
-      up[k] = t.c * u + t.s * d;
-      down[k] = -t.s * u + t.c * d;
-    }
-  }
-}
-
-/// v -= t q.
-void take_away(double t, const double* q, double* v, std::size_t count) {
-  for (std::size_t k = 0; k < count; ++k) v[k] -= t * q[k];
-}
-
-}  // namespace
 
 void GrowingQr::push_front(std::vector<double> v) {
   const int m = columns();

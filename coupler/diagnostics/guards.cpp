@@ -30,10 +30,6 @@ const char* cure_of(coupling::Scheme scheme) {
              : "";
 }
 
-}  // namespace
-
-namespace {
-
 // |1 - omega (1 + r)| = factor for the heaviest mode
 std::string too_much_added_mass(double factor, int passes, double omega) {
   const double r = (factor + 1) / omega - 1;

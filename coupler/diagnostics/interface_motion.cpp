@@ -52,14 +52,6 @@ class InterfaceOscillation final : public CouplingDiagnostic {
   std::string stop_;
 };
 
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> interface_oscillation(const CouplingView& view) {
-  return std::make_shared<InterfaceOscillation>(view);
-}
-
-namespace {
-
 /// Compares the work given and taken at the interface (see WorkGuard).
 class InterfaceWork final : public CouplingDiagnostic {
  public:
@@ -103,6 +95,10 @@ class InterfaceWork final : public CouplingDiagnostic {
 };
 
 }  // namespace
+
+std::shared_ptr<CouplingDiagnostic> interface_oscillation(const CouplingView& view) {
+  return std::make_shared<InterfaceOscillation>(view);
+}
 
 std::shared_ptr<CouplingDiagnostic> interface_work(const CouplingView& view) {
   return view.record.mechanics().knows_work() ? std::make_shared<InterfaceWork>(view) : nullptr;

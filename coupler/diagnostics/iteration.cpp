@@ -42,14 +42,6 @@ class IterationGrowth final : public CouplingDiagnostic {
   std::vector<double> scales_;  // of the data, as they first were in the step
 };
 
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {
-  return view.pass.schedule().iterates ? std::make_shared<IterationGrowth>(view) : nullptr;
-}
-
-namespace {
-
 // Relative residual above which a step does not solve the coupled problem.
 constexpr double useless_residual = 0.5;
 
@@ -77,14 +69,6 @@ class UnconvergedStep final : public CouplingDiagnostic {
  private:
   const CouplingView& view_;
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> unconverged_step(const CouplingView& view) {
-  return view.pass.schedule().iterates ? std::make_shared<UnconvergedStep>(view) : nullptr;
-}
-
-namespace {
 
 // Contraction above which the residual only shows that the error is large.
 constexpr double slowest = 0.99;
@@ -128,14 +112,6 @@ class CouplingError final : public CouplingDiagnostic {
   std::vector<Residual> residuals_, before_;  // of the last two passes of the step under way
   std::vector<time::StepErrors> errors_;      // of each datum
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> coupling_error(const CouplingView& view) {
-  return view.pass.schedule().iterates ? std::make_shared<CouplingError>(view) : nullptr;
-}
-
-namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -202,6 +178,18 @@ class AddedMass final : public CouplingDiagnostic {
 };
 
 }  // namespace
+
+std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {
+  return view.pass.schedule().iterates ? std::make_shared<IterationGrowth>(view) : nullptr;
+}
+
+std::shared_ptr<CouplingDiagnostic> unconverged_step(const CouplingView& view) {
+  return view.pass.schedule().iterates ? std::make_shared<UnconvergedStep>(view) : nullptr;
+}
+
+std::shared_ptr<CouplingDiagnostic> coupling_error(const CouplingView& view) {
+  return view.pass.schedule().iterates ? std::make_shared<CouplingError>(view) : nullptr;
+}
 
 std::shared_ptr<CouplingDiagnostic> added_mass(const CouplingView& view) {
   return view.parameters.scheme == coupling::Scheme::explicit_ ? std::make_shared<AddedMass>(view) : nullptr;

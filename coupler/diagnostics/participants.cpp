@@ -141,14 +141,6 @@ class DataOfParticipants final : public CouplingDiagnostic {
   std::vector<Motion> motions_;
 };
 
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> data_of_participants(const CouplingView& view) {
-  return std::make_shared<DataOfParticipants>(view);
-}
-
-namespace {
-
 // No mesh follows a wall that far; millimeters instead of meters give a factor of a thousand.
 constexpr double farthest = 30;
 
@@ -188,14 +180,6 @@ class DisplacementScale final : public CouplingDiagnostic {
   const CouplingView& view_;
   std::vector<double> extents_;  // by side [m]; 0 if it gives no displacement or has no extent
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> displacement_scale(const CouplingView& view) {
-  return std::make_shared<DisplacementScale>(view);
-}
-
-namespace {
 
 constexpr int patience = 10;  // steps
 
@@ -255,14 +239,6 @@ class StructureAtRest final : public CouplingDiagnostic {
   std::vector<int> steps_;  // of each in a row, under load and without motion
 };
 
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view) {
-  return std::make_shared<StructureAtRest>(view);
-}
-
-namespace {
-
 /// Forces at faces that no participant receives, relative to received ones: RMS over faces and steps.
 class LostLoad final : public CouplingDiagnostic {
  public:
@@ -316,6 +292,18 @@ class LostLoad final : public CouplingDiagnostic {
 };
 
 }  // namespace
+
+std::shared_ptr<CouplingDiagnostic> data_of_participants(const CouplingView& view) {
+  return std::make_shared<DataOfParticipants>(view);
+}
+
+std::shared_ptr<CouplingDiagnostic> displacement_scale(const CouplingView& view) {
+  return std::make_shared<DisplacementScale>(view);
+}
+
+std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view) {
+  return std::make_shared<StructureAtRest>(view);
+}
 
 std::shared_ptr<CouplingDiagnostic> lost_load(const CouplingView& view) {
   auto made = std::make_shared<LostLoad>(view);

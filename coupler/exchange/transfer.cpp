@@ -39,80 +39,6 @@ void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>&
   }
 }
 
-}  // namespace
-
-std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
-                                      std::vector<Transfer::Entry> entries) {
-  entries = to_owners(comm, std::move(entries),
-                      [&](const Transfer::Entry& e) { return coupling::owner_of(targets, e.target); });
-  const auto rank = std::size_t(parallel::comm_rank(comm));
-  sort_rows(targets[rank], targets[rank + 1], entries);
-  add_up(entries);
-  return entries;
-}
-
-Transfer::Transfer(MPI_Comm comm, const coupling::Starts& targets, const coupling::Starts& sources,
-                   std::vector<Entry> entries)
-    : comm_(comm), alone_(parallel::comm_size(comm) == 1) {
-  const auto rank = std::size_t(parallel::comm_rank(comm));
-  entries = by_owner(comm, targets, std::move(entries));
-  n_sources_ = std::size_t(sources[rank + 1] - sources[rank]);
-  std::vector<GlobalIndex> foreign;
-  for (const Entry& e : entries)
-    if (coupling::owner_of(sources, e.source) != int(rank)) foreign.push_back(e.source);
-  std::ranges::sort(foreign);
-  foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
-  const std::size_t n_targets = std::size_t(targets[rank + 1] - targets[rank]);
-  first_.assign(n_targets + 1, 0);
-  column_.reserve(entries.size()), weight_.reserve(entries.size());
-  for (const Entry& e : entries) {
-    ++first_[std::size_t(e.target - targets[rank]) + 1];
-    const bool mine = e.source >= sources[rank] && e.source < sources[rank + 1];
-    column_.push_back(mine ? Index(e.source - sources[rank])
-                           : Index(n_sources_ + std::size_t(std::ranges::lower_bound(foreign, e.source) -
-                                                            foreign.begin())));
-    weight_.push_back(e.weight);
-  }
-  for (std::size_t t = 0; t < n_targets; ++t) first_[t + 1] += first_[t];
-  same_ = alone_ && n_sources_ == n_targets && column_.size() == n_targets;
-  for (std::size_t t = 0; same_ && t < n_targets; ++t)
-    same_ = first_[t + 1] == t + 1 && std::size_t(column_[t]) == t && weight_[t] == 1;
-  if (alone_) return;
-  // Positions on other ranks are ascending, so they are grouped by rank.
-  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(parallel::comm_size(comm)));
-  for (const GlobalIndex s : foreign) wanted[std::size_t(coupling::owner_of(sources, s))].push_back(s);
-  for (const auto& list : wanted) take_.push_back(int(list.size()));
-  for (const auto& list : parallel::all_to_all(comm, wanted)) {
-    auto& mine = give_.emplace_back();
-    for (const GlobalIndex s : list) mine.push_back(std::size_t(s - sources[rank]));
-  }
-}
-
-std::vector<double> Transfer::fetch(std::span<const double> values, int components) const {
-  const auto n = std::size_t(components);
-  std::vector<double> all(values.begin(), values.end()), out;
-  std::vector<int> out_counts, out_first, in_counts, in_first;
-  for (const auto& list : give_) {
-    out_first.push_back(int(out.size()));
-    for (const std::size_t s : list)
-      out.insert(out.end(), values.begin() + std::ptrdiff_t(s * n),
-                 values.begin() + std::ptrdiff_t((s + 1) * n));
-    out_counts.push_back(int(out.size()) - out_first.back());
-  }
-  int total = 0;
-  for (const int count : take_) {
-    in_first.push_back(total);
-    in_counts.push_back(count * components);
-    total += in_counts.back();
-  }
-  all.resize(n_sources_ * n + std::size_t(total));
-  MPI_Alltoallv(out.data(), out_counts.data(), out_first.data(), MPI_DOUBLE, all.data() + n_sources_ * n,
-                in_counts.data(), in_first.data(), MPI_DOUBLE, comm_);
-  return all;
-}
-
-namespace {
-
 /// Product for N components, known at compile time, or 0.
 template <std::size_t N>
 void multiply(const std::vector<std::size_t>& first, const std::vector<Index>& column,
@@ -122,26 +48,6 @@ void multiply(const std::vector<std::size_t>& first, const std::vector<Index>& c
     for (std::size_t e = first[t]; e < first[t + 1]; ++e)
       for (std::size_t c = 0; c < n; ++c) to[t * n + c] += weight[e] * from[std::size_t(column[e]) * n + c];
 }
-
-}  // namespace
-
-std::vector<double> Transfer::apply(std::span<const double> values, int components) const {
-  if (same_) return {values.begin(), values.end()};
-  const std::vector<double> fetched = alone_ ? std::vector<double>{} : fetch(values, components);
-  const double* from = alone_ ? values.data() : fetched.data();
-  const auto n = std::size_t(components);
-  std::vector<double> result((first_.size() - 1) * n, 0.);
-  const auto product = n == 1 ? multiply<1> : n == 2 ? multiply<2> : n == 3 ? multiply<3> : multiply<0>;
-  product(first_, column_, weight_, from, n, result.data());
-  return result;
-}
-
-std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries) {
-  for (auto& e : entries) std::swap(e.target, e.source);
-  return entries;
-}
-
-namespace {
 
 using Entry = Transfer::Entry;
 using Entries = std::vector<Entry>;
@@ -239,6 +145,92 @@ bool all_there(const coupling::Starts& starts, int rank, const Entries& entries)
 }
 
 }  // namespace
+
+std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
+                                      std::vector<Transfer::Entry> entries) {
+  entries = to_owners(comm, std::move(entries),
+                      [&](const Transfer::Entry& e) { return coupling::owner_of(targets, e.target); });
+  const auto rank = std::size_t(parallel::comm_rank(comm));
+  sort_rows(targets[rank], targets[rank + 1], entries);
+  add_up(entries);
+  return entries;
+}
+
+Transfer::Transfer(MPI_Comm comm, const coupling::Starts& targets, const coupling::Starts& sources,
+                   std::vector<Entry> entries)
+    : comm_(comm), alone_(parallel::comm_size(comm) == 1) {
+  const auto rank = std::size_t(parallel::comm_rank(comm));
+  entries = by_owner(comm, targets, std::move(entries));
+  n_sources_ = std::size_t(sources[rank + 1] - sources[rank]);
+  std::vector<GlobalIndex> foreign;
+  for (const Entry& e : entries)
+    if (coupling::owner_of(sources, e.source) != int(rank)) foreign.push_back(e.source);
+  std::ranges::sort(foreign);
+  foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
+  const std::size_t n_targets = std::size_t(targets[rank + 1] - targets[rank]);
+  first_.assign(n_targets + 1, 0);
+  column_.reserve(entries.size()), weight_.reserve(entries.size());
+  for (const Entry& e : entries) {
+    ++first_[std::size_t(e.target - targets[rank]) + 1];
+    const bool mine = e.source >= sources[rank] && e.source < sources[rank + 1];
+    column_.push_back(mine ? Index(e.source - sources[rank])
+                           : Index(n_sources_ + std::size_t(std::ranges::lower_bound(foreign, e.source) -
+                                                            foreign.begin())));
+    weight_.push_back(e.weight);
+  }
+  for (std::size_t t = 0; t < n_targets; ++t) first_[t + 1] += first_[t];
+  same_ = alone_ && n_sources_ == n_targets && column_.size() == n_targets;
+  for (std::size_t t = 0; same_ && t < n_targets; ++t)
+    same_ = first_[t + 1] == t + 1 && std::size_t(column_[t]) == t && weight_[t] == 1;
+  if (alone_) return;
+  // Positions on other ranks are ascending, so they are grouped by rank.
+  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(parallel::comm_size(comm)));
+  for (const GlobalIndex s : foreign) wanted[std::size_t(coupling::owner_of(sources, s))].push_back(s);
+  for (const auto& list : wanted) take_.push_back(int(list.size()));
+  for (const auto& list : parallel::all_to_all(comm, wanted)) {
+    auto& mine = give_.emplace_back();
+    for (const GlobalIndex s : list) mine.push_back(std::size_t(s - sources[rank]));
+  }
+}
+
+std::vector<double> Transfer::fetch(std::span<const double> values, int components) const {
+  const auto n = std::size_t(components);
+  std::vector<double> all(values.begin(), values.end()), out;
+  std::vector<int> out_counts, out_first, in_counts, in_first;
+  for (const auto& list : give_) {
+    out_first.push_back(int(out.size()));
+    for (const std::size_t s : list)
+      out.insert(out.end(), values.begin() + std::ptrdiff_t(s * n),
+                 values.begin() + std::ptrdiff_t((s + 1) * n));
+    out_counts.push_back(int(out.size()) - out_first.back());
+  }
+  int total = 0;
+  for (const int count : take_) {
+    in_first.push_back(total);
+    in_counts.push_back(count * components);
+    total += in_counts.back();
+  }
+  all.resize(n_sources_ * n + std::size_t(total));
+  MPI_Alltoallv(out.data(), out_counts.data(), out_first.data(), MPI_DOUBLE, all.data() + n_sources_ * n,
+                in_counts.data(), in_first.data(), MPI_DOUBLE, comm_);
+  return all;
+}
+
+std::vector<double> Transfer::apply(std::span<const double> values, int components) const {
+  if (same_) return {values.begin(), values.end()};
+  const std::vector<double> fetched = alone_ ? std::vector<double>{} : fetch(values, components);
+  const double* from = alone_ ? values.data() : fetched.data();
+  const auto n = std::size_t(components);
+  std::vector<double> result((first_.size() - 1) * n, 0.);
+  const auto product = n == 1 ? multiply<1> : n == 2 ? multiply<2> : n == 3 ? multiply<3> : multiply<0>;
+  product(first_, column_, weight_, from, n, result.data());
+  return result;
+}
+
+std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries) {
+  for (auto& e : entries) std::swap(e.target, e.source);
+  return entries;
+}
 
 Entries product(MPI_Comm comm, const coupling::Starts& between, const Entries& second, const Entries& first) {
   const int rank = parallel::comm_rank(comm);

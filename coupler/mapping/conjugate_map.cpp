@@ -24,33 +24,6 @@ std::vector<Transfer::Entry> without_corners(MPI_Comm comm, const Surroundings& 
   return entries;
 }
 
-}  // namespace
-
-ConjugateMap::ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface,
-                           MappingParameters::Type type)
-    : comm_(comm), structure_(&structure), surface_(&surface) {
-  const Surroundings theirs(comm, structure.interface), ours(comm, surface.interface);
-  const bool corners = theirs.has_corners() && ours.has_corners();
-  if (type == MappingParameters::Type::projection) require_corners(corners);
-  to_faces_ = vertices_to_faces(comm, structure.interface);
-  to_surface_faces_ = vertices_to_faces(comm, surface.interface);
-  across_ = corners ? faces_to_vertices(comm, structure.interface, surface.interface, type)
-                    : without_corners(comm, theirs, ours.vertices(), structure.interface.dim);
-}
-
-ConjugateMap::Entries ConjugateMap::between(Place structure, Place surface) const {
-  Entries before;
-  if (surface == Place::faces) before = product(comm_, surface_->vertices, to_surface_faces_, across_);
-  const Entries& map = surface == Place::faces ? before : across_;
-  return structure == Place::vertices ? product(comm_, structure_->faces, map, to_faces_) : map;
-}
-
-ConjugateMap::Entries ConjugateMap::motion(Place from, Place to) const { return between(from, to); }
-
-ConjugateMap::Entries ConjugateMap::load(Place from, Place to) const { return transposed(between(to, from)); }
-
-namespace {
-
 using Vec2 = Eigen::Vector2d;
 using Polygon = std::vector<Vec2>;
 
@@ -228,6 +201,29 @@ void fill(const Flat& f, const coupling::Interface& other, const std::vector<Ind
 }
 
 }  // namespace
+
+ConjugateMap::ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface,
+                           MappingParameters::Type type)
+    : comm_(comm), structure_(&structure), surface_(&surface) {
+  const Surroundings theirs(comm, structure.interface), ours(comm, surface.interface);
+  const bool corners = theirs.has_corners() && ours.has_corners();
+  if (type == MappingParameters::Type::projection) require_corners(corners);
+  to_faces_ = vertices_to_faces(comm, structure.interface);
+  to_surface_faces_ = vertices_to_faces(comm, surface.interface);
+  across_ = corners ? faces_to_vertices(comm, structure.interface, surface.interface, type)
+                    : without_corners(comm, theirs, ours.vertices(), structure.interface.dim);
+}
+
+ConjugateMap::Entries ConjugateMap::between(Place structure, Place surface) const {
+  Entries before;
+  if (surface == Place::faces) before = product(comm_, surface_->vertices, to_surface_faces_, across_);
+  const Entries& map = surface == Place::faces ? before : across_;
+  return structure == Place::vertices ? product(comm_, structure_->faces, map, to_faces_) : map;
+}
+
+ConjugateMap::Entries ConjugateMap::motion(Place from, Place to) const { return between(from, to); }
+
+ConjugateMap::Entries ConjugateMap::load(Place from, Place to) const { return transposed(between(to, from)); }
 
 std::vector<Cover> covers(const coupling::Interface& surface, Index face, const coupling::Interface& other,
                           const std::vector<Index>& candidates) {

@@ -22,6 +22,47 @@ bool alike(const coupling::Interface& s, Index a, Index b, double least_cosine) 
          least_cosine * s.face_areas[a].norm() * s.face_areas[b].norm();
 }
 
+/// Corner weights of a polygon: integrals of corner functions, linear over the triangles about the mean
+/// corner, over its area.
+std::vector<double> fan_weights(const std::vector<Vec3>& at) {
+  const std::size_t n = at.size();
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : at) centre += p / double(n);
+  std::vector<double> weights(n, 0.);
+  double total = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t j = (i + 1) % n;
+    const double area = 0.5 * (at[i] - centre).cross(at[j] - centre).norm();
+    weights[i] += area / 3, weights[j] += area / 3;
+    total += area;
+  }
+  if (!(total > 0)) return std::vector<double>(n, 1 / double(n));
+  for (double& w : weights) w = w / total + 1 / (3 * double(n));
+  return weights;
+}
+
+/// Smallest change of the weights that moves the mean of the corners to `centre`, in the directions that
+/// these span. `Most`: number of corners at compile time, to avoid allocation, or Eigen::Dynamic.
+template <int Most>
+void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& weights) {
+  const auto n = Eigen::Index(at.size());
+  Vec3 off = centre, mean = Vec3::Zero();
+  double size = 0;
+  for (std::size_t i = 0; i < at.size(); ++i) off -= weights[i] * at[i], mean += at[i] / double(n);
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, Most> spread(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    spread.col(i) = at[std::size_t(i)] - mean;
+    size = std::max(size, spread.col(i).norm());
+  }
+  if (!(off.norm() > 1e-14 * size)) return;
+  Eigen::CompleteOrthogonalDecomposition<decltype(spread)> factors;
+  factors.setThreshold(1e-9);
+  factors.compute(spread);
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1> change = factors.solve(off);
+  if (change.cwiseAbs().maxCoeff() > 1) return;  // not a center of this face
+  for (Eigen::Index i = 0; i < n; ++i) weights[std::size_t(i)] += change[i];
+}
+
 }  // namespace
 
 Slopes::Slopes(const coupling::Interface& surface, MappingParameters::Type type)
@@ -119,51 +160,6 @@ const Slope& Slopes::at(Index face) {
   if (!spans) slope = least_squares(face, touching(face, 1, not_against), spans);
   return slope;
 }
-
-namespace {
-
-/// Corner weights of a polygon: integrals of corner functions, linear over the triangles about the mean
-/// corner, over its area.
-std::vector<double> fan_weights(const std::vector<Vec3>& at) {
-  const std::size_t n = at.size();
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : at) centre += p / double(n);
-  std::vector<double> weights(n, 0.);
-  double total = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t j = (i + 1) % n;
-    const double area = 0.5 * (at[i] - centre).cross(at[j] - centre).norm();
-    weights[i] += area / 3, weights[j] += area / 3;
-    total += area;
-  }
-  if (!(total > 0)) return std::vector<double>(n, 1 / double(n));
-  for (double& w : weights) w = w / total + 1 / (3 * double(n));
-  return weights;
-}
-
-/// Smallest change of the weights that moves the mean of the corners to `centre`, in the directions that
-/// these span. `Most`: number of corners at compile time, to avoid allocation, or Eigen::Dynamic.
-template <int Most>
-void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& weights) {
-  const auto n = Eigen::Index(at.size());
-  Vec3 off = centre, mean = Vec3::Zero();
-  double size = 0;
-  for (std::size_t i = 0; i < at.size(); ++i) off -= weights[i] * at[i], mean += at[i] / double(n);
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, Most> spread(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    spread.col(i) = at[std::size_t(i)] - mean;
-    size = std::max(size, spread.col(i).norm());
-  }
-  if (!(off.norm() > 1e-14 * size)) return;
-  Eigen::CompleteOrthogonalDecomposition<decltype(spread)> factors;
-  factors.setThreshold(1e-9);
-  factors.compute(spread);
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1> change = factors.solve(off);
-  if (change.cwiseAbs().maxCoeff() > 1) return;  // not a center of this face
-  for (Eigen::Index i = 0; i < n; ++i) weights[std::size_t(i)] += change[i];
-}
-
-}  // namespace
 
 std::span<const Index> corners(const coupling::Interface& surface, Index face) {
   return {surface.face_vertices.data() + surface.face_offset[face],

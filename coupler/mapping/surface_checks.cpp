@@ -94,6 +94,87 @@ std::string not_nested(const std::string& from, const std::string& to) {
       from, to);
 }
 
+void add_up(MPI_Comm comm, double* values, int n) {
+  MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, comm);
+}
+
+void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts& facts) {
+  std::vector<Vec3> points;
+  for (const Side* side : sides)
+    points.insert(points.end(), side->interface.vertices.begin(), side->interface.vertices.end());
+  const PointBox box(comm, points);
+  facts.low = box.low, facts.high = box.high;
+}
+
+std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
+
+/// A participant that takes a motion but gives no load (a heater on a flap) may cover part of a surface.
+bool gives_load(const Side& side) {
+  return std::ranges::any_of(side.interface.gives, [](const coupling::Interface::Datum& d) {
+    return d.unit == "N" || d.unit == "Pa";
+  });
+}
+
+/// Participants that exchange load and motion, directly or indirectly, as positions in `sides`: givers and
+/// takers of the motion, without the mesh mover.
+struct Group {
+  std::set<std::size_t> givers, takers;
+};
+std::vector<Group> groups_of(const std::vector<Side>& sides, const Links& links, const Schedule& schedule) {
+  std::vector<Group> groups;
+  for (const auto& link : links.all()) {
+    if (link.datum.name != "displacement" || sides[link.taker].name == schedule.mover) continue;
+    if (!gives_load(sides[link.taker])) continue;
+    Group joined{{link.giver}, {link.taker}};
+    std::erase_if(groups, [&](const Group& g) {
+      const bool shares = g.givers.contains(link.giver) || g.takers.contains(link.taker);
+      if (shares) joined.givers.insert(g.givers.begin(), g.givers.end());
+      if (shares) joined.takers.insert(g.takers.begin(), g.takers.end());
+      return shares;
+    });
+    groups.push_back(std::move(joined));
+  }
+  return groups;
+}
+
+std::vector<const Side*> chosen(const std::vector<Side>& sides, const std::set<std::size_t>& which) {
+  std::vector<const Side*> list;
+  for (const std::size_t i : which) list.push_back(&sides[i]);
+  return list;
+}
+
+/// Lumped participants (points with areas) have no size to compare.
+bool has_size(const std::vector<const Side*>& sides) {
+  return std::ranges::all_of(sides,
+                             [](const Side* s) { return s->faces.back() >= 2 && s->vertices.back() >= 2; });
+}
+
+void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& schedule) {
+  if (!schedule.mover) return;
+  const auto mover = std::ranges::find(sides, *schedule.mover, &Side::name),
+             fluid = std::ranges::find(sides, *schedule.moved, &Side::name);
+  if (mover == sides.end() || fluid == sides.end()) return;
+  const SurfaceFacts moves = surface_facts(comm, {&*mover}), moved = surface_facts(comm, {&*fluid});
+  const double apart = moves.area - moved.area, limit = 1e-6 * moved.area;
+  if (apart < -limit)
+    throw Error(
+        "'{}' moves {} of the {} faces of the interface of '{}' ({:.4g} of {:.4g} m^2): the rest of the "
+        "mesh wall would not follow the structure. Set `type: interface` in the mesh mover for every patch "
+        "that has it in the fluid.",
+        mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
+  if (apart > limit)
+    diagnostics::finding(
+        parallel::comm_rank(comm),
+        {.id = "surfaces-apart",
+         .number = apart,
+         .limit = limit,
+         .sentence = fmt::format(
+             "mesh motion: '{}' moves {} faces by the structure, but the interface of '{}' has {}: "
+             "patches that are not an interface of the fluid follow the nearest vertex",
+             mover->name, moves.faces, fluid->name, moved.faces),
+         .advice = "set another type for them"});
+}
+
 }  // namespace
 
 PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
@@ -203,91 +284,6 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
       for (const std::string& note : report.notes) log::warn("{}", note);
   }
 }
-
-namespace {
-
-void add_up(MPI_Comm comm, double* values, int n) {
-  MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, comm);
-}
-
-void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts& facts) {
-  std::vector<Vec3> points;
-  for (const Side* side : sides)
-    points.insert(points.end(), side->interface.vertices.begin(), side->interface.vertices.end());
-  const PointBox box(comm, points);
-  facts.low = box.low, facts.high = box.high;
-}
-
-std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
-
-/// A participant that takes a motion but gives no load (a heater on a flap) may cover part of a surface.
-bool gives_load(const Side& side) {
-  return std::ranges::any_of(side.interface.gives, [](const coupling::Interface::Datum& d) {
-    return d.unit == "N" || d.unit == "Pa";
-  });
-}
-
-/// Participants that exchange load and motion, directly or indirectly, as positions in `sides`: givers and
-/// takers of the motion, without the mesh mover.
-struct Group {
-  std::set<std::size_t> givers, takers;
-};
-std::vector<Group> groups_of(const std::vector<Side>& sides, const Links& links, const Schedule& schedule) {
-  std::vector<Group> groups;
-  for (const auto& link : links.all()) {
-    if (link.datum.name != "displacement" || sides[link.taker].name == schedule.mover) continue;
-    if (!gives_load(sides[link.taker])) continue;
-    Group joined{{link.giver}, {link.taker}};
-    std::erase_if(groups, [&](const Group& g) {
-      const bool shares = g.givers.contains(link.giver) || g.takers.contains(link.taker);
-      if (shares) joined.givers.insert(g.givers.begin(), g.givers.end());
-      if (shares) joined.takers.insert(g.takers.begin(), g.takers.end());
-      return shares;
-    });
-    groups.push_back(std::move(joined));
-  }
-  return groups;
-}
-
-std::vector<const Side*> chosen(const std::vector<Side>& sides, const std::set<std::size_t>& which) {
-  std::vector<const Side*> list;
-  for (const std::size_t i : which) list.push_back(&sides[i]);
-  return list;
-}
-
-/// Lumped participants (points with areas) have no size to compare.
-bool has_size(const std::vector<const Side*>& sides) {
-  return std::ranges::all_of(sides,
-                             [](const Side* s) { return s->faces.back() >= 2 && s->vertices.back() >= 2; });
-}
-
-void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& schedule) {
-  if (!schedule.mover) return;
-  const auto mover = std::ranges::find(sides, *schedule.mover, &Side::name),
-             fluid = std::ranges::find(sides, *schedule.moved, &Side::name);
-  if (mover == sides.end() || fluid == sides.end()) return;
-  const SurfaceFacts moves = surface_facts(comm, {&*mover}), moved = surface_facts(comm, {&*fluid});
-  const double apart = moves.area - moved.area, limit = 1e-6 * moved.area;
-  if (apart < -limit)
-    throw Error(
-        "'{}' moves {} of the {} faces of the interface of '{}' ({:.4g} of {:.4g} m^2): the rest of the "
-        "mesh wall would not follow the structure. Set `type: interface` in the mesh mover for every patch "
-        "that has it in the fluid.",
-        mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
-  if (apart > limit)
-    diagnostics::finding(
-        parallel::comm_rank(comm),
-        {.id = "surfaces-apart",
-         .number = apart,
-         .limit = limit,
-         .sentence = fmt::format(
-             "mesh motion: '{}' moves {} faces by the structure, but the interface of '{}' has {}: "
-             "patches that are not an interface of the fluid follow the nearest vertex",
-             mover->name, moves.faces, fluid->name, moved.faces),
-         .advice = "set another type for them"});
-}
-
-}  // namespace
 
 SurfaceFacts surface_facts(MPI_Comm comm, const std::vector<const Side*>& sides) {
   SurfaceFacts facts;

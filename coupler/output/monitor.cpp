@@ -25,6 +25,13 @@ std::vector<std::string> participant_columns(const std::vector<std::string>& nam
   return columns;
 }
 
+/// CPU seconds of this process without waiting for replies.
+double own_seconds(const std::vector<Partner>& partners) {
+  double seconds = coupling::processor_seconds();
+  for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
+  return seconds;
+}
+
 }  // namespace
 
 Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names, double end_time,
@@ -67,17 +74,6 @@ void Monitor::row(const char* file, double time, const std::vector<std::string>&
   row.insert(row.end(), values.begin(), values.end());
   table->second.row(row);
 }
-
-namespace {
-
-/// CPU seconds of this process without waiting for replies.
-double own_seconds(const std::vector<Partner>& partners) {
-  double seconds = coupling::processor_seconds();
-  for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
-  return seconds;
-}
-
-}  // namespace
 
 void Monitor::start(const std::vector<Partner>& partners) {
   step_start_ = Clock::now();

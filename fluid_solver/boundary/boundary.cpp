@@ -135,31 +135,6 @@ InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry
   return shape;
 }
 
-}  // namespace
-
-fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
-                             int dimension) {
-  std::vector<std::string> columns{"u", "v", "w"};
-  columns.resize(std::size_t(dimension));
-  return fv::GridTable::read(file, columns, outside);
-}
-
-std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
-                                                 const std::filesystem::path& case_folder) {
-  std::vector<app::ProblemOfKey> all;
-  for (const auto& [patch, boundary] : parameters.boundaries) {
-    if (!boundary.table) continue;
-    try {
-      (void)velocity_table(case_folder / boundary.table->file, boundary.table->outside, parameters.dimension);
-    } catch (const Error& error) {
-      all.push_back({"boundaries." + patch + ".table.file", error.what()});
-    }
-  }
-  return all;
-}
-
-namespace {
-
 fv::Expression turning_of(const BoundaryParameters& b, int dim, const std::string& where) {
   fv::check_axis(b.rotation->axis, dim, where + ".rotation.axis");
   fv::Expression speed(b.rotation->speed, where + ".rotation.speed");
@@ -184,7 +159,44 @@ double ramp_factor(const BoundaryParameters& b, double t) {
   return t <= 0 ? 0 : 0.5 * (1 - std::cos(std::numbers::pi * t / *b.ramp));
 }
 
+void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
+  std::vector<std::string> patches, missing;
+  for (const mesh::Patch& patch : mesh.patches) {
+    patches.push_back(patch.name);
+    if (!parameters.boundaries.contains(patch.name)) missing.push_back(patch.name);
+  }
+  for (const auto& [name, unused] : parameters.boundaries)
+    if (!mesh.find_patch(name))
+      throw Error("boundaries.{}: the mesh '{}' has no patch '{}'. {}", name, parameters.mesh, name,
+                  base::did_you_mean(name, patches, "patches"));
+  if (!missing.empty())
+    throw Error(
+        "boundaries: the mesh '{}' has patches without a boundary condition: {}. Give each of them a type ({}).",
+        parameters.mesh, base::join(missing), condition_names(" or "));
+}
+
 }  // namespace
+
+fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
+                             int dimension) {
+  std::vector<std::string> columns{"u", "v", "w"};
+  columns.resize(std::size_t(dimension));
+  return fv::GridTable::read(file, columns, outside);
+}
+
+std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
+                                                 const std::filesystem::path& case_folder) {
+  std::vector<app::ProblemOfKey> all;
+  for (const auto& [patch, boundary] : parameters.boundaries) {
+    if (!boundary.table) continue;
+    try {
+      (void)velocity_table(case_folder / boundary.table->file, boundary.table->outside, parameters.dimension);
+    } catch (const Error& error) {
+      all.push_back({"boundaries." + patch + ".table.file", error.what()});
+    }
+  }
+  return all;
+}
 
 template <int D>
 GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
@@ -261,26 +273,6 @@ void GivenVelocity<D>::average(double t, std::span<const Vec3> centres, Vec<D>* 
 
 template class GivenVelocity<2>;
 template class GivenVelocity<3>;
-
-namespace {
-
-void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
-  std::vector<std::string> patches, missing;
-  for (const mesh::Patch& patch : mesh.patches) {
-    patches.push_back(patch.name);
-    if (!parameters.boundaries.contains(patch.name)) missing.push_back(patch.name);
-  }
-  for (const auto& [name, unused] : parameters.boundaries)
-    if (!mesh.find_patch(name))
-      throw Error("boundaries.{}: the mesh '{}' has no patch '{}'. {}", name, parameters.mesh, name,
-                  base::did_you_mean(name, patches, "patches"));
-  if (!missing.empty())
-    throw Error(
-        "boundaries: the mesh '{}' has patches without a boundary condition: {}. Give each of them a type ({}).",
-        parameters.mesh, base::join(missing), condition_names(" or "));
-}
-
-}  // namespace
 
 template <int D>
 Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,

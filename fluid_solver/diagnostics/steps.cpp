@@ -132,30 +132,6 @@ class PlaceOnTheMap final : public diagnostics::Diagnostic {
   FluidView<D> view_;
 };
 
-}  // namespace
-
-template <int D>
-diagnostics::Made given_step(const FluidView<D>& view) {
-  return view.parameters().time_step ? std::make_shared<GivenStep<D>>(view) : nullptr;
-}
-template <int D>
-diagnostics::Made friction_of_the_guess(const FluidView<D>& view) {
-  return std::make_shared<FrictionOfTheGuess<D>>(view);
-}
-template <int D>
-diagnostics::Made place_on_the_map(const FluidView<D>& view) {
-  return std::make_shared<PlaceOnTheMap<D>>(view);
-}
-
-template diagnostics::Made given_step(const FluidView<2>&);
-template diagnostics::Made given_step(const FluidView<3>&);
-template diagnostics::Made friction_of_the_guess(const FluidView<2>&);
-template diagnostics::Made friction_of_the_guess(const FluidView<3>&);
-template diagnostics::Made place_on_the_map(const FluidView<2>&);
-template diagnostics::Made place_on_the_map(const FluidView<3>&);
-
-namespace {
-
 // Minimum share of the volume through an opening in one direction (more than an oscillation), and of the
 // volume through the largest opening (more than a trickle).
 constexpr double always = 0.9, much = 0.1;
@@ -271,18 +247,6 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
          high_ = std::numeric_limits<double>::lowest();  // pressures [Pa]
 };
 
-}  // namespace
-
-template <int D>
-diagnostics::Made flow_through_openings(const FluidView<D>& view) {
-  return std::make_shared<FlowThroughOpenings<D>>(view);
-}
-
-template diagnostics::Made flow_through_openings(const FluidView<2>&);
-template diagnostics::Made flow_through_openings(const FluidView<3>&);
-
-namespace {
-
 constexpr int rung_steps = 10;  // consecutive steps before it is reported
 
 template <int D>
@@ -310,6 +274,34 @@ class RingingPressure final : public diagnostics::Diagnostic {
 };
 
 }  // namespace
+
+template <int D>
+diagnostics::Made given_step(const FluidView<D>& view) {
+  return view.parameters().time_step ? std::make_shared<GivenStep<D>>(view) : nullptr;
+}
+template <int D>
+diagnostics::Made friction_of_the_guess(const FluidView<D>& view) {
+  return std::make_shared<FrictionOfTheGuess<D>>(view);
+}
+template <int D>
+diagnostics::Made place_on_the_map(const FluidView<D>& view) {
+  return std::make_shared<PlaceOnTheMap<D>>(view);
+}
+
+template diagnostics::Made given_step(const FluidView<2>&);
+template diagnostics::Made given_step(const FluidView<3>&);
+template diagnostics::Made friction_of_the_guess(const FluidView<2>&);
+template diagnostics::Made friction_of_the_guess(const FluidView<3>&);
+template diagnostics::Made place_on_the_map(const FluidView<2>&);
+template diagnostics::Made place_on_the_map(const FluidView<3>&);
+
+template <int D>
+diagnostics::Made flow_through_openings(const FluidView<D>& view) {
+  return std::make_shared<FlowThroughOpenings<D>>(view);
+}
+
+template diagnostics::Made flow_through_openings(const FluidView<2>&);
+template diagnostics::Made flow_through_openings(const FluidView<3>&);
 
 template <int D>
 double ringing_share(const mesh::Mesh& mesh, const State<D>& s) {

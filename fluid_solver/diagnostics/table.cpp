@@ -78,6 +78,26 @@ double eddy_viscosity(const FluidView<D>& view) {
   return parallel::max(view.mesh.comm, largest) * view.parameters().density / view.parameters().viscosity;
 }
 
+/// Largest sum |w . S| / sum |w| |S| of the moving walls of a fixed mesh; NaN without motion. Collective.
+template <int D>
+double through_moving_walls(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  double worst = std::numeric_limits<double>::quiet_NaN();
+  for (const mesh::Patch& patch : mesh.patches) {
+    if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
+    double through = 0, size = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec<D>& w = s.w[f - mesh.n_interior];
+      through += std::abs(w.dot(s.placement->area[f]));
+      size += w.norm() * s.placement->area[f].norm();
+    }
+    through = parallel::sum(mesh.comm, through), size = parallel::sum(mesh.comm, size);
+    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
+  }
+  return worst;
+}
+
 }  // namespace
 
 // Free layers are as thin as at their origin. A mesh that resolves the wall layers (y+ up to 1) also resolves
@@ -160,32 +180,6 @@ std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view) {
   return diagnostics::finding_of(
       unresolved_walls(largest_yplus(view), view.sizes.largest_peclet(view.fluid.state())));
 }
-
-// Walls that move on a mesh at rest, and gaps that block the flow.
-
-namespace {
-
-/// Largest sum |w . S| / sum |w| |S| of the moving walls of a fixed mesh; NaN without motion. Collective.
-template <int D>
-double through_moving_walls(const Fluid<D>& fluid) {
-  const mesh::Mesh& mesh = fluid.mesh();
-  const State<D>& s = fluid.state();
-  double worst = std::numeric_limits<double>::quiet_NaN();
-  for (const mesh::Patch& patch : mesh.patches) {
-    if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
-    double through = 0, size = 0;
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec<D>& w = s.w[f - mesh.n_interior];
-      through += std::abs(w.dot(s.placement->area[f]));
-      size += w.norm() * s.placement->area[f].norm();
-    }
-    through = parallel::sum(mesh.comm, through), size = parallel::sum(mesh.comm, size);
-    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
-  }
-  return worst;
-}
-
-}  // namespace
 
 template <int D>
 std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {

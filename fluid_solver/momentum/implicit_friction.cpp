@@ -72,6 +72,9 @@ COUPLET_PROCESSOR_CLONES void turn_search(double gamma, std::span<const double> 
 
 constexpr int most_iterations = 2000;
 
+constexpr int most_passes = 60, passes_alone = 4;
+constexpr linalg::Acceleration pass_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
+
 }  // namespace
 
 ViscousRows::ViscousRows(const mesh::Mesh& mesh) : diagonal(mesh.cells.n_owned()) {
@@ -203,13 +206,6 @@ int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b
 
 template class ViscousSolver<2>;
 template class ViscousSolver<3>;
-
-namespace {
-
-constexpr int most_passes = 60, passes_alone = 4;
-constexpr linalg::Acceleration pass_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
-
-}  // namespace
 
 /// Residuals accumulate over the steps, so the tolerance is much smaller than the change of u per step.
 template <int D>

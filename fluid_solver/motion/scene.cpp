@@ -169,6 +169,21 @@ class GivenForce final : public Force<D> {
   Vec3 origin_ = Vec3::Zero();         // where the potential is 0
 };
 
+// Largest relative motion of the sides of periodic patches, over their distance.
+constexpr double most_torn = 1e-8;
+
+/// Rejects inverted cells, whatever moved the points.
+template <int D>
+void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
+  bool inverted = false;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) inverted |= !(at.volume[c] > 0);
+  if (!parallel::any(mesh.comm, inverted)) return;
+  const LargestCell worst = find_largest(mesh, at, [&](Index c) { return -at.volume[c]; });
+  throw SolveFailure(
+      "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
+      time, worst.place.x(), worst.place.y(), worst.place.z(), -worst.value);
+}
+
 }  // namespace
 
 /// Compressed fluid has a density that follows p itself; and blocked cells, cut ones and convective outlets see the pressure as it is.
@@ -277,25 +292,6 @@ template void set_face_means<2>(const mesh::Mesh&, const mesh::Patch&, std::span
 template void set_face_means<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<3>&);
 template decltype(set_body_start<2>) set_body_start<2>;
 template decltype(set_body_start<3>) set_body_start<3>;
-
-namespace {
-
-// Largest relative motion of the sides of periodic patches, over their distance.
-constexpr double most_torn = 1e-8;
-
-/// Rejects inverted cells, whatever moved the points.
-template <int D>
-void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
-  bool inverted = false;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) inverted |= !(at.volume[c] > 0);
-  if (!parallel::any(mesh.comm, inverted)) return;
-  const LargestCell worst = find_largest(mesh, at, [&](Index c) { return -at.volume[c]; });
-  throw SolveFailure(
-      "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
-      time, worst.place.x(), worst.place.y(), worst.place.z(), -worst.value);
-}
-
-}  // namespace
 
 template <int D>
 MeshPath<D>::MeshPath(const mesh::Mesh& mesh, const mesh::Geometry& geometry,

@@ -71,17 +71,6 @@ Sound of_gas(double density, double pressure, std::optional<double> gamma) {
           fmt::format("a gas of {:.3g} kg/m^3 at {:.4g} kPa", density, 1e-3 * pressure)};
 }
 
-}  // namespace
-
-std::vector<std::string> substances() {
-  std::vector<std::string> names;
-  for (const Gas& gas : gases) names.push_back(gas.name);
-  for (const Liquid& liquid : liquids) names.push_back(liquid.name);
-  return names;
-}
-
-namespace {
-
 /// Requires exactly one of speed, substance and pressure.
 void check_source_of_sound(config::Section& s, const CompressibilityParameters& p) {
   s.check(
@@ -106,6 +95,13 @@ void check_source_of_sound(config::Section& s, const CompressibilityParameters& 
 }
 
 }  // namespace
+
+std::vector<std::string> substances() {
+  std::vector<std::string> names;
+  for (const Gas& gas : gases) names.push_back(gas.name);
+  for (const Liquid& liquid : liquids) names.push_back(liquid.name);
+  return names;
+}
 
 void declare(config::Section& s, CompressibilityParameters& p) {
   s.choice("scheme", p.scheme,

@@ -227,28 +227,6 @@ class UpstreamVolume final : public Term<D> {
   double faces_ = 0, answer_ = 0;            // sum G, y.G [m]
 };
 
-}  // namespace
-
-template <int D>
-std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
-                                          const Prediction<D>& prediction) {
-  return std::make_unique<Compression<D>>(scene, step, prediction);
-}
-
-template std::unique_ptr<Term<2>> make_compression<2>(const Scene<2>&, const Step<2>&, const Prediction<2>&);
-template std::unique_ptr<Term<3>> make_compression<3>(const Scene<3>&, const Step<3>&, const Prediction<3>&);
-
-template <int D>
-std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
-                                              const Prediction<D>& prediction) {
-  return std::make_unique<UpstreamVolume<D>>(scene, step, prediction);
-}
-
-template decltype(make_upstream_volume<2>) make_upstream_volume<2>;
-template decltype(make_upstream_volume<3>) make_upstream_volume<3>;
-
-namespace {
-
 // Default averaging time, in travel times of sound across the mesh.
 constexpr double mean_times = 10;
 
@@ -408,6 +386,24 @@ class AbsorbingBoundaries final : public Term<D> {
 };
 
 }  // namespace
+
+template <int D>
+std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
+                                          const Prediction<D>& prediction) {
+  return std::make_unique<Compression<D>>(scene, step, prediction);
+}
+
+template std::unique_ptr<Term<2>> make_compression<2>(const Scene<2>&, const Step<2>&, const Prediction<2>&);
+template std::unique_ptr<Term<3>> make_compression<3>(const Scene<3>&, const Step<3>&, const Prediction<3>&);
+
+template <int D>
+std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
+                                              const Prediction<D>& prediction) {
+  return std::make_unique<UpstreamVolume<D>>(scene, step, prediction);
+}
+
+template decltype(make_upstream_volume<2>) make_upstream_volume<2>;
+template decltype(make_upstream_volume<3>) make_upstream_volume<3>;
 
 template <int D>
 std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const Step<D>& step,

@@ -32,6 +32,52 @@ COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, cons
   }
 }
 
+// Largest decay of the flux memory per step for which AB2 is stable without overshoot.
+constexpr double largest_decay = 2.0 / 3;
+
+/// Weights for add_memory().
+struct MemoryWeights {
+  double dt, now, before;  // a step, and delta at its middle from that of two levels
+};
+
+/// sum nu g + |phi - moved|/2 of each cell. `moved`: flux of the mesh, not read at rest.
+template <bool Moving>
+[[gnu::always_inline]] inline void sum_evening(const mesh::Mesh& mesh, double nu, const double* conductance,
+                                               const double* phi, const double* moved, double* sums) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double rate = nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
+    sums[owner[f]] += rate;
+    sums[neighbour[f]] += rate;
+  }
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    sums[owner[f]] += nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
+}
+COUPLET_PROCESSOR_CLONES void evening_pass(const mesh::Mesh& mesh, double nu, const double* conductance,
+                                           const double* phi, const double* moved, double* sums) {
+  if (moved)
+    sum_evening<true>(mesh, nu, conductance, phi, moved, sums);
+  else
+    sum_evening<false>(mesh, nu, conductance, phi, nullptr, sums);
+}
+
+/// phi += delta - min(decay, largest) delta_mid. Appends faces with a larger decay to `far`, which has room
+/// for all, and returns their number.
+COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryWeights& w, const double* rate,
+                                           const double* memory, const double* old, double* phi, Index* far) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  const double half = 0.5 * w.dt;
+  Index n = 0;
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double decay = half * (rate[owner[f]] + rate[neighbour[f]]);
+    far[n] = f;
+    n += decay > largest_decay;
+    const double mid = old ? w.now * memory[f] + w.before * old[f] : memory[f];
+    phi[f] += memory[f] - std::min(decay, largest_decay) * mid;
+  }
+  return n;
+}
+
 }  // namespace
 
 template <int D>
@@ -202,58 +248,6 @@ void Predictor<D>::add_back_old_pressure() {
 
 template class Predictor<2>;
 template class Predictor<3>;
-
-// Predicted face fluxes and their memory of the mean velocities.
-
-namespace {
-
-// Largest decay of the flux memory per step for which AB2 is stable without overshoot.
-constexpr double largest_decay = 2.0 / 3;
-
-/// Weights for add_memory().
-struct MemoryWeights {
-  double dt, now, before;  // a step, and delta at its middle from that of two levels
-};
-
-/// sum nu g + |phi - moved|/2 of each cell. `moved`: flux of the mesh, not read at rest.
-template <bool Moving>
-[[gnu::always_inline]] inline void sum_evening(const mesh::Mesh& mesh, double nu, const double* conductance,
-                                               const double* phi, const double* moved, double* sums) {
-  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
-  for (Index f = 0; f < mesh.n_interior; ++f) {
-    const double rate = nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
-    sums[owner[f]] += rate;
-    sums[neighbour[f]] += rate;
-  }
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    sums[owner[f]] += nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
-}
-COUPLET_PROCESSOR_CLONES void evening_pass(const mesh::Mesh& mesh, double nu, const double* conductance,
-                                           const double* phi, const double* moved, double* sums) {
-  if (moved)
-    sum_evening<true>(mesh, nu, conductance, phi, moved, sums);
-  else
-    sum_evening<false>(mesh, nu, conductance, phi, nullptr, sums);
-}
-
-/// phi += delta - min(decay, largest) delta_mid. Appends faces with a larger decay to `far`, which has room
-/// for all, and returns their number.
-COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryWeights& w, const double* rate,
-                                           const double* memory, const double* old, double* phi, Index* far) {
-  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
-  const double half = 0.5 * w.dt;
-  Index n = 0;
-  for (Index f = 0; f < mesh.n_interior; ++f) {
-    const double decay = half * (rate[owner[f]] + rate[neighbour[f]]);
-    far[n] = f;
-    n += decay > largest_decay;
-    const double mid = old ? w.now * memory[f] + w.before * old[f] : memory[f];
-    phi[f] += memory[f] - std::min(decay, largest_decay) * mid;
-  }
-  return n;
-}
-
-}  // namespace
 
 /// phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k, delta' on interior faces only.
 template <int D>

@@ -90,6 +90,14 @@ double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) 
   return rk ? 1.73 : 0.25;
 }
 
+constexpr int most_sub_steps = 100000;
+// Relative cost of a sub-step with the implicit viscous term.
+constexpr double implicit_cost = 1.5;
+
+double parts(double dt, double limit) {
+  return std::isfinite(limit) ? std::max(1.0, std::ceil(dt / limit - 1e-9)) : 1.0;
+}
+
 }  // namespace
 
 double implicit_convective_limit(double q) { return implicit_table()(q); }
@@ -258,18 +266,6 @@ std::string in_words(const StepLimiter& by) {
 
 template class StepSize<2>;
 template class StepSize<3>;
-
-namespace {
-
-constexpr int most_sub_steps = 100000;
-// Relative cost of a sub-step with the implicit viscous term.
-constexpr double implicit_cost = 1.5;
-
-double parts(double dt, double limit) {
-  return std::isfinite(limit) ? std::max(1.0, std::ceil(dt / limit - 1e-9)) : 1.0;
-}
-
-}  // namespace
 
 template <int D>
 SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
