@@ -14,7 +14,6 @@
 #include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/output/output.hpp"
 #include "fluid_solver/step/fluid.hpp"
-#include "fluid_solver/step/renewal.hpp"
 
 namespace couplet::fluid {
 

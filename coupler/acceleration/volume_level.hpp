@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
-#include "coupler/exchange/face_corners.hpp"
+#include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/links.hpp"
 #include "coupler/parameters/schedule.hpp"
 

@@ -6,11 +6,20 @@
 
 #include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
-#include "coupler/diagnostics/guards.hpp"
 #include "coupler/diagnostics/view.hpp"
 
 namespace couplet::coupler {
 namespace {
+
+// |1 - omega (1 + r)| = factor for the heaviest mode
+std::string too_much_added_mass(double factor, int passes, double omega) {
+  const double r = (factor + 1) / omega - 1;
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {}. With constant relaxation "
+      "{:g} this implies an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} "
+      "converge, at any step. Use `acceleration.type: aitken` or `iqn-ils`, which adapt it.",
+      factor, passes == 1 ? "a pass" : fmt::format("{} passes", passes), omega, r, 2 / (1 + r));
+}
 
 /// Stops a diverging iteration within a few passes (see IterationGuard).
 class IterationGrowth final : public CouplingDiagnostic {
@@ -178,6 +187,40 @@ class AddedMass final : public CouplingDiagnostic {
 };
 
 }  // namespace
+
+void IterationGuard::pass(double residual, double omega, bool constant) {
+  ++passes_;
+  if (passes_ == 1) first_ = residual;
+  if (passes_ > 1 && residual > last_) {
+    if (growing_ == 0) at_turn_ = last_;
+    ++growing_;
+  } else {
+    growing_ = 0;
+  }
+  last_ = residual;
+  if (!grows()) return;
+  const bool ran_away = residual > too_far * first_;
+  if (growing_ < patience && !ran_away) return;
+  if (constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
+  throw SolveFailure(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
+      "one. If smaller steps do not help, `acceleration.type: iqn-ils` handles several modes at once; the "
+      "participants' own tolerances may be too loose for it.",
+      factor(), growing_, omega);
+}
+
+bool IterationGuard::grows() const { return growing_ > 0 && last_ > 2 * at_turn_; }
+
+double IterationGuard::factor() const { return std::pow(last_ / at_turn_, 1. / growing_); }
+
+std::optional<std::string> IterationGuard::suspects(double relaxation) const {
+  if (!grows()) return {};
+  if (relaxation > 0) return too_much_added_mass(factor(), growing_, relaxation);
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass before a participant failed. Use a lower "
+      "`acceleration.initial-relaxation`, or `predictor.order: 0` for the first steps.",
+      factor());
+}
 
 std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {
   return view.pass.schedule().iterates ? std::make_shared<IterationGrowth>(view) : nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/mapping/conjugate_map.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 #include <Eigen/Geometry>
 
@@ -10,8 +10,6 @@
 
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/face_weights.hpp"
-#include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {

@@ -7,9 +7,7 @@
 #include <cmath>
 
 #include "common/base/point_tree.hpp"
-#include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 

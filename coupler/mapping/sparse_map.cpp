@@ -10,7 +10,6 @@
 #include "common/base/error.hpp"
 #include "common/base/point_tree.hpp"
 #include "coupler/mapping/face_weights.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 

@@ -9,8 +9,8 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/face_corners.hpp"
-#include "coupler/mapping/surroundings.hpp"
+#include "coupler/exchange/transfer.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 namespace couplet::coupler {
 namespace {

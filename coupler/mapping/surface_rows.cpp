@@ -9,7 +9,6 @@
 #include "coupler/exchange/side.hpp"
 #include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/mapping/surroundings.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 #include <algorithm>
 #include <limits>

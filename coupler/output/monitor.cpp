@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/output/monitor.hpp"
+#include "coupler/output/record.hpp"
 
 #include <fmt/format.h>
 

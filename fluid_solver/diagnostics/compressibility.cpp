@@ -8,9 +8,8 @@
 
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
-#include "fluid_solver/parameters/effects.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
 

@@ -9,7 +9,6 @@
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 
 namespace couplet::fluid {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/output/derived.hpp"
 

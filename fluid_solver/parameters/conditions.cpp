@@ -200,7 +200,7 @@ const auto& condition_table() {
              .velocity = GivenBy::nobody,
              .joined = true}},
       // Wall that moves with the structure. If its mass is known, the pressure equation includes its response
-      // as a Robin condition: pressure/yielding_walls.
+      // as a Robin condition: pressure/wall_terms.
       Entry{BoundaryType::interface,
             {.name = "interface",
              .about = "interface: wall that moves with the structure",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/parameters/effects.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/projection.hpp"
+#include "fluid_solver/pressure/pressure.hpp"
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 
 #include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/motion/scene.hpp"
-#include "fluid_solver/pressure/projection.hpp"
+#include "fluid_solver/pressure/pressure.hpp"
 #include "fluid_solver/step/stages.hpp"
 
 namespace couplet::fluid {

@@ -3,7 +3,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
-#include "coupler/output/interface_output.hpp"
+#include "coupler/output/record.hpp"
 #include "tests/coupling/support/local_channel.hpp"
 #include "tests/support/test.hpp"
 

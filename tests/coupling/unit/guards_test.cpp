@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each guard fires on what it is for and keeps still beside it.
-#include "coupler/diagnostics/guards.hpp"
+#include "coupler/diagnostics/view.hpp"
 
 #include "common/base/numbers.hpp"
 #include "coupler/mapping/surface_checks.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/mapping/links.hpp"
 #include "coupler/exchange/partners.hpp"
-#include "coupler/mapping/mapping.hpp"
 #include "coupler/mapping/surface_checks.hpp"
 #include "coupler/output/record.hpp"
 #include "tests/support/test.hpp"

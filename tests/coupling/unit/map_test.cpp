@@ -2,7 +2,6 @@
 #include <Eigen/Geometry>
 #include <ctime>
 
-#include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
 #include "tests/coupling/support/surfaces.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Maps over the coupler's ranks: the same values as on one, however the two sides are cut.
 #include "coupler/exchange/side.hpp"
-#include "coupler/mapping/mapping.hpp"
-#include "coupler/mapping/surroundings.hpp"
-#include "coupler/output/watch_integrals.hpp"
+#include "coupler/mapping/links.hpp"
+#include "coupler/mapping/sparse_map.hpp"
+#include "coupler/output/record.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 #include "tests/support/world.hpp"
 

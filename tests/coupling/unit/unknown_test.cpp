@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/acceleration/unknown.hpp"
-#include "coupler/output/monitor.hpp"
+#include "coupler/output/record.hpp"
 #include "coupler/parameters/schedule.hpp"
 #include "tests/support/test.hpp"
 

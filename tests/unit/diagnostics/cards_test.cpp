@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/effects.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
-#include "fluid_solver/parameters/effects.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 #include "plate_modal/model/parameters.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"
 #include "solid_solver/effects.hpp"

@@ -3,7 +3,7 @@
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::testing::findings_test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weak compressibility: pulses, standing waves, openings, closed cylinders and the way back to the incompressible fluid.
 #include "fluid_case.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/output/output.hpp"
 #include "fluid_solver/state/state.hpp"
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/pressure/pressure.hpp"
 
 namespace couplet::fluid {
+
 namespace {
 
 // Share of the boundary fluxes that a moving wall may leave as a discretization error, and the speed of a
@@ -71,6 +73,69 @@ class ClosedDomain final : public Term<D> {
   using Term<D>::step_;
 };
 
+/// Interface as a Robin condition: w follows from the structure's expected response, relative to the velocity
+/// w^k that it gave for p_b^k. A wall with mass m per area and Z = m/dt has
+///   Z (w - w^k) = p_b - p_b^k,   p_b = p_P + s - D (w - w^n),  D = rho S/(g dt),  normal to the wall
+/// so its flux is that of w^k plus S (p_P + q)/(Z + D), q = s - D (w^k - w^n) - p_b^k [badia2008]. At
+/// convergence p_b = p_b^k and w = w^k for any Z.
+template <int D>
+class YieldingWalls final : public Term<D> {
+ public:
+  using Term<D>::Term;
+
+  void prepare(const State<D>&) override {
+    const std::vector<double>& mass = scene_.boundary.wall_mass();
+    resistance_.assign(std::size_t(mesh_.boundary.n_owned()), 0.);
+    for (std::size_t b = 0; step_.yields && b < mass.size(); ++b)
+      if (mass[b] > 0)
+        resistance_[b] =
+            (mass[b] + scene_.fluid.rho * area(b).norm() / step_.to->conductance[face(b)]) / step_.dt;
+  }
+  bool sets_level() const override { return step_.yields; }
+  double version() const override { return step_.yields; }
+  void add_to_diagonal(Diagonal& diagonal) override {
+    std::vector<double>& admittance = diagonal.faces;
+    admittance.resize(std::size_t(mesh_.boundary.n_owned()), 0.);
+    const double factor = scene_.fluid.rho / step_.dt;
+    for (std::size_t b = 0; b < resistance_.size(); ++b)
+      if (resistance_[b] > 0) admittance[b] += factor * area(b).norm() / resistance_[b];
+  }
+  void foresee(const State<D>& from, Projected<D>& out) override {
+    const Placement<D>& at = *step_.to;
+    const double dt = step_.dt;
+    for (std::size_t b = 0; b < resistance_.size(); ++b) {
+      if (resistance_[b] == 0) continue;
+      const Index f = face(b), p = mesh_.owner[f];
+      const double g = at.conductance[f];
+      double source = -scene_.fluid.rho * (out.w[b] - from.w[b]).dot(at.area[f]) / (g * dt) -
+                      scene_.boundary.wall_load()[b];
+      if (!prediction_.force.empty()) source += scene_.fluid.rho * prediction_.force[p].dot(at.area[f]) / g;
+      if (!out.gradient.empty()) source -= out.gradient[p].dot(at.oblique_of(f)) / g;
+      add_answer(b, source, out);
+    }
+  }
+  void after(Projected<D>& out) override {
+    for (std::size_t b = 0; b < resistance_.size(); ++b)
+      if (resistance_[b] > 0) add_answer(b, out.p[mesh_.owner[face(b)]], out);
+  }
+
+ private:
+  using Term<D>::scene_;
+  using Term<D>::mesh_;
+  using Term<D>::step_;
+  using Term<D>::prediction_;
+  Index face(std::size_t b) const { return mesh_.n_interior + static_cast<Index>(b); }
+  auto area(std::size_t b) const { return step_.to->area[face(b)]; }
+  /// Adds the response of a wall to a pressure on it to its velocity and flux.
+  void add_answer(std::size_t b, double pressure, Projected<D>& out) {
+    const double flux = area(b).norm() * pressure / resistance_[b];
+    out.w[b] += flux / area(b).squaredNorm() * area(b);
+    out.phi[face(b)] = out.w[b].dot(area(b));
+  }
+
+  std::vector<double> resistance_;  // Z + D per boundary face, 0 without a wall that yields [kg/(m^2 s)]
+};
+
 }  // namespace
 
 template <int D>
@@ -81,5 +146,14 @@ std::unique_ptr<Term<D>> make_closed_domain(const Scene<D>& scene, const Step<D>
 
 template decltype(make_closed_domain<2>) make_closed_domain<2>;
 template decltype(make_closed_domain<3>) make_closed_domain<3>;
+
+template <int D>
+std::unique_ptr<Term<D>> make_yielding_walls(const Scene<D>& scene, const Step<D>& step,
+                                             const Prediction<D>& prediction) {
+  return std::make_unique<YieldingWalls<D>>(scene, step, prediction);
+}
+
+template decltype(make_yielding_walls<2>) make_yielding_walls<2>;
+template decltype(make_yielding_walls<3>) make_yielding_walls<3>;
 
 }  // namespace couplet::fluid
