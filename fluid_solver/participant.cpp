@@ -272,7 +272,6 @@ double FluidParticipant<D>::answer() const {
 
 template <int D>
 void FluidParticipant<D>::prepare(const Vectors<D>& w) {
-  w_ = w;
   renewed_now_ = false;
   if (!predicted_) {
     fluid_->prepare(points_, w);
@@ -301,10 +300,6 @@ coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
 
 template <int D>
 coupling::StepReport FluidParticipant<D>::accept_step() {
-  if (step_.scheme == coupling::Scheme::semi_implicit) {
-    renewals_ = renewal_.count();
-    unseen_share_ = fluid_->unseen_share(w_);
-  }
   const auto effort = [&] {
     return fluid_->statistics().pressure_iterations + fluid_->statistics().viscous_iterations;
   };

@@ -52,8 +52,8 @@ class FluidParticipant final : public coupling::Participant {
 
   /// View for diagnostics. It refers to this participant, which must outlive it. Call after initialise().
   FluidView<D> view() const {
-    return {mesh_,         *fluid_,           fluid_->sizes(), step_,     bool(interface_),
-            bool(motion_), bool(prescribed_), displacement_,   renewals_, unseen_share_};
+    return {mesh_,         *fluid_,           fluid_->sizes(), step_, bool(interface_),
+            bool(motion_), bool(prescribed_), displacement_};
   }
   const Fluid<D>& fluid() const { return *fluid_; }
 
@@ -91,12 +91,9 @@ class FluidParticipant final : public coupling::Participant {
   bool predicted_ = false;    // prediction of the current step is done
   bool renewed_now_ = false;  // the last pass repeated the prediction
   Renewal<D> renewal_;
-  Vectors<D> w_;  // wall velocity of the last pass
   // Largest displacement of an interface on a mesh at rest, over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
-  int renewals_ = 0;         // repeated predictions in the last step
-  double unseen_share_ = 0;  // error of the friction at the end of the last step, over the load
-  int told_sub_steps_ = 1;   // number of sub-steps last logged
+  int told_sub_steps_ = 1;  // number of sub-steps last logged
 };
 
 /// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its

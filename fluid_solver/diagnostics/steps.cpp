@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diagnostics of the steps: their sizes, the guess of a semi-implicit step, flow through openings, ringing pressures.
+// Diagnostics of the steps: their sizes, flow through openings, ringing pressures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,8 +18,6 @@ namespace {
 // Factor above the limit at which a prescribed step certainly fails.
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
-// Error of the friction at the end of a step, relative to the load; a growing oscillation reaches it.
-constexpr double near_limit = 0.1;
 
 /// A prescribed step is used even if it is too long for the implicit term on cells with few faces (StepSize).
 /// Checked at each new longest step; with a varying limit (moving cells, eddy viscosity) also every few steps
@@ -60,36 +58,6 @@ class GivenStep final : public diagnostics::Diagnostic {
   FluidView<D> view_;
   double longest_ = 0;    // of the given sub-steps seen [s]
   int steps_unseen_ = 0;  // whose limit may have changed
-};
-
-/// Number of friction renewals in the semi-implicit scheme, and the resulting error.
-template <int D>
-class FrictionOfTheGuess final : public diagnostics::Diagnostic {
- public:
-  explicit FrictionOfTheGuess(const FluidView<D>& view) : view_(view) {}
-  void observe(diagnostics::Report&) override {
-    if (view_.step.scheme != coupling::Scheme::semi_implicit) return;
-    ++steps_;
-    renewed_ += view_.renewals > 0 ? 1 : 0;
-    largest_ = std::max(largest_, view_.unseen_share);
-  }
-  void conclude(diagnostics::Report& report) override {
-    if (steps_ == 0) return;
-    const bool is_far = largest_ < near_limit || view_.step.scheme != coupling::Scheme::semi_implicit;
-    report.sentences.push_back(fmt::format(
-        "Semi-implicit coupling: the friction was recomputed with an updated wall velocity in {} of {} "
-        "steps; max error at the end of a step {:.2g} of the load{}",
-        renewed_, steps_, largest_,
-        is_far ? "."
-               : ": the scheme is near its limit, where friction drags more than a third of the moving mass; "
-                 "use 'scheme: implicit' or a smaller step."));
-  }
-  void visit(io::Archive& archive) override { archive.common("steps", steps_, renewed_, largest_); }
-
- private:
-  FluidView<D> view_;
-  long steps_ = 0, renewed_ = 0;
-  double largest_ = 0;
 };
 
 /// Courant rate sum |phi - dV/dt|/(2 V) of a cell, or with `friction` sum nu g/(2 D V), which is nu/h^2 of a
@@ -279,18 +247,12 @@ diagnostics::Made given_step(const FluidView<D>& view) {
   return view.parameters().time_step ? std::make_shared<GivenStep<D>>(view) : nullptr;
 }
 template <int D>
-diagnostics::Made friction_of_the_guess(const FluidView<D>& view) {
-  return std::make_shared<FrictionOfTheGuess<D>>(view);
-}
-template <int D>
 diagnostics::Made place_on_the_map(const FluidView<D>& view) {
   return std::make_shared<PlaceOnTheMap<D>>(view);
 }
 
 template diagnostics::Made given_step(const FluidView<2>&);
 template diagnostics::Made given_step(const FluidView<3>&);
-template diagnostics::Made friction_of_the_guess(const FluidView<2>&);
-template diagnostics::Made friction_of_the_guess(const FluidView<3>&);
 template diagnostics::Made place_on_the_map(const FluidView<2>&);
 template diagnostics::Made place_on_the_map(const FluidView<3>&);
 

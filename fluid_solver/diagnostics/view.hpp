@@ -92,8 +92,6 @@ struct FluidView {
   bool is_prescribed;          ///< the case moves the mesh
   /// Largest displacement of an interface on a mesh at rest, relative to the cell height there.
   const double& wall_displacement;
-  const int& renewals;         ///< repeated predictions in the last step
-  const double& unseen_share;  ///< error of the friction at the end of the last step, over the load
 
   const FluidParameters& parameters() const { return fluid.parameters(); }
   int rank() const { return parallel::comm_rank(mesh.comm); }

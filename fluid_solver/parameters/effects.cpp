@@ -92,15 +92,14 @@ const std::array cards{
               "a flag per cell and face"},
     FluidCard{"gaps that close", "`gaps`",
               [](const S& s) { return when(!s.parameters.gaps.empty(), "gaps"); },
-              "a flag per cell; the distance of the two walls where they are close",
-              "share of the cells that they block, 0.5", true},
+              "a flag per cell; the distance of the two walls where they are close"},
     FluidCard{"walls that move along themselves", "`type: moving-wall`",
               [](const S& s) {
                 for (const auto& [name, b] : s.parameters.boundaries)
                   if (is_moving_wall(b)) return "boundaries." + name;
                 return std::string();
               },
-              "", "on a mesh at rest: flow through them over speed times area, 0.1", true},
+              ""},
     FluidCard{"body force", "`body-force`",
               [](const S& s) { return when(!s.parameters.body_force.empty(), "body-force"); },
               "a force per cell"},
