@@ -109,7 +109,7 @@ std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity,
   return {sums[0], sums[1]};
 }
 
-VolumeLevel::Flow VolumeLevel::flow(const Cavity& c, const std::vector<coupling::Exchange>& known) const {
+CavityFlow VolumeLevel::flow(const Cavity& c, const std::vector<coupling::Exchange>& known) const {
   const coupling::Exchange wall = links_->input(c.side, known);
   const std::vector<double>& place = values_of(wall, "displacement");
   const CavityWall::Flux flux = c.wall.flux(values_of(wall, "velocity"), c.wall.areas(place));
@@ -124,7 +124,7 @@ VolumeLevel::Defect VolumeLevel::defect(const std::vector<coupling::Exchange>& k
   Defect d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const Cavity& c = cavities_[std::size_t(k)];
-    const Flow now = flow(c, known);
+    const CavityFlow now = flow(c, known);
     const double error = c.change + now.swept - c.inflow - dt_ / 2 * (now.begin + now.end);
     d.value[k] = 2 / dt_ * (error - c.allowed);
     d.size[k] = now.size + 2 / dt_ * std::abs(c.change - c.inflow);
@@ -216,7 +216,7 @@ void VolumeLevel::find(std::vector<coupling::Exchange>& known, const std::functi
 
 void VolumeLevel::accept(const std::vector<coupling::Exchange>& given) {
   for (Cavity& c : cavities_) {
-    const Flow now = flow(c, given);
+    const CavityFlow now = flow(c, given);
     c.change += now.swept;
     c.inflow += dt_ / 2 * (now.begin + now.end);
     // The wall was at rest before the first step.

@@ -105,6 +105,11 @@ constexpr double always = 0.9, much = 0.1;
 // Inflow at a total pressure is reported if its dynamic pressure exceeds this share of the pressure's range in the run.
 constexpr double told_head = 1e-3;
 
+struct Opening {
+  const mesh::Patch* patch;
+  bool inlet, has_direction, total;  // total: takes the total pressure of inflow
+};
+
 /// Direction of the flow through inlets and outlets. If fluid always left through an inlet or entered through
 /// an outlet, a sign or name is wrong. Outlets report fluid that enters at total pressure.
 template <int D>
@@ -200,10 +205,6 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
   }
 
  private:
-  struct Opening {
-    const mesh::Patch* patch;
-    bool inlet, has_direction, total;  // total: takes the total pressure of inflow
-  };
   // Per opening on this rank: volume outward and in either direction, volume that entered through the moving
   // opening [m^3], its kinetic energy [J].
   enum { net, gross, inflow, energy, n_sums };

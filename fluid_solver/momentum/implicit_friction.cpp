@@ -156,7 +156,7 @@ template <int D>
 double ViscousSolver<D>::apply(Vectors<D>& x, Vectors<D>& y) const {
   mesh_.cells.update_ghosts(flat<D>(x), D);
   double sum = multiply(*a_, x, y);
-  for (const BoundaryRow& row : boundary_rows_) {
+  for (const ViscousBoundaryRow<D>& row : boundary_rows_) {
     const Vec<D> part = inverse_diagonal_[row.cell] * row.times(x[row.cell]);
     y[row.cell] += part;
     sum += part.dot(x[row.cell]);

@@ -130,6 +130,15 @@ struct ViscousRows {
   Index size() const { return static_cast<Index>(diagonal.size()); }
 };
 
+/// Contribution of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
+template <int D>
+struct ViscousBoundaryRow {
+  Index cell;
+  double both, normal;  // beta g t, beta g (1 - t)
+  Vec<D> n;
+  Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
+};
+
 /// Solves A u = V u + beta sum_f g (u_P - u_f) = b for all components at once. Uses CG on D^(-1/2) A
 /// D^(-1/2), which is Jacobi-preconditioned CG [hestenes1952]. beta = a nu dt [m^2], plus `added` at
 /// interior faces. The system is well conditioned if convection limits the step.
@@ -147,13 +156,6 @@ class ViscousSolver {
   int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
 
  private:
-  /// Contribution of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
-  struct BoundaryRow {
-    Index cell;
-    double both, normal;  // beta g t, beta g (1 - t)
-    Vec<D> n;
-    Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
-  };
   void set_diagonal(std::span<const double> added);
   void set_entries(std::span<const double> added);
   double apply(Vectors<D>& x, Vectors<D>& y) const;
@@ -163,7 +165,7 @@ class ViscousSolver {
   double beta_ = 0;
   bool has_more_ = false;           // than beta_ at interior faces
   std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2) without boundary_rows_
-  std::vector<BoundaryRow> boundary_rows_;
+  std::vector<ViscousBoundaryRow<D>> boundary_rows_;
   std::vector<double> inverse_diagonal_;
   std::vector<double> scale_;      // D^(-1/2), per local cell
   Vectors<D> x_, r_, q_, search_;  // vectors of the scaled system
