@@ -12,7 +12,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "mesh_mover/guard.hpp"
+#include "mesh_mover/measures.hpp"
 
 namespace couplet::mesh_mover {
 namespace {

@@ -74,7 +74,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       mesh_(std::move(loaded.mesh)),
       geometry_(std::move(loaded.geometry)),
       periodic_(mesh_, geometry_),
-      guard_(mesh_, geometry_, parameters),
+      measures_(mesh_, geometry_, parameters),
       curved_(mesh_, geometry_, parameters),
       moving_(mesh_, geometry_, parameters),
       chooses_(parameters.method == Method::automatic && !incremental() && periodic_.empty()),
@@ -194,7 +194,7 @@ std::string Mover::place_and_judge() {
   curved_.put_back(displacement_);
   refuse_torn();
   place();
-  return guard_.refusal(moved_);
+  return measures_.refusal(moved_);
 }
 
 /// Sets displacement_ and moved_.
@@ -244,7 +244,7 @@ coupling::StepReport Mover::accept_step() {
 
 MeshState Mover::state() {
   place();
-  return guard_.measure(moved_);
+  return measures_.measure(moved_);
 }
 
 void Mover::save(io::CheckpointWriter& file) const {
@@ -299,9 +299,9 @@ void Mover::write_output(double time, int) {
   if (!fields_) return;
   place();
   using Place = io::OutputField::Place;
-  const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved_),
-                            jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved_),
-                            edges = guard_.of_cells(MeshState::edge_ratio, moved_);
+  const std::vector<double> volume = measures_.of_cells(MeshState::volume_ratio, moved_),
+                            jacobian = measures_.of_cells(MeshState::scaled_jacobian, moved_),
+                            edges = measures_.of_cells(MeshState::edge_ratio, moved_);
   fields_->write(time, moved_.points,
                  {{"displacement", "m", Place::points, mesh_.dim, displacement_},
                   {"volume-ratio", "1", Place::cells, 1, volume},

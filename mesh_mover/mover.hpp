@@ -13,7 +13,7 @@
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/periodic_points.hpp"
-#include "mesh_mover/guard.hpp"
+#include "mesh_mover/measures.hpp"
 #include "mesh_mover/methods.hpp"
 #include "mesh_mover/parameters.hpp"
 #include "mesh_mover/patches.hpp"
@@ -67,7 +67,7 @@ class Mover final : public coupling::Participant {
   const mesh::Geometry geometry_;
   mesh::PeriodicPoints periodic_;
   std::unique_ptr<mesh::Geometry> base_;  // incremental: geometry of the last step
-  Guard guard_;
+  CellMeasures measures_;
   CurvedSlide curved_;
   MovingPatches moving_;
   std::unique_ptr<MotionMethod> method_;

@@ -34,7 +34,7 @@ void declare_boundary(config::Section& s, Boundary& b) {
       true);
 }
 
-void declare_guard(config::Section& s, GuardParameters& g) {
+void declare_guard(config::Section& s, QualityLimits& g) {
   s.value("smallest-scaled-jacobian", g.smallest_scaled_jacobian)
       .range(-1, 1)
       .doc(

@@ -28,13 +28,14 @@ const char* cure_of(coupling::Scheme scheme) {
 
 using OnDivergence = CouplingParameters::OnDivergence;
 
-/// Detects a growing oscillation of the interface from step to step (see OscillationGuard).
+/// Detects a growing oscillation of the interface from step to step (see StepOscillation).
 class InterfaceOscillation final : public CouplingDiagnostic {
  public:
   explicit InterfaceOscillation(const CouplingView& view)
-      : view_(view), guard_(view.comm, view.parameters.convergence.relative) {}
+      : view_(view), swings_(view.comm, view.parameters.convergence.relative) {}
   void observe(diagnostics::Report& report) override {
-    const auto reason = guard_.accepted(view_.unknown.motion(view_.last.image), view_.dt, view_.scheme.now());
+    const auto reason =
+        swings_.accepted(view_.unknown.motion(view_.last.image), view_.dt, view_.scheme.now());
     if (!reason) return;
     if (stops())
       stop_ = *reason;
@@ -44,20 +45,20 @@ class InterfaceOscillation final : public CouplingDiagnostic {
   }
   std::optional<app::StepFailure> suspects() const override {
     // Halving does not help a step that already oscillates.
-    if (const auto swings = guard_.suspects(view_.scheme.now()); swings && stops())
+    if (const auto swings = swings_.suspects(view_.scheme.now()); swings && stops())
       return app::StepFailure(*swings, false);
     return {};
   }
   std::string stop() const override { return stop_; }
   void visit(io::Archive& archive) override {
-    guard_.visit_numbers(archive);
+    swings_.visit_numbers(archive);
     std::size_t first = 0;
     for (const Unknown::Part& part : view_.unknown.parts()) {
       if (part.datum.name != "displacement") continue;
       const Side& side = view_.pass.sides()[part.giver];
       const std::string name = "motion-" + std::to_string(first);
-      guard_.visit_fields(archive, side.order(view_.comm, part.datum.place), name, first, part.count,
-                          std::size_t(part.components));
+      swings_.visit_fields(archive, side.order(view_.comm, part.datum.place), name, first, part.count,
+                           std::size_t(part.components));
       first += part.count;
     }
   }
@@ -66,11 +67,11 @@ class InterfaceOscillation final : public CouplingDiagnostic {
   bool stops() const { return view_.parameters.on_divergence == OnDivergence::stop; }
 
   const CouplingView& view_;
-  OscillationGuard guard_;
+  StepOscillation swings_;
   std::string stop_;
 };
 
-/// Compares the work given and taken at the interface (see WorkGuard).
+/// Compares the work given and taken at the interface (see WorkBalance).
 class InterfaceWork final : public CouplingDiagnostic {
  public:
   explicit InterfaceWork(const CouplingView& view) : view_(view) {}
@@ -78,11 +79,11 @@ class InterfaceWork final : public CouplingDiagnostic {
     double given = 0, taken = 0;
     if (view_.record.balances().empty()) return;
     for (const SideBalance& side : view_.record.balances()) (side.gives ? given : taken) += side.balance.work;
-    guard_.energy(energy_of_structures());
-    guard_.accepted(given, taken);
+    balance_.energy(energy_of_structures());
+    balance_.accepted(given, taken);
   }
   void conclude(diagnostics::Report& report) override {
-    const WorkGuard::Verdict v = guard_.verdict(
+    const WorkBalance::Result v = balance_.result(
         view_.parameters.mapping.type == MappingParameters::Type::nearest, !view_.pass.schedule().iterates);
     if (v.text.empty()) return;
     if (v.sound)
@@ -91,10 +92,10 @@ class InterfaceWork final : public CouplingDiagnostic {
       report.findings.push_back({.id = "interface-work",
                                  .severity = v.useless ? base::Severity::wrong : base::Severity::warning,
                                  .number = v.part,
-                                 .limit = WorkGuard::sound_part,
+                                 .limit = WorkBalance::sound_part,
                                  .sentence = v.text});
   }
-  void visit(io::Archive& archive) override { archive.common("work", guard_); }
+  void visit(io::Archive& archive) override { archive.common("work", balance_); }
 
  private:
   /// Energy in the accepted state of all participants that take forces [J]; NaN if one does not report it.
@@ -109,31 +110,31 @@ class InterfaceWork final : public CouplingDiagnostic {
   }
 
   const CouplingView& view_;
-  WorkGuard guard_;
+  WorkBalance balance_;
 };
 
 }  // namespace
 
-std::string OscillationGuard::told(double growth, coupling::Scheme scheme) const {
+std::string StepOscillation::told(double growth, coupling::Scheme scheme) const {
   return fmt::format(
       "interface oscillation: with a period of two steps ({:.3g} s) the amplitude grew {:.3g}-fold in {} steps, to {:.2g} of "
       "the largest motion, although every step was solved: unstable.{}",
       2 * dt_, growth, turns_, share(), cure_of(scheme));
 }
 
-double OscillationGuard::pair(std::size_t i) const { return sizes_[i] + sizes_[i + 1]; }
+double StepOscillation::pair(std::size_t i) const { return sizes_[i] + sizes_[i + 1]; }
 
 // Each jump is four amplitudes over the step.
-double OscillationGuard::share() const {
+double StepOscillation::share() const {
   return largest_ > 0 ? 0.125 * pair(sizes_.size() - 2) * dt_ / largest_ : 0;
 }
 
-bool OscillationGuard::counts() const {
+bool StepOscillation::counts() const {
   return share() > std::max(tolerance_, floor) && pair(sizes_.size() - 2) > 1.5 * before_;
 }
 
-std::optional<std::string> OscillationGuard::accepted(const std::vector<double>& x, double dt,
-                                                      coupling::Scheme scheme) {
+std::optional<std::string> StepOscillation::accepted(const std::vector<double>& x, double dt,
+                                                     coupling::Scheme scheme) {
   std::vector<double> velocity(x.size()), jump;
   if (levels_ >= 1)
     for (std::size_t i = 0; i < x.size(); ++i) velocity[i] = (x[i] - x_[i]) / dt;
@@ -171,20 +172,20 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
   return told(now / then, scheme);
 }
 
-std::optional<std::string> OscillationGuard::suspects(coupling::Scheme scheme) const {
+std::optional<std::string> StepOscillation::suspects(coupling::Scheme scheme) const {
   if (turns_ < 2 || !counts()) return {};
   const double factor = sizes_.back() / sizes_.front();
   if (factor < 3 || 2 * sizes_.back() < *std::ranges::max_element(speed_)) return {};
   return told(factor, scheme);
 }
 
-void OscillationGuard::visit_numbers(io::Archive& archive) {
+void StepOscillation::visit_numbers(io::Archive& archive) {
   archive.common("swings", turns_, levels_, sizes_, speed_, largest_, before_, dt_);
 }
 
-void OscillationGuard::visit_fields(io::Archive& archive, const parallel::GlobalOrder& order,
-                                    const std::string& name, std::size_t first, std::size_t count,
-                                    std::size_t width) {
+void StepOscillation::visit_fields(io::Archive& archive, const parallel::GlobalOrder& order,
+                                   const std::string& name, std::size_t first, std::size_t count,
+                                   std::size_t width) {
   int k = 0;
   for (std::vector<double>* values : {&x_, &velocity_, &jump_}) {
     const bool known = levels_ > k++;
@@ -198,7 +199,7 @@ void OscillationGuard::visit_fields(io::Archive& archive, const parallel::Global
   }
 }
 
-void WorkGuard::accepted(double fluid, double structure) {
+void WorkBalance::accepted(double fluid, double structure) {
   fluid_ += fluid;
   structure_ += structure;
   exchanged_ += std::max(std::abs(fluid), std::abs(structure));
@@ -206,11 +207,11 @@ void WorkGuard::accepted(double fluid, double structure) {
   ++steps_;
 }
 
-WorkGuard::Verdict WorkGuard::verdict(bool by_nearest, bool lagging) const {
+WorkBalance::Result WorkBalance::result(bool by_nearest, bool lagging) const {
   if (steps_ == 0 || exchanged_ == 0) return {};
   const double apart = std::abs(fluid_ - structure_), net = std::min(std::abs(fluid_), std::abs(structure_)),
                energy = energy_ > 0 ? energy_ : stored_, against = std::max(net, energy);
-  Verdict v;
+  Result v;
   // Only noise has been exchanged if the difference is at round-off.
   v.part = apart <= 1e-12 * exchanged_ ? 0 : apart / std::max(against, 1e-12 * exchanged_);
   v.sound = v.part < sound_part;

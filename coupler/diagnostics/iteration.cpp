@@ -21,22 +21,23 @@ std::string too_much_added_mass(double factor, int passes, double omega) {
       factor, passes == 1 ? "a pass" : fmt::format("{} passes", passes), omega, r, 2 / (1 + r));
 }
 
-/// Stops a diverging iteration within a few passes (see IterationGuard).
+/// Stops a diverging iteration within a few passes (see ResidualGrowth).
 class IterationGrowth final : public CouplingDiagnostic {
  public:
   explicit IterationGrowth(const CouplingView& view) : view_(view) {}
-  void begin_step() override { guard_.start_step(), scales_.clear(); }
+  void begin_step() override { growth_.start_step(), scales_.clear(); }
   void passed(const std::vector<Residual>& residuals, double omega) override {
     scales_.resize(residuals.size(), 0);
     for (std::size_t i = 0; i < scales_.size(); ++i)
-      if (scales_[i] == 0 && residuals[i].scale() > 0) scales_[i] = residuals[i].scale(), guard_.start_step();
+      if (scales_[i] == 0 && residuals[i].scale() > 0)
+        scales_[i] = residuals[i].scale(), growth_.start_step();
     if (!std::ranges::all_of(residuals,
                              [&](const Residual& r) { return converged(r, view_.parameters.convergence); }))
-      guard_.pass(largest(residuals, scales_), omega, is_constant());
+      growth_.pass(largest(residuals, scales_), omega, is_constant());
   }
   std::optional<app::StepFailure> suspects() const override {
     const double omega = view_.parameters.acceleration.initial_relaxation;
-    if (const auto grew = guard_.suspects(is_constant() ? omega : 0))
+    if (const auto grew = growth_.suspects(is_constant() ? omega : 0))
       return app::StepFailure(*grew, !is_constant());
     return {};
   }
@@ -47,7 +48,7 @@ class IterationGrowth final : public CouplingDiagnostic {
   }
 
   const CouplingView& view_;
-  IterationGuard guard_;
+  ResidualGrowth growth_;
   std::vector<double> scales_;  // of the data, as they first were in the step
 };
 
@@ -188,7 +189,7 @@ class AddedMass final : public CouplingDiagnostic {
 
 }  // namespace
 
-void IterationGuard::pass(double residual, double omega, bool constant) {
+void ResidualGrowth::pass(double residual, double omega, bool constant) {
   ++passes_;
   if (passes_ == 1) first_ = residual;
   if (passes_ > 1 && residual > last_) {
@@ -209,11 +210,11 @@ void IterationGuard::pass(double residual, double omega, bool constant) {
       factor(), growing_, omega);
 }
 
-bool IterationGuard::grows() const { return growing_ > 0 && last_ > 2 * at_turn_; }
+bool ResidualGrowth::grows() const { return growing_ > 0 && last_ > 2 * at_turn_; }
 
-double IterationGuard::factor() const { return std::pow(last_ / at_turn_, 1. / growing_); }
+double ResidualGrowth::factor() const { return std::pow(last_ / at_turn_, 1. / growing_); }
 
-std::optional<std::string> IterationGuard::suspects(double relaxation) const {
+std::optional<std::string> ResidualGrowth::suspects(double relaxation) const {
   if (!grows()) return {};
   if (relaxation > 0) return too_much_added_mass(factor(), growing_, relaxation);
   return fmt::format(

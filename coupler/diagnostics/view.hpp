@@ -22,7 +22,7 @@
 namespace couplet::coupler {
 
 /// Watches the residuals of one step, to detect divergence within a few passes.
-class IterationGuard {
+class ResidualGrowth {
  public:
   void start_step() { *this = {}; }
   /// Call after each pass with |r| (any fixed norm) and the factor of its x. Throws SchemeFailure if constant
@@ -52,11 +52,11 @@ class IterationGuard {
 /// Variable steps do not hide it. Explicit added mass has the factor -r per step (r: added mass over the
 /// structure's) for any step size. Growth is distinguished from two frequencies that beat: it lasts at least three periods, does not slow
 /// down, and exceeds all swings before it.
-class OscillationGuard {
+class StepOscillation {
  public:
   /// `comm`: communicator over whose ranks the motion is distributed. `tolerance`: tolerance of the coupling, relative to the
   /// largest motion of the run. Swings below it or below `floor` are not part of the answer.
-  explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF, double tolerance = 0)
+  explicit StepOscillation(MPI_Comm comm = MPI_COMM_SELF, double tolerance = 0)
       : comm_(comm), tolerance_(tolerance) {}
   /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
   /// nothing.
@@ -91,12 +91,12 @@ class OscillationGuard {
 };
 
 /// Compares the work on both sides of the interface, which differs only by the coupling error.
-class WorkGuard {
+class WorkBalance {
  public:
   /// Adds the work of a step on both sides [J].
   void accepted(double fluid, double structure);
   /// Result at the end of the run: a sentence with numbers, and whether the balance is sound.
-  struct Verdict {
+  struct Result {
     bool sound = true;
     std::string text;
     double part = 0;  ///< difference relative to the net work or energy
@@ -107,7 +107,7 @@ class WorkGuard {
   /// `lagging`: one pass per step. The fluid then sees an extrapolated wall whose velocity jitters, so loads
   /// alternate and the works differ even if the motion is accurate to parts in a thousand. Such a result is
   /// not called useless.
-  Verdict verdict(bool by_nearest = false, bool lagging = false) const;
+  Result result(bool by_nearest = false, bool lagging = false) const;
   /// Adds the structures' energy after a step [J]; NaN if unknown. Until then the largest net work taken is
   /// used.
   void energy(double value) { energy_ = value > energy_ ? value : energy_; }

@@ -90,7 +90,7 @@ bool moves(const coupling::Interface& interface) {
   return motion && motion->place == Place::vertices && motion->size(interface.dim) == interface.dim;
 }
 
-std::vector<bool> faces_of_part(MPI_Comm comm, const std::string& name, const WatchParameters& p,
+std::vector<bool> faces_of_part(MPI_Comm comm, const std::string& name, const IntegralParameters& p,
                                 const coupling::Interface& interface) {
   std::vector<bool> counts(interface.face_centres.size(), true);
   if (p.part.empty()) return counts;
@@ -184,8 +184,9 @@ void InterfaceOutput::write_list(const Surface& surface) const {
   base::write_file(folder_ / (surface.side->name + ".pvd"), text + "</Collection>\n</VTKFile>\n");
 }
 
-WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, const WatchParameters& p,
-                                                     const Side& side, const Surface& surface) const {
+InterfaceIntegrals::Integral InterfaceIntegrals::integral_of(const std::string& name,
+                                                             const IntegralParameters& p, const Side& side,
+                                                             const Surface& surface) const {
   const Datum* datum = find(side.interface, p.data);
   if (!datum)
     throw Error("coupling.watch.{}.data: '{}' neither gives nor takes '{}'. Its data are: {}.", name,
@@ -217,8 +218,8 @@ WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, co
   return i;
 }
 
-WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
-                               const std::map<std::string, WatchParameters>& watched)
+InterfaceIntegrals::InterfaceIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
+                                       const std::map<std::string, IntegralParameters>& watched)
     : comm_(comm) {
   for (const auto& [name, p] : watched) {
     const auto side = std::ranges::find(sides, p.participant, &Side::name);
@@ -251,16 +252,16 @@ WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
   }
 }
 
-std::vector<Vec3> WatchIntegrals::areas(const Surface& s, const coupling::Exchange& given,
-                                        const coupling::Exchange& taken) const {
+std::vector<Vec3> InterfaceIntegrals::areas(const Surface& s, const coupling::Exchange& given,
+                                            const coupling::Exchange& taken) const {
   const std::vector<double>* moved = s.moves ? either("displacement", given, taken) : nullptr;
   // Collective, because a rank without vertices does not have the datum.
   if (!s.corners.known() || !parallel::any(comm_, moved != nullptr)) return s.corners.reference_areas();
   return s.corners.areas(moved ? *moved : std::vector<double>{});
 }
 
-void WatchIntegrals::add_up(const Integral& i, const std::vector<double>& values,
-                            const std::vector<Vec3>& areas, double* sums) const {
+void InterfaceIntegrals::add_up(const Integral& i, const std::vector<double>& values,
+                                const std::vector<Vec3>& areas, double* sums) const {
   const FaceCorners& corners = surfaces_[i.surface].corners;
   const auto n = std::size_t(i.datum.size(surfaces_[i.surface].dim));
   const bool at_corners = i.kind != Kind::amount && i.datum.place == Place::vertices;
@@ -281,8 +282,8 @@ void WatchIntegrals::add_up(const Integral& i, const std::vector<double>& values
   }
 }
 
-std::vector<double> WatchIntegrals::row(const std::vector<coupling::Exchange>& given,
-                                        const std::vector<coupling::Exchange>& taken) const {
+std::vector<double> InterfaceIntegrals::row(const std::vector<coupling::Exchange>& given,
+                                            const std::vector<coupling::Exchange>& taken) const {
   std::vector<double> row(columns_.size(), 0);
   std::size_t column = 0;
   for (const Integral& i : integrals_) {

@@ -65,11 +65,11 @@ class InterfaceOutput {
 /// Vertex data are averaged over the corners of faces. Areas are those of the moved surface if the
 /// participant has a displacement and lists its corners, otherwise of the reference configuration. 2-D: per
 /// meter of depth.
-class WatchIntegrals {
+class InterfaceIntegrals {
  public:
   /// Throws Error for a missing participant, datum or part or data without an integral. Collective.
-  WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
-                 const std::map<std::string, WatchParameters>& watched);
+  InterfaceIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
+                     const std::map<std::string, IntegralParameters>& watched);
 
   /// For example "tip force x [N]".
   const std::vector<std::string>& columns() const { return columns_; }
@@ -92,7 +92,7 @@ class WatchIntegrals {
     std::vector<bool> counts;  // by face (vertex for amounts there) of this rank
     std::size_t columns;
   };
-  Integral integral_of(const std::string& name, const WatchParameters& p, const Side& side,
+  Integral integral_of(const std::string& name, const IntegralParameters& p, const Side& side,
                        const Surface& surface) const;
   std::vector<Vec3> areas(const Surface& s, const coupling::Exchange& given,
                           const coupling::Exchange& taken) const;
@@ -250,7 +250,7 @@ class Record {
   std::vector<SideBalance> balances_;  // of the last accepted step
   std::optional<Monitor> monitor_;
   std::optional<InterfaceOutput> interface_output_;
-  std::optional<WatchIntegrals> watched_;
+  std::optional<InterfaceIntegrals> watched_;
 };
 
 }  // namespace couplet::coupler

@@ -16,7 +16,7 @@ using Place = Interface::Place;
 // -- residuals of one step --------------------------------------------------------------------------------
 /// Passes until the guard throws; 0 if it never does.
 int thrown_at(const std::function<double(int)>& residual, bool constant, std::string* text = nullptr) {
-  IterationGuard guard;
+  ResidualGrowth guard;
   guard.start_step();
   for (int k = 1; k <= 60; ++k) try {
       guard.pass(residual(k), 1, constant);
@@ -28,23 +28,23 @@ int thrown_at(const std::function<double(int)>& residual, bool constant, std::st
   return 0;
 }
 
-TEST(IterationGuard, growth_is_named_within_a_few_passes_with_the_added_mass_behind_it) {
+TEST(ResidualGrowth, growth_is_named_within_a_few_passes_with_the_added_mass_behind_it) {
   std::string text;
-  EXPECT_EQ(thrown_at([](int k) { return std::pow(2., k); }, true, &text), IterationGuard::patience + 1);
+  EXPECT_EQ(thrown_at([](int k) { return std::pow(2., k); }, true, &text), ResidualGrowth::patience + 1);
   // |1 - (1 + r)| = 2
   EXPECT_THAT(text, HasSubstr("an added mass of about 2 times the structure's"));
   EXPECT_THAT(text, HasSubstr("only relaxations below 0.667 converge"));
 }
 
-TEST(IterationGuard, a_run_away_is_named_before_patience_ends) {
+TEST(ResidualGrowth, a_run_away_is_named_before_patience_ends) {
   EXPECT_EQ(thrown_at([](int k) { return k == 1 ? 1. : std::pow(1e4, k); }, false), 2);
 }
 
-TEST(IterationGuard, an_accelerated_iteration_that_grows_may_still_be_halved) {
+TEST(ResidualGrowth, an_accelerated_iteration_that_grows_may_still_be_halved) {
   EXPECT_GT(thrown_at([](int k) { return std::pow(1.5, k); }, false), 0);
 }
 
-TEST(IterationGuard, aitkens_first_overshoots_and_slow_convergence_pass) {
+TEST(ResidualGrowth, aitkens_first_overshoots_and_slow_convergence_pass) {
   // From relaxation 1 at a mass ratio of 50: one jump, then down with bumps.
   const double bumpy[] = {1, 50, 3, 4, 5, 2, 2.5, 1, 0.2, 0.3, 0.31, 0.32, 0.05};
   EXPECT_EQ(thrown_at([&](int k) { return k <= 13 ? bumpy[k - 1] : 0.05 * std::pow(0.9, k); }, false), 0);
@@ -56,7 +56,7 @@ TEST(IterationGuard, aitkens_first_overshoots_and_slow_convergence_pass) {
 /// Steps until the guard speaks; 0: never in 400.
 int spoken_at(const std::function<double(double)>& motion, Scheme scheme = Scheme::explicit_,
               std::string* text = nullptr) {
-  OscillationGuard guard;
+  StepOscillation guard;
   for (int n = 1; n <= 400; ++n)
     if (const auto reason = guard.accepted({motion(n), 0.5 * motion(n)}, 0.01, scheme)) {
       if (text) *text = *reason;
@@ -65,7 +65,7 @@ int spoken_at(const std::function<double(double)>& motion, Scheme scheme = Schem
   return 0;
 }
 
-TEST(OscillationGuard, added_mass_growth_is_named_with_a_scheme_that_holds) {
+TEST(StepOscillation, added_mass_growth_is_named_with_a_scheme_that_holds) {
   std::string text;
   EXPECT_LE(spoken_at([](double n) { return std::pow(-2., n); }, Scheme::explicit_, &text), 9);
   EXPECT_GT(spoken_at([](double n) { return std::pow(-2., n); }), 0);
@@ -77,7 +77,7 @@ TEST(OscillationGuard, added_mass_growth_is_named_with_a_scheme_that_holds) {
 }
 
 // A cure that no test shows is not named.
-TEST(OscillationGuard, an_uneven_growth_is_named_with_its_period_and_its_part_of_the_motion) {
+TEST(StepOscillation, an_uneven_growth_is_named_with_its_period_and_its_part_of_the_motion) {
   std::string text;
   const auto swing = [](double n) { return 1e-4 * n + 2e-4 * std::pow(-1.6, n) * (1 + 0.3 * std::cos(n)); };
   EXPECT_GT(spoken_at(swing, Scheme::semi_implicit, &text), 0);
@@ -86,7 +86,7 @@ TEST(OscillationGuard, an_uneven_growth_is_named_with_its_period_and_its_part_of
   EXPECT_THAT(text, testing::Not(HasSubstr("scheme:")));
 }
 
-TEST(OscillationGuard, smooth_motion_decaying_swings_rounding_and_steady_swings_pass) {
+TEST(StepOscillation, smooth_motion_decaying_swings_rounding_and_steady_swings_pass) {
   const double pi = 3.14159265358979;
   EXPECT_EQ(spoken_at([](double n) { return std::sin(0.1 * n); }), 0);
   EXPECT_EQ(spoken_at([](double n) { return std::exp(0.05 * n) * std::sin(0.5 * n); }), 0) << "flutter";
@@ -108,27 +108,27 @@ TEST(OscillationGuard, smooth_motion_decaying_swings_rounding_and_steady_swings_
 
 /// A body at rest half a millimeter off, whose swings grow by 1.2 per step from 1e-10 of that: told at a thousandth, or at the
 /// coupling's tolerance.
-TEST(OscillationGuard, swings_below_a_thousandth_or_the_tolerance_of_the_coupling_are_no_part_of_the_answer) {
+TEST(StepOscillation, swings_below_a_thousandth_or_the_tolerance_of_the_coupling_are_no_part_of_the_answer) {
   for (const double tolerance : {0., 1e-5, 1e-2}) {
-    OscillationGuard guard(MPI_COMM_SELF, tolerance);
+    StepOscillation guard(MPI_COMM_SELF, tolerance);
     int told = 0;
     for (int n = 0; n < 120 && told == 0; ++n)
       if (guard.accepted({5e-4 * (1 + 1e-10 * std::pow(-1.2, n))}, 0.02, Scheme::semi_implicit)) told = n;
-    const double least = std::max(tolerance, OscillationGuard::floor);
+    const double least = std::max(tolerance, StepOscillation::floor);
     EXPECT_NEAR(told, std::log(least / 1e-10) / std::log(1.2), 2) << tolerance;
   }
 }
 
-TEST(OscillationGuard, steps_of_another_length_do_not_hide_it) {
-  OscillationGuard guard;
+TEST(StepOscillation, steps_of_another_length_do_not_hide_it) {
+  StepOscillation guard;
   std::string text;
   for (int n = 0; n < 12 && text.empty(); ++n)
     text = guard.accepted({std::pow(-2., n)}, n < 4 ? 0.01 : 0.005, Scheme::explicit_).value_or("");
   EXPECT_THAT(text, HasSubstr("added-mass instability"));
 }
 
-TEST(OscillationGuard, a_step_that_fails_after_a_swing_is_explained_by_it_and_else_not) {
-  OscillationGuard swinging, smooth;
+TEST(StepOscillation, a_step_that_fails_after_a_swing_is_explained_by_it_and_else_not) {
+  StepOscillation swinging, smooth;
   for (int n = 0; n < 5; ++n) {
     EXPECT_FALSE(swinging.accepted({std::pow(-3., n)}, 0.01, Scheme::explicit_));
     EXPECT_FALSE(smooth.accepted({double(n * n)}, 0.01, Scheme::explicit_));
@@ -138,57 +138,57 @@ TEST(OscillationGuard, a_step_that_fails_after_a_swing_is_explained_by_it_and_el
 }
 
 // -- work -------------------------------------------------------------------------------------------------
-TEST(WorkGuard, work_of_small_steps_and_turning_points_pass) {
-  WorkGuard guard;
+TEST(WorkBalance, work_of_small_steps_and_turning_points_pass) {
+  WorkBalance guard;
   for (int n = 0; n < 400; ++n) {
     const double work = std::sin(0.02 * n);
     guard.accepted(work, work * 1.01 + 0.005);
   }
-  EXPECT_TRUE(guard.verdict().sound);
+  EXPECT_TRUE(guard.result().sound);
 }
 
-TEST(WorkGuard, a_guess_that_jitters_parts_the_work_but_is_no_instability) {
-  WorkGuard guard;
+TEST(WorkBalance, a_guess_that_jitters_parts_the_work_but_is_no_instability) {
+  WorkBalance guard;
   for (int n = 0; n < 200; ++n) guard.accepted(n % 2 ? -0.8 : 0.4, 0.35 + 0.05 * std::sin(n));
-  EXPECT_FALSE(guard.verdict().sound) << "it is said at the end";
-  EXPECT_THAT(guard.verdict().text, HasSubstr("NOT CLOSED"));
-  EXPECT_TRUE(guard.verdict().useless);  // of an iteration
-  const WorkGuard::Verdict lagging = guard.verdict(true, true);
+  EXPECT_FALSE(guard.result().sound) << "it is said at the end";
+  EXPECT_THAT(guard.result().text, HasSubstr("NOT CLOSED"));
+  EXPECT_TRUE(guard.result().useless);  // of an iteration
+  const WorkBalance::Result lagging = guard.result(true, true);
   EXPECT_FALSE(lagging.useless) << "the motion may be right";
   EXPECT_FALSE(lagging.sound);
   EXPECT_THAT(lagging.text, HasSubstr("in explicit coupling load and motion belong to different times"));
 }
 
-TEST(WorkGuard, an_answer_is_useless_where_half_of_the_work_is_apart_and_not_before) {
+TEST(WorkBalance, an_answer_is_useless_where_half_of_the_work_is_apart_and_not_before) {
   for (const auto& [taken, steps, useless] :
        {std::tuple{0.51, 20, false}, {0.49, 19, false}, {0.49, 20, true}, {-0.5, 100, true}}) {
-    WorkGuard guard;
+    WorkBalance guard;
     for (int n = 0; n < steps; ++n) guard.accepted(1, taken);
-    EXPECT_EQ(guard.verdict().useless, useless) << taken << ", " << steps;
-    EXPECT_FALSE(guard.verdict().sound);
+    EXPECT_EQ(guard.result().useless, useless) << taken << ", " << steps;
+    EXPECT_FALSE(guard.result().sound);
   }
 }
 
-TEST(WorkGuard, work_is_judged_by_what_stays_not_by_what_went_to_and_fro) {
+TEST(WorkBalance, work_is_judged_by_what_stays_not_by_what_went_to_and_fro) {
   // A damped oscillation: each step moves 1 J there or back, 5.7 J stay for one side and 6.3 J for the other.
-  WorkGuard damped, there_and_back;
+  WorkBalance damped, there_and_back;
   for (int n = 0; n < 1000; ++n) {
     damped.accepted(std::sin(0.1 * n) + 0.0057, std::sin(0.1 * n) + 0.0063);
     // Nothing stays, but the structure's energy is 20 J at most.
     there_and_back.accepted(std::sin(0.1 * n), std::sin(0.1 * n) + 1e-4);
     damped.energy(0.5), there_and_back.energy(20 * std::abs(std::sin(0.05 * n)));
   }
-  EXPECT_FALSE(damped.verdict().sound) << damped.verdict().text;
-  EXPECT_FALSE(damped.verdict().useless);
-  EXPECT_THAT(damped.verdict(true).text, testing::AllOf(HasSubstr("nearest"), HasSubstr("projection")));
-  EXPECT_TRUE(there_and_back.verdict().sound) << there_and_back.verdict().text;
+  EXPECT_FALSE(damped.result().sound) << damped.result().text;
+  EXPECT_FALSE(damped.result().useless);
+  EXPECT_THAT(damped.result(true).text, testing::AllOf(HasSubstr("nearest"), HasSubstr("projection")));
+  EXPECT_TRUE(there_and_back.result().sound) << there_and_back.result().text;
 }
 
-TEST(WorkGuard, its_sums_go_through_a_checkpoint) {
-  WorkGuard guard, other;
+TEST(WorkBalance, its_sums_go_through_a_checkpoint) {
+  WorkBalance guard, other;
   for (int n = 0; n < 5; ++n) guard.accepted(n, 1.5 * n);
   base::from_numbers(base::to_numbers(guard), other, "work");
-  EXPECT_EQ(other.verdict().text, guard.verdict().text);
+  EXPECT_EQ(other.result().text, guard.result().text);
 }
 
 // -- data and places --------------------------------------------------------------------------------------

@@ -234,11 +234,11 @@ std::vector<double> vectors(const std::vector<Vec3>& points, const std::function
 }
 
 std::vector<double> watch(const Interface& whole,
-                          const std::map<std::string, coupler::WatchParameters>& watched,
+                          const std::map<std::string, coupler::IntegralParameters>& watched,
                           const std::function<void(const Interface&, Exchange&, Exchange&)>& fill) {
   std::vector<coupler::Side> sides;
   sides.emplace_back(world, "sheet", tests::part_of(world, whole));
-  const coupler::WatchIntegrals integrals(world, sides, watched);
+  const coupler::InterfaceIntegrals integrals(world, sides, watched);
   Exchange given, taken;
   fill(sides[0].interface, given, taken);
   const auto row = integrals.row({given}, {taken});
@@ -246,7 +246,7 @@ std::vector<double> watch(const Interface& whole,
   return row;
 }
 
-TEST(WatchIntegrals, amounts_are_summed_and_scalars_have_integral_and_mean_also_of_a_part) {
+TEST(InterfaceIntegrals, amounts_are_summed_and_scalars_have_integral_and_mean_also_of_a_part) {
   const auto row = watch(sheet(false),
                          {{"a", {"sheet", "heat", ""}},
                           {"b", {"sheet", "heat", "far"}},
@@ -268,7 +268,7 @@ TEST(WatchIntegrals, amounts_are_summed_and_scalars_have_integral_and_mean_also_
   for (std::size_t k = 0; k < row.size(); ++k) EXPECT_NEAR(row[k], expected[k], 1e-12) << k;
 }
 
-TEST(WatchIntegrals, a_flux_goes_through_the_moved_surface) {
+TEST(InterfaceIntegrals, a_flux_goes_through_the_moved_surface) {
   // The sheet is stretched 3 to 1 along x and tilted: (x, y, 0) to (3 x, y, x); its area vector is (1, 0, -3) * 2.
   for (const bool triangles : {false, true}) {
     const auto row =
@@ -291,7 +291,7 @@ TEST(WatchIntegrals, a_flux_goes_through_the_moved_surface) {
   EXPECT_NEAR(still[0], -1, 1e-12);
 }
 
-TEST(WatchIntegrals, in_the_plane_a_growing_circle_sweeps_its_circumference) {
+TEST(InterfaceIntegrals, in_the_plane_a_growing_circle_sweeps_its_circumference) {
   constexpr int n = 64;
   Interface ring = tests::ring(n);
   ring.gives = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
@@ -305,13 +305,13 @@ TEST(WatchIntegrals, in_the_plane_a_growing_circle_sweeps_its_circumference) {
   EXPECT_NEAR(row[0], n * 2 * std::sin(2 * M_PI / n), 1e-12);
 }
 
-TEST(WatchIntegrals, what_has_not_gone_over_yet_is_no_number) {
+TEST(InterfaceIntegrals, what_has_not_gone_over_yet_is_no_number) {
   const auto row = watch(sheet(false), {{"a", {"sheet", "heat", ""}}, {"v", {"sheet", "velocity", ""}}},
                          [](const Interface&, Exchange&, Exchange&) {});
   EXPECT_TRUE(std::isnan(row[0]) && std::isnan(row[1]));
 }
 
-void expect_refused(const Interface& whole, const coupler::WatchParameters& p, const std::string& text) {
+void expect_refused(const Interface& whole, const coupler::IntegralParameters& p, const std::string& text) {
   try {
     watch(whole, {{"it", p}}, [](const Interface&, Exchange&, Exchange&) {});
     ADD_FAILURE() << "not refused: " << text;
@@ -320,7 +320,7 @@ void expect_refused(const Interface& whole, const coupler::WatchParameters& p, c
   }
 }
 
-TEST(WatchIntegrals, what_is_not_there_is_refused_with_what_is) {
+TEST(InterfaceIntegrals, what_is_not_there_is_refused_with_what_is) {
   Interface blind = sheet(false);
   blind.face_offset.clear(), blind.face_vertices.clear();
   expect_refused(sheet(false), {"shet", "heat", ""}, "'shet' is not a participant");

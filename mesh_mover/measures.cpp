@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_mover/guard.hpp"
+#include "mesh_mover/measures.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -45,7 +45,8 @@ void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
 
 }  // namespace
 
-Guard::Guard(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters)
+CellMeasures::CellMeasures(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                           const Parameters& parameters)
     : mesh_(mesh),
       geometry_(geometry),
       smallest_volume_ratio_(parameters.smallest_volume_ratio),
@@ -53,7 +54,7 @@ Guard::Guard(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Param
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) longest_.push_back(shape(c, geometry.points).longest);
 }
 
-Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {
+CellMeasures::Shape CellMeasures::shape(Index cell, std::span<const Vec3> points) const {
   const CellCorners& kind = corners_of(mesh_.cell_type[cell]);
   const auto corner = mesh_.cell_points[cell];
   Shape s{0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -79,8 +80,8 @@ Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {
   return s;
 }
 
-double Guard::value(MeshState::Measure measure, Index cell, const mesh::Geometry& moved,
-                    const Shape& s) const {
+double CellMeasures::value(MeshState::Measure measure, Index cell, const mesh::Geometry& moved,
+                           const Shape& s) const {
   const double ratio = moved.volume[cell] / geometry_.volume[cell];
   const auto log2 = [](double x) {
     return x > 0 ? std::abs(std::log2(x)) : std::numeric_limits<double>::infinity();
@@ -101,14 +102,14 @@ double Guard::value(MeshState::Measure measure, Index cell, const mesh::Geometry
   }
 }
 
-std::vector<double> Guard::of_cells(MeshState::Measure measure, const mesh::Geometry& moved) const {
+std::vector<double> CellMeasures::of_cells(MeshState::Measure measure, const mesh::Geometry& moved) const {
   std::vector<double> values(mesh_.cells.n_local(), 0.0);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     values[c] = value(measure, c, moved, shape(c, moved.points));
   return values;
 }
 
-double Guard::largest_angle(const mesh::Geometry& moved, Index& cell) const {
+double CellMeasures::largest_angle(const mesh::Geometry& moved, Index& cell) const {
   double least = 2;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
@@ -122,7 +123,7 @@ double Guard::largest_angle(const mesh::Geometry& moved, Index& cell) const {
   return std::acos(std::clamp(least, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-MeshState Guard::measure(const mesh::Geometry& moved) const {
+MeshState CellMeasures::measure(const mesh::Geometry& moved) const {
   MeshState state;
   std::array<Index, MeshState::n_measures> cell{};
   const bool any_here = mesh_.cells.n_owned() > 0;
@@ -149,7 +150,7 @@ MeshState Guard::measure(const mesh::Geometry& moved) const {
   return state;
 }
 
-std::string Guard::refusal(const mesh::Geometry& moved) const {
+std::string CellMeasures::refusal(const mesh::Geometry& moved) const {
   const auto at = [](const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); };
   if (const auto trouble = mesh::find_inverted(mesh_, moved))
     return fmt::format(

@@ -30,9 +30,9 @@ extern const std::array<const char*, MeshState::n_measures> measure_names;
 /// [knupp2000] (1 for right angles, in simplices for equal angles); ratio of longest to shortest edge; angle
 /// between face normals and the lines of cell centers [degree]; f_A = |log2(V/V0)| and f_AR = |log2(AR/AR0)|
 /// with AR = (longest edge)^dim / V [stein2003].
-class Guard {
+class CellMeasures {
  public:
-  Guard(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
+  CellMeasures(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
 
   /// Collective.
   MeshState measure(const mesh::Geometry& moved) const;
@@ -53,7 +53,7 @@ class Guard {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   double smallest_volume_ratio_;
-  GuardParameters limits_;
+  QualityLimits limits_;
   std::vector<double> longest_;  // edge of each owned cell in the reference mesh [m]
 };
 
