@@ -59,7 +59,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
     const auto& known = view_.parameters().compressibility;
     if (sums[3] > 0) sums[1] += (known ? known->upstream_volume : 0) * sums[2] / sums[3];
-    watch_.add(view_.step.dt, swept, {sums[0], sums[1]});
+    means_.add(view_.step.dt, swept, {sums[0], sums[1]});
   }
   void look(diagnostics::Report& report) override {
     if (view_.parameters().is_compressible()) return;
@@ -69,7 +69,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   /// Evaluates means only at the end, because pressures dominate before walls have moved.
   void conclude(diagnostics::Report& report) override {
     if (view_.parameters().is_compressible()) return;
-    const ComplianceWatch::Walls mine = watch_.walls();
+    const ComplianceMeans::Walls mine = means_.walls();
     std::array<double, 3> walls{mine.square, mine.rate, mine.size};
     MPI_Allreduce(MPI_IN_PLACE, walls.data(), int(walls.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
     const double size = largest_extent(view_.mesh, view_.fluid.state().placement->boundary_centre);
@@ -78,7 +78,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
                              view_.parameters(), [&](const std::string& name) { return some_places(name); },
                              view_.step.time + view_.step.dt, view_.step.dt));
     if (walls[0] > 0) {
-      const ComplianceWatch::Totals totals = watch_.totals();
+      const ComplianceMeans::Totals totals = means_.totals();
       // A plate in the fluid sweeps the same volume on both sides.
       const double stroke = std::max(totals.swept, 0.5 * walls[2]);
       add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
@@ -88,10 +88,10 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   }
   void visit(io::Archive& archive) override {
     if (!moves_) return;
-    archive.common("means", watch_);
+    archive.common("means", means_);
     constexpr std::size_t width = 4;
     std::vector<double> flat(width * std::size_t(view_.mesh.boundary.n_owned()));
-    const auto values = watch_.per_face();
+    const auto values = means_.per_face();
     const auto place = [&](std::size_t i, std::size_t k) {
       return width * std::size_t(faces_[i] - view_.mesh.n_interior) + k;
     };
@@ -132,13 +132,13 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   bool moves_;
   std::vector<Index> faces_;    // of walls that move
   std::vector<Vec3> at_start_;  // their centers
-  ComplianceWatch watch_;
+  ComplianceMeans means_;
 };
 
 }  // namespace
 
 // Skips the step in which the flow starts, because its pressure contains the impulse of the start.
-void ComplianceWatch::add(double dt, const std::vector<double>& swept, const Totals& now) {
+void ComplianceMeans::add(double dt, const std::vector<double>& swept, const Totals& now) {
   sum_.resize(swept.size());
   square_.resize(swept.size());
   rate_.resize(swept.size());
@@ -158,7 +158,7 @@ void ComplianceWatch::add(double dt, const std::vector<double>& swept, const Tot
   last_ = swept;
 }
 
-ComplianceWatch::Walls ComplianceWatch::walls() const {
+ComplianceMeans::Walls ComplianceMeans::walls() const {
   Walls w;
   if (steps_ < judged_steps) return w;
   for (std::size_t i = 0; i < sum_.size(); ++i) {
@@ -171,7 +171,7 @@ ComplianceWatch::Walls ComplianceWatch::walls() const {
   return w;
 }
 
-ComplianceWatch::Totals ComplianceWatch::totals() const {
+ComplianceMeans::Totals ComplianceMeans::totals() const {
   if (!(time_ > 0)) return {};
   const auto deviation = [&](double sum, double square) {
     return std::sqrt(std::max(0.0, square / time_ - sum * sum / (time_ * time_)));

@@ -37,7 +37,7 @@ diagnostics::EffectFinding wave_time(double rate, double size, const Sound& soun
 
 /// Records the wall motion and the pressure response over a run, as fluctuations about the means. Callers sum
 /// over the faces of all ranks.
-class ComplianceWatch {
+class ComplianceMeans {
  public:
   /// Sums over all ranks.
   struct Totals {

@@ -196,7 +196,7 @@ struct History {
   std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;
 };
 
-/// Kinetic energy and the part of it that no work explains, see EnergyGuard.
+/// Kinetic energy and the part of it that no work explains, see EnergyCheck.
 struct EnergyLedger {
   double energy = -1;    ///< at t^n [J]; negative if not known yet
   double largest = 0;    ///< so far [J]

@@ -77,7 +77,7 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
       predictor_(scene_, step_, gradient_, prediction_),
       flux_(scene_, step_, gradient_),
       projection_(scene_, step_, prediction_, projected_, moving),
-      energy_guard_(mesh, boundary, scene_.fluid, parameters.pressure_tolerance) {
+      energy_check_(mesh, boundary, scene_.fluid, parameters.pressure_tolerance) {
   scene_.forces = make_forces<D>(mesh, boundary, parameters);
   scene_.obstacles = make_obstacles<D>(mesh, parameters, points_at_rest);
   bodies_ = dynamic_cast<const ImmersedBodies<D>*>(scene_.obstacles.get());
@@ -292,14 +292,14 @@ EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
 }
 
 template <int D>
-typename FractionalStep<D>::Judgement FractionalStep<D>::judge(const State<D>& from) const {
+typename FractionalStep<D>::Outcome FractionalStep<D>::judge(const State<D>& from) const {
   const double fastest = largest_square<D>({u_.data(), std::size_t(mesh_.cells.n_owned())});
   double given = 0;
   for (const Vec<D>& w : projected_.w) given = std::max(given, w.squaredNorm());
   double largest[2] = {fastest, given};
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, mesh_.comm);
-  Judgement j;
-  j.energy = energy_guard_.judge(energy_step(from));
+  Outcome j;
+  j.energy = energy_check_.judge(energy_step(from));
   j.speed = std::sqrt(largest[0]);
   j.given_speed = std::sqrt(largest[1]);
   return j;
@@ -340,7 +340,7 @@ void FractionalStep<D>::check(const State<D>& from) {
   if (cause.empty()) cause = "Try a smaller time step.";
   parallel::broadcast(mesh_.comm, cause, worst.rank);
   if (const std::string shut = scene_.obstacles->cause(*step_.to); !shut.empty()) cause = shut;
-  const EnergyJudgement& e = judgement_.energy;
+  const EnergyChange& e = judgement_.energy;
   const std::string what =
       !finite ? "its velocity is not finite"
       : fast  ? fmt::format("its velocity grew to {:.3g} m/s", judgement_.speed)

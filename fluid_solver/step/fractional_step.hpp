@@ -115,8 +115,8 @@ class FractionalStep {
  private:
   void predict_from_guess(const State<D>& from);
   std::shared_ptr<PressureLevel<D>> correct();
-  struct Judgement {
-    EnergyJudgement energy;
+  struct Outcome {
+    EnergyChange energy;
     double speed = 0;        // largest [m/s]; infinity if one is not finite
     double given_speed = 0;  // largest at the boundaries [m/s]
   };
@@ -125,7 +125,7 @@ class FractionalStep {
   Vectors<D> friction_of(const Vectors<D>& x) const;
   double splitting_error(const PressureLevel<D>& now, double enough);
   EnergyStep<D> energy_step(const State<D>& from) const;
-  Judgement judge(const State<D>& from) const;
+  Outcome judge(const State<D>& from) const;
   bool too_fast() const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);
@@ -143,10 +143,10 @@ class FractionalStep {
   FaceFlux<D> flux_;
   PressureProjection<D> projection_;
   Loads<D> loads_;
-  EnergyGuard<D> energy_guard_;
+  EnergyCheck<D> energy_check_;
   Vectors<D> u_;                             // u^{n+1} with level_
   std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; nullptr after project()
-  Judgement judgement_;                      // of level_
+  Outcome judgement_;                        // of level_
   std::uint64_t states_ = 0;                 // number of states so far
   double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
 };

@@ -115,7 +115,7 @@ struct EnergyStep {
 };
 
 /// Change of the kinetic energy in a sub-step.
-struct EnergyJudgement {
+struct EnergyChange {
   EnergyLedger ledger;         ///< after the sub-step
   double gain = 0;             ///< of kinetic energy in this sub-step [J]
   double work = 0;             ///< done by boundaries and forces [J]
@@ -132,10 +132,10 @@ struct EnergyJudgement {
 /// boundary fluxes is subtracted, because their rates have only the accuracy of the scheme. Work that leaves
 /// is not offset against work that enters.
 template <int D>
-class EnergyGuard {
+class EnergyCheck {
  public:
   /// `pressure_tolerance`: relative tolerance of the pressure solver.
-  EnergyGuard(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Properties& fluid,
+  EnergyCheck(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Properties& fluid,
               double pressure_tolerance)
       : mesh_(mesh),
         boundary_(boundary),
@@ -144,7 +144,7 @@ class EnergyGuard {
         pressure_tolerance_(pressure_tolerance),
         bulk_(fluid.rho * fluid.sound * fluid.sound) {}
   /// Collective.
-  EnergyJudgement judge(const EnergyStep<D>& step) const;
+  EnergyChange judge(const EnergyStep<D>& step) const;
   /// Sum of rho V |u|^2 / 2 [J] over the cells of this rank.
   double kinetic(const Placement<D>& at, const Vectors<D>& u) const;
   /// Elastic energy V p^2/(2 rho c^2) [J] at the end of the step of pressure[0], with pressures relative to

@@ -180,8 +180,8 @@ TEST(Sound, is_that_of_a_key_a_pressure_a_substance_or_none) {
   EXPECT_EQ(speed(p, 1.2, 1.8e-5), 77);
 }
 
-TEST(ComplianceWatch, finds_the_fluctuations_of_a_harmonic_motion) {
-  fluid::ComplianceWatch watch;
+TEST(ComplianceMeans, finds_the_fluctuations_of_a_harmonic_motion) {
+  fluid::ComplianceMeans watch;
   const double omega = 7, dt = 1e-3;
   for (int n = 0; n * dt < 10 * 2 * M_PI / omega; ++n) {
     const double t = n * dt, s = std::sin(omega * t);
@@ -195,8 +195,8 @@ TEST(ComplianceWatch, finds_the_fluctuations_of_a_harmonic_motion) {
   EXPECT_EQ(watch.totals().swept, 0);
 }
 
-TEST(ComplianceWatch, knows_nothing_of_walls_at_rest_and_of_the_first_step) {
-  fluid::ComplianceWatch watch;
+TEST(ComplianceMeans, knows_nothing_of_walls_at_rest_and_of_the_first_step) {
+  fluid::ComplianceMeans watch;
   watch.add(0.1, {0, 0}, {.pressure_volume = 1e9});
   EXPECT_EQ(watch.totals().pressure_volume, 0) << "the impulse of the start";
   for (int n = 0; n < 5; ++n) watch.add(0.1, {0, 0}, {});

@@ -38,12 +38,12 @@ COUPLET_PROCESSOR_CLONES double sum_squares(std::span<const double> volume, cons
 }  // namespace
 
 template <int D>
-double EnergyGuard<D>::kinetic(const Placement<D>& at, const Vectors<D>& u) const {
+double EnergyCheck<D>::kinetic(const Placement<D>& at, const Vectors<D>& u) const {
   return 0.5 * rho_ * sum_squares<D>(std::span(at.volume).first(mesh_.cells.n_owned()), u.data());
 }
 
 template <int D>
-double EnergyGuard<D>::elastic(const Placement<D>& at, const std::array<const PressureLevel<D>*, 3>& pressure,
+double EnergyCheck<D>::elastic(const Placement<D>& at, const std::array<const PressureLevel<D>*, 3>& pressure,
                                double level) const {
   if (bulk_ == 0 || !pressure[0]) return 0;
   double sum = 0;
@@ -64,7 +64,7 @@ double EnergyGuard<D>::elastic(const Placement<D>& at, const std::array<const Pr
 
 /// Reference pressure for the work. Collective.
 template <int D>
-double EnergyGuard<D>::level_of(const EnergyStep<D>& s) const {
+double EnergyCheck<D>::level_of(const EnergyStep<D>& s) const {
   if (s.from.ledger.energy >= 0) return s.from.ledger.level;
   if (bulk_ == 0) return mean_pressure(s);
   double sums[2] = {};
@@ -77,7 +77,7 @@ double EnergyGuard<D>::level_of(const EnergyStep<D>& s) const {
 
 /// Reference pressure for the work without a previous step. Collective.
 template <int D>
-double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
+double EnergyCheck<D>::mean_pressure(const EnergyStep<D>& s) const {
   double sums[2] = {};
   for (std::size_t b = 0; b < s.w.size(); ++b) {
     const std::size_t f = mesh_.n_interior + b;
@@ -93,7 +93,7 @@ double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
 /// u = tolerance p dt/(rho h), the velocity if the boundary pressure p varies by its tolerance between cells.
 /// Collective.
 template <int D>
-double EnergyGuard<D>::energy_at_rest(const EnergyStep<D>& s) const {
+double EnergyCheck<D>::energy_at_rest(const EnergyStep<D>& s) const {
   double sums[3] = {0, double(s.p.size()), 0};
   for (const double p : s.p) sums[0] += std::abs(p);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sums[2] += std::pow(s.to.volume[c], 1 - 2. / D);
@@ -104,7 +104,7 @@ double EnergyGuard<D>::energy_at_rest(const EnergyStep<D>& s) const {
 
 /// sums: work, total flux, p |phi|, |phi|.
 template <int D>
-void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
+void EnergyCheck<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
   const bool moving = !s.swept.empty();
   const FaceRows& rows = boundary_.rows();
   for (std::size_t b = 0; b < s.w.size(); ++b) {
@@ -131,7 +131,7 @@ void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
 }
 
 template <int D>
-EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
+EnergyChange EnergyCheck<D>::judge(const EnergyStep<D>& s) const {
   const EnergyLedger& before = s.from.ledger;
   enum { work, passed, weighted, fluxes, energy, old_energy };
   double sums[6] = {};
@@ -149,7 +149,7 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
       sums[passed] += std::abs(done);
     }
   MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  EnergyJudgement j;
+  EnergyChange j;
   j.gain = sums[energy] - (before.energy < 0 ? sums[old_energy] : before.energy);
   j.work = sums[work];
   j.ledger.work = before.work + sums[work];
@@ -201,8 +201,8 @@ std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, co
   return {};
 }
 
-template class EnergyGuard<2>;
-template class EnergyGuard<3>;
+template class EnergyCheck<2>;
+template class EnergyCheck<3>;
 template decltype(likely_cause<2>) likely_cause<2>;
 template decltype(likely_cause<3>) likely_cause<3>;
 
