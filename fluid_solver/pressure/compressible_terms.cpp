@@ -388,30 +388,15 @@ class AbsorbingBoundaries final : public Term<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
-                                          const Prediction<D>& prediction) {
-  return std::make_unique<Compression<D>>(scene, step, prediction);
+void add_compressible_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                            Terms<D>& terms) {
+  add_term<AbsorbingBoundaries<D>>(!scene.boundary.absorbing_patches().empty(), scene, step, prediction,
+                                   terms);
+  add_term<Compression<D>>(scene.is_compressible(), scene, step, prediction, terms);
+  add_term<UpstreamVolume<D>>(!scene.boundary.upstream_patches().empty(), scene, step, prediction, terms);
 }
 
-template std::unique_ptr<Term<2>> make_compression<2>(const Scene<2>&, const Step<2>&, const Prediction<2>&);
-template std::unique_ptr<Term<3>> make_compression<3>(const Scene<3>&, const Step<3>&, const Prediction<3>&);
-
-template <int D>
-std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
-                                              const Prediction<D>& prediction) {
-  return std::make_unique<UpstreamVolume<D>>(scene, step, prediction);
-}
-
-template decltype(make_upstream_volume<2>) make_upstream_volume<2>;
-template decltype(make_upstream_volume<3>) make_upstream_volume<3>;
-
-template <int D>
-std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const Step<D>& step,
-                                                   const Prediction<D>& prediction) {
-  return std::make_unique<AbsorbingBoundaries<D>>(scene, step, prediction);
-}
-
-template decltype(make_absorbing_boundaries<2>) make_absorbing_boundaries<2>;
-template decltype(make_absorbing_boundaries<3>) make_absorbing_boundaries<3>;
+template decltype(add_compressible_terms<2>) add_compressible_terms<2>;
+template decltype(add_compressible_terms<3>) add_compressible_terms<3>;
 
 }  // namespace couplet::fluid

@@ -188,25 +188,22 @@ class Term {
   const Prediction<D>& prediction_;
 };
 
-// Factories of the terms, each in the file of its name.
-
 template <int D>
-using MakeTerm = std::unique_ptr<Term<D>>(const Scene<D>&, const Step<D>&, const Prediction<D>&);
-/// A fluid without an outlet.
+using Terms = std::vector<std::unique_ptr<Term<D>>>;
+/// Adds the term T if the case has it.
+template <class T, int D>
+void add_term(bool has, const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+              Terms<D>& terms) {
+  if (has) terms.push_back(std::make_unique<T>(scene, step, prediction));
+}
+/// Adds those of a fluid without an outlet, and of walls of known mass (Robin condition).
 template <int D>
-MakeTerm<D> make_closed_domain;
-/// Walls of known mass (Robin condition). Collective.
+void add_wall_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                    Terms<D>& terms);
+/// Adds those of weak compressibility: of openings that let pressure waves out, of the cells, of a volume behind the inlets.
 template <int D>
-MakeTerm<D> make_yielding_walls;
-/// Openings that let pressure waves out. Collective.
-template <int D>
-MakeTerm<D> make_absorbing_boundaries;
-/// Weak compressibility in the cells.
-template <int D>
-MakeTerm<D> make_compression;
-/// A volume behind the inlets.
-template <int D>
-MakeTerm<D> make_upstream_volume;
+void add_compressible_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                            Terms<D>& terms);
 
 /// Second stage of a step: sum g (p_N - p_P) = (rho/dt) sum phi^p, p = p^{n+1/2}, in passes on non-orthogonal
 /// meshes. Features extend it by a list of terms, which is empty for an incompressible fluid and given walls.
@@ -239,7 +236,7 @@ class PressureProjection {
   /// Discards the matrix after a change of its entries; it is rebuilt when next needed.
   void forget_matrix() { assembled_ = nullptr; }
   PressureEquation<D>& equation() { return equation_; }
-  const std::vector<std::unique_ptr<Term<D>>>& terms() const { return terms_; }
+  const Terms<D>& terms() const { return terms_; }
   int iterations() const { return iterations_; }
   /// State of the solvers in addition to the level, as of the last accept(). load() is collective.
   void accept();
@@ -264,7 +261,7 @@ class PressureProjection {
   const Step<D>& step_;
   const Prediction<D>& prediction_;
   Projected<D>& out_;
-  std::vector<std::unique_ptr<Term<D>>> terms_;
+  Terms<D> terms_;
   PressureEquation<D> equation_;
   RightSide side_;
   std::shared_ptr<const Placement<D>> assembled_;  // placement of the matrix

@@ -28,18 +28,10 @@ constexpr linalg::Acceleration gradient_acceleration{linalg::Acceleration::Type:
 constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
 template <int D>
-std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const Step<D>& step,
-                                                 const Prediction<D>& prediction) {
-  std::vector<std::unique_ptr<Term<D>>> terms;
-  const auto add = [&](bool wanted, const auto& make) {
-    if (wanted) terms.push_back(make(scene, step, prediction));
-  };
-  add(scene.boundary.closed(), make_closed_domain<D>);
-  add(scene.boundary.yields(), make_yielding_walls<D>);
-  const bool compressible = scene.is_compressible();
-  add(compressible && !scene.boundary.absorbing_patches().empty(), make_absorbing_boundaries<D>);
-  add(compressible, make_compression<D>);
-  add(compressible && !scene.boundary.upstream_patches().empty(), make_upstream_volume<D>);
+Terms<D> make_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction) {
+  Terms<D> terms;
+  add_wall_terms(scene, step, prediction, terms);
+  add_compressible_terms(scene, step, prediction, terms);
   return terms;
 }
 

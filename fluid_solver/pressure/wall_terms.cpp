@@ -139,21 +139,13 @@ class YieldingWalls final : public Term<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Term<D>> make_closed_domain(const Scene<D>& scene, const Step<D>& step,
-                                            const Prediction<D>& prediction) {
-  return std::make_unique<ClosedDomain<D>>(scene, step, prediction);
+void add_wall_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                    Terms<D>& terms) {
+  add_term<ClosedDomain<D>>(scene.boundary.closed(), scene, step, prediction, terms);
+  add_term<YieldingWalls<D>>(scene.boundary.yields(), scene, step, prediction, terms);
 }
 
-template decltype(make_closed_domain<2>) make_closed_domain<2>;
-template decltype(make_closed_domain<3>) make_closed_domain<3>;
-
-template <int D>
-std::unique_ptr<Term<D>> make_yielding_walls(const Scene<D>& scene, const Step<D>& step,
-                                             const Prediction<D>& prediction) {
-  return std::make_unique<YieldingWalls<D>>(scene, step, prediction);
-}
-
-template decltype(make_yielding_walls<2>) make_yielding_walls<2>;
-template decltype(make_yielding_walls<3>) make_yielding_walls<3>;
+template decltype(add_wall_terms<2>) add_wall_terms<2>;
+template decltype(add_wall_terms<3>) add_wall_terms<3>;
 
 }  // namespace couplet::fluid
