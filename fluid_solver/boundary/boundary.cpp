@@ -293,11 +293,13 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   rows_.sort();
 }
 
-/// Adds absorbing patches and inlets with an upstream volume, for a compressible fluid.
+/// Adds absorbing patches and inlets with a volume or line upstream, for a compressible fluid.
 template <int D>
 void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();
-  const bool has_volume = compressible && parameters.compressibility->upstream_volume > 0;
+  const bool has_line = compressible && parameters.compressibility->upstream_line;
+  const bool has_upstream = has_line || (compressible && parameters.compressibility->upstream_volume > 0);
+  const std::string upstream = has_line ? "upstream-line" : "upstream-volume";
   for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     const FaceRange faces{patch.first - mesh.n_interior, patch.count};
@@ -309,10 +311,10 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& pa
             "boundaries.{}.absorbing: an incompressible fluid has no pressure waves to let out; add 'compressibility', or "
             "remove the key.",
             patch.name);
-      if (inlet && has_volume)
+      if (inlet && has_upstream)
         throw Error(
-            "boundaries.{}.absorbing: the 'upstream-volume' behind this inlet already responds to the waves; remove one of the two.",
-            patch.name);
+            "boundaries.{}.absorbing: the '{}' behind this inlet already responds to the waves; remove one of the two.",
+            patch.name, upstream);
       absorbing_patches_.push_back({faces, inlet});
     }
     if (compressible && condition.velocity == GivenBy::flow)
@@ -320,13 +322,13 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& pa
           "boundaries.{}: a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' "
           "with 'absorbing: true'.",
           patch.name);
-    if (!has_volume || !inlet) continue;
+    if (!has_upstream || !inlet) continue;
     rows_.set(faces, {.pressure = 1, .slip_length = no_friction, .inflow = 0.5}, false);
     upstream_patches_.push_back(faces);
     closed_ = false;
   }
-  if (has_volume && upstream_patches_.empty())
-    throw Error("compressibility.upstream-volume: this fluid has no inlet; remove the key.");
+  if (has_upstream && upstream_patches_.empty())
+    throw Error("compressibility.{}: this fluid has no inlet; remove the key.", upstream);
 }
 
 template <int D>

@@ -118,6 +118,14 @@ void declare_rotation(config::Section& section, RotationParameters& rotation);
 /// Time scheme of the pressure waves of a weakly compressible fluid.
 enum class WaveScheme { none, three_level, trapezoidal };
 
+/// Tube behind the inlets that is not meshed.
+struct UpstreamLineParameters {
+  enum class End { closed, open, absorbing };
+  double length = 0, area = 0;  // [m], [m^2]
+  End end = End::closed;
+  double pressure = 0;  // [Pa], at an open end or of the wave that comes from an absorbing one
+};
+
 /// Compressibility of a fluid. With `none`, it is only used to check that neglecting it was justified.
 struct CompressibilityParameters {
   WaveScheme scheme = WaveScheme::three_level;
@@ -128,6 +136,11 @@ struct CompressibilityParameters {
   std::optional<double> pressure;        // [Pa], absolute; with the density: c^2 = gamma p / rho
   std::optional<double> heat_capacity_ratio;
   double upstream_volume = 0;  // [m^3], before the inlets, not in the mesh
+  std::optional<UpstreamLineParameters> upstream_line;
+  /// Volume of the fluid that is not meshed [m^3].
+  double unmeshed() const {
+    return upstream_volume + (upstream_line ? upstream_line->length * upstream_line->area : 0);
+  }
   bool is_solved() const { return scheme != WaveScheme::none; }
 };
 void declare(config::Section& section, CompressibilityParameters& parameters);

@@ -194,8 +194,8 @@ MakeTerm<D> make_absorbing_boundaries;
 /// Weak compressibility in the cells.
 template <int D>
 MakeTerm<D> make_compression;
-/// A volume behind the inlets.
+/// A volume or line behind the inlets.
 template <int D>
-MakeTerm<D> make_upstream_volume;
+MakeTerm<D> make_upstream;
 
 }  // namespace couplet::fluid

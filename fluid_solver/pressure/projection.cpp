@@ -42,7 +42,7 @@ std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const St
   const bool compressible = scene.is_compressible();
   add(compressible && !scene.boundary.absorbing_patches().empty(), make_absorbing_boundaries<D>);
   add(compressible, make_compression<D>);
-  add(compressible && !scene.boundary.upstream_patches().empty(), make_upstream_volume<D>);
+  add(compressible && !scene.boundary.upstream_patches().empty(), make_upstream<D>);
   return terms;
 }
 
