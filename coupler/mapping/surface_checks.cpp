@@ -33,15 +33,6 @@ std::vector<double> extents(MPI_Comm comm, const Side& side) {
   return result;
 }
 
-/// Extent of the face nearest to each point [m].
-std::vector<double> local_size(MPI_Comm comm, const std::vector<Vec3>& points, const Side& side) {
-  PointSet faces = side.places(Place::faces);
-  faces.sizes = extents(comm, side);
-  std::vector<double> sizes;
-  for (const Neighbour& n : nearest(comm, points, faces)) sizes.push_back(n.size);
-  return sizes;
-}
-
 double mean(MPI_Comm comm, const std::vector<double>& values) {
   double total = 0;
   for (const double v : values) total += v;
@@ -77,10 +68,10 @@ std::string other_extent(const PointBox& a, const std::string& from, const Point
           : "");
 }
 
-/// True if each of these points has another within a tenth of the face size.
-bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<double>& size) {
+/// True if each of these points has another within a tenth of the size of the nearest face.
+bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<Neighbour>& face) {
   bool far = false;
-  for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * size[i];
+  for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * face[i].size;
   return !parallel::any(comm, far);
 }
 
@@ -96,34 +87,42 @@ std::string not_nested(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
+PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to, bool by_nearest) {
   PlaceReport report;
   // Lumped participants (points with areas) have no extent to compare.
   if (from.faces.back() < 2 || to.faces.back() < 2 || from.vertices.back() < 2 || to.vertices.back() < 2)
     return report;
   const PointSet source = from.places(Place::vertices), target = to.places(Place::vertices);
-  const std::vector<double> target_size = local_size(comm, target.points, to),
-                            source_size = local_size(comm, source.points, from);
-  report.problem = other_extent(PointBox(comm, source.points), from.name, PointBox(comm, target.points),
-                                to.name, std::max(mean(comm, source_size), mean(comm, target_size)));
+  PointSet source_faces = from.places(Place::faces), target_faces = to.places(Place::faces);
+  source_faces.sizes = extents(comm, from), target_faces.sizes = extents(comm, to);
+  report.problem =
+      other_extent(PointBox(comm, source.points), from.name, PointBox(comm, target.points), to.name,
+                   std::max(mean(comm, source_faces.sizes), mean(comm, target_faces.sizes)));
   if (!report.problem.empty()) return report;
-  const std::vector<Neighbour> found = nearest(comm, target.points, source);
-  // Sizes of the source's faces at the targets.
-  const std::vector<double> there = local_size(comm, target.points, from);
-  for (std::size_t i = 0; i < target.points.size() && report.problem.empty(); ++i) {
-    const double size = std::max(there[i], target_size[i]);
-    if (found[i].distance <= 2 * size) continue;
-    const Vec3& p = target.points[i];
-    report.problem = fmt::format(
-        "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest point of '{}', where "
-        "the face size is {:.3g} m: the two interfaces are not the same surface. Check the meshes and which "
-        "patches are of type interface.",
-        p.x(), p.y(), p.z(), to.name, found[i].distance, from.name, size);
+  const std::vector<Neighbour> found = nearest(comm, target.points, source),
+                               face = nearest(comm, target.points, source_faces);
+  // The size of its own faces is only needed where a point is far for those of the source.
+  std::vector<std::size_t> far;
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < target.points.size(); ++i)
+    if (!(found[i].distance <= 2 * face[i].size)) far.push_back(i), places.push_back(target.points[i]);
+  if (parallel::any(comm, !far.empty())) {
+    const std::vector<Neighbour> own = nearest(comm, places, target_faces);
+    for (std::size_t k = 0; k < far.size() && report.problem.empty(); ++k) {
+      const double size = std::max(face[far[k]].size, own[k].size), distance = found[far[k]].distance;
+      if (distance <= 2 * size) continue;
+      const Vec3& p = places[k];
+      report.problem = fmt::format(
+          "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest point of '{}', where "
+          "the face size is {:.3g} m: the two interfaces are not the same surface. Check the meshes and which "
+          "patches are of type interface.",
+          p.x(), p.y(), p.z(), to.name, distance, from.name, size);
+    }
   }
   report.problem = first_text(comm, report.problem);
-  if (!report.problem.empty()) return report;
-  report.nests =
-      all_near(comm, found, there) || all_near(comm, nearest(comm, source.points, target), source_size);
+  if (!report.problem.empty() || !by_nearest) return report;
+  report.nests = all_near(comm, found, face) || all_near(comm, nearest(comm, source.points, target),
+                                                         nearest(comm, source.points, source_faces));
   if (const int most = most_followers(comm, found, source.starts); most >= 3)
     report.notes.push_back(
         fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
@@ -194,9 +193,9 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
     if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1 || fluids[link.giver] > 1)
       continue;
     if (!judged.insert({link.giver, link.taker}).second) continue;
-    const PlaceReport report = judge_places(comm, from, to);
-    if (!report.problem.empty()) throw Error("{}", report.problem);
     const bool by_nearest = mapping.type == MappingParameters::Type::nearest;
+    const PlaceReport report = judge_places(comm, from, to, by_nearest);
+    if (!report.problem.empty()) throw Error("{}", report.problem);
     if (by_nearest && !report.nests && std::ranges::any_of(from.interface.takes, coupling::is_amount))
       throw Error("{}", not_nested(from.name, to.name));
     if (by_nearest)

@@ -202,9 +202,8 @@ std::vector<Neighbour> nearest_here(const std::vector<Vec3>& points, const Point
   std::vector<Neighbour> found(points.size(), none);
   if (among.points.empty()) return found;
   const base::PointTree tree(among.points);
-  constexpr std::size_t candidates = 4;
   for (std::size_t i = 0; i < points.size(); ++i)
-    for (const Index candidate : tree.nearest(points[i], candidates)) {
+    for (const Index candidate : tree.closest(points[i])) {
       const auto j = std::size_t(candidate);
       const Neighbour here{(points[i] - among.points[j]).norm(), among.positions[j], among.ids[j],
                            among.sizes.empty() ? 1 : among.sizes[j], among.points[j]};
