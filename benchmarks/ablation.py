@@ -34,8 +34,8 @@ SWITCHES = {  # program: {estimator: [(file, text, what stands there without it)
         "difference of two gradients": [
             (STRAIN, "dim == 3 ? std::min", "dim == 3 && !OFF ? std::min"),
             (STRAIN, "audit.gradient_difference = std::sqrt(difference / of_size);", "audit.gradient_difference = OFF ? 0 : std::sqrt(difference / of_size);"),
-            ("solid_solver/body/inner_variation.cpp", "if (size > 0) found.missed", "if (size > 0 && !OFF) found.missed")],
-        "variation within quadrilaterals": [("solid_solver/body/inner_variation.cpp", "return mesh.dim == 2 && ", "return !OFF && mesh.dim == 2 && ")],
+            ("solid_solver/body/recovered_strain.cpp", "if (size > 0) found.missed", "if (size > 0 && !OFF) found.missed")],
+        "variation within quadrilaterals": [("solid_solver/body/recovered_strain.cpp", "return mesh.dim == 2 && ", "return !OFF && mesh.dim == 2 && ")],
         "residual of a reconstruction": [(ERROR, "  if (displacement_)\n", "  if (displacement_ && !OFF)\n")],
         "work against energy": [(STRAIN, "const { return scale > 0 ? std::abs(stress_work", "const { return scale > 0 && !OFF ? std::abs(stress_work")],
         "drift of the phase": [(ERROR, "if (!(size > 0) || !(strain > 0)) return 0;", "if (OFF || !(size > 0) || !(strain > 0)) return 0;")],

@@ -168,57 +168,41 @@ std::vector<diagnostics::Coordinate> Coupler::position() const {
            double(parameters_.convergence.max_iterations), "strong-robin"}};
 }
 
-// Checkpoints: state of the coupler.
-namespace {
-
-void write(io::CheckpointWriter& file, const std::string& name, const Iterate& x, const IterateOrder& order) {
-  file.write(order.unknown, name, x.unknown);
-  file.write(order.rider, name + "-rider", x.rider);
+void Coupler::visit(io::Archive archive) {
+  const IterateOrder order = known_->unknown.order(false);
+  for (const auto& [name, iterate] : {std::pair<std::string, Iterate*>{"now", &history_.now},
+                                      {"old", &history_.old},
+                                      {"older", &history_.older}}) {  // an iterate may be empty
+    archive.field(order.unknown, name, iterate->unknown, 1);
+    archive.field(order.rider, name + "-rider", iterate->rider, 1);
+  }
+  archive.common("history", history_.old_dt, history_.older_dt, iterations_);
+  std::vector<double> weights = known_->unknown.weights();
+  std::array<double, 2> scheme = scheme_.state();
+  archive.common("weights", weights);
+  archive.common("scheme", scheme);
+  if (archive.reads()) {
+    known_->unknown.restore_weights(weights);
+    scheme_.restore(scheme);
+  }
+  known_->record.visit(archive);
+  if (accelerator_) accelerator_->visit(archive, known_->unknown.order(true));
+  pass_.visit(archive);
+  diagnostics_.visit(archive);
 }
-
-/// Reads an iterate of the coupling's size, or an empty one.
-Iterate read(io::CheckpointReader& file, const std::string& name, const IterateOrder& order) {
-  return {file.read_or_none(order.unknown, name, 1), file.read_or_none(order.rider, name + "-rider", 1)};
-}
-
-}  // namespace
 
 void Coupler::save(const std::filesystem::path& folder) {
   enter_(app::Phase::save, {});
   pass_.ask_all({coupling::Op::save, {}, {}, 0, -1, folder.string()});
   io::CheckpointWriter file(comm_, folder / "coupler.h5");
-  const IterateOrder order = known_->unknown.order(false);
-  write(file, "now", history_.now, order);
-  write(file, "old", history_.old, order);
-  write(file, "older", history_.older, order);
-  io::Archive archive(file);
-  archive.common("history", history_.old_dt, history_.older_dt, iterations_);
-  file.write_common("weights", known_->unknown.weights());
-  file.write_common("scheme", scheme_.state());
-  known_->record.save(file);
-  if (accelerator_) accelerator_->save(file, known_->unknown.order(true));
-  pass_.save(file);
-  diagnostics_.visit(archive);
+  visit(io::Archive(file));
   file.close();
 }
 
 void Coupler::load() {
   enter_(app::Phase::load, {});
   io::CheckpointReader file(comm_, folders_.restart / "coupler.h5");
-  const IterateOrder order = known_->unknown.order(false);
-  history_.now = read(file, "now", order);
-  history_.old = read(file, "old", order);
-  history_.older = read(file, "older", order);
-  io::Archive archive(file);
-  archive.common("history", history_.old_dt, history_.older_dt, iterations_);
-  known_->unknown.restore_weights(file.read_common("weights"));
-  std::array<double, 2> scheme{};
-  file.read_common("scheme", scheme);
-  scheme_.restore(scheme);
-  known_->record.load(file);
-  if (accelerator_) accelerator_->load(file, known_->unknown.order(true));
-  pass_.load(file);
-  diagnostics_.visit(archive);
+  visit(io::Archive(file));
   const app::RunState state = app::read_run_state(folders_.restart);
   loop_.restart(state, folders_.restart);
   pass_.ask_all({coupling::Op::load, {}, {}, state.time, -1, folders_.restart.string()});

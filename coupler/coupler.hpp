@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/app/loop/step_loop.hpp"
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "coupler/acceleration/accelerator.hpp"
 #include "coupler/acceleration/unknown.hpp"
@@ -76,6 +76,7 @@ class Coupler {
   /// Forgets what was learned from passes of another kind.
   void start_acceleration();
   app::StepFailure cause_of(const std::string& reported) const;
+  void visit(io::Archive archive);
   void save(const std::filesystem::path& folder);
   void load();
   void finalise(const std::string& problem);

@@ -21,7 +21,7 @@ int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters
   coupler::Coupler coupler(job.comm, parameters, job.simulation, std::move(channels),
                            {job.output_folder, job.checkpoints, job.restart_folder});
   coupler.on_phase([&](app::Phase phase, std::optional<double> time) {
-    if (time) job.watch->set_time(*time);
+    if (time) job.supervisor->set_time(*time);
     job.enter(phase);
   });
   const auto start = std::chrono::steady_clock::now();

@@ -168,17 +168,10 @@ void Pass::hold_volume(std::size_t i, std::vector<coupling::Exchange>& known) {
   });
 }
 
-void Pass::save(io::CheckpointWriter& file) const {
-  if (volume_level_) volume_level_->save(file, sides_);
+void Pass::visit(io::Archive& archive) {
+  if (volume_level_) volume_level_->visit(archive, sides_);
   for (const Partner& partner : partners_)
-    if (const auto* foreign = dynamic_cast<const ForeignStructure*>(partner.channel.get()))
-      foreign->save(file);
-}
-
-void Pass::load(io::CheckpointReader& file) {
-  if (volume_level_) volume_level_->load(file, sides_);
-  for (const Partner& partner : partners_)
-    if (auto* foreign = dynamic_cast<ForeignStructure*>(partner.channel.get())) foreign->load(file);
+    if (auto* foreign = dynamic_cast<ForeignStructure*>(partner.channel.get())) foreign->visit(archive);
 }
 
 }  // namespace couplet::coupler

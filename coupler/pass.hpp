@@ -67,8 +67,7 @@ class Pass {
   bool answered_anew() const { return answered_anew_; }
 
   /// Saves or loads the coupling's own state: levels of closed fluids, displacements of foreign structures.
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  void visit(io::Archive& archive);
 
  private:
   void ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh);

@@ -3,7 +3,7 @@
 #include "common/io/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
-#include "fluid_solver/parameters/effects.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/participant.hpp"
 
 int main(int argc, char** argv) {

@@ -29,6 +29,11 @@ std::vector<double> datum(const coupling::Exchange& in, const char* name) {
   return given == in.end() ? std::vector<double>{} : given->second;
 }
 
+// Ratio of the number of sub-steps to the one last logged, or its inverse, that is logged again.
+constexpr double most_times_as_many = 2;
+
+bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
+
 }  // namespace
 
 /// One value per corner of each face of the patch, at the end of the step. Call after receive_points().
@@ -110,15 +115,6 @@ double FluidParticipant<D>::wall_displacement(const coupling::Exchange& in) cons
   }
   return parallel::max(mesh_.comm, largest);
 }
-
-namespace {
-
-// Ratio of the number of sub-steps to the one last logged, or its inverse, that is logged again.
-constexpr double most_times_as_many = 2;
-
-bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
-
-}  // namespace
 
 template <int D>
 FluidParticipant<D>::FluidParticipant(mesh::LoadedMesh loaded, const FluidParameters& parameters,
@@ -216,7 +212,7 @@ void FluidParticipant<D>::begin_step(const coupling::Step& step) {
   step_ = step;
   if (interface_) {
     std::vector<Vec3> points = fluid_->state().points;
-    fluid_->keep_volume(points, step.time);
+    keep_volume(*fluid_, points, step.time);
   }
   if (step.number == 0) tell_impulse();
   predicted_ = renewed_now_ = false;
@@ -236,7 +232,7 @@ std::vector<Vec3> FluidParticipant<D>::receive_points() {
   } else {
     return {};
   }
-  if (!interface_) fluid_->keep_volume(points, end);
+  if (!interface_) keep_volume(*fluid_, points, end);
   return points;
 }
 
@@ -276,7 +272,6 @@ double FluidParticipant<D>::answer() const {
 
 template <int D>
 void FluidParticipant<D>::prepare(const Vectors<D>& w) {
-  w_ = w;
   renewed_now_ = false;
   if (!predicted_) {
     fluid_->prepare(points_, w);
@@ -305,10 +300,6 @@ coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
 
 template <int D>
 coupling::StepReport FluidParticipant<D>::accept_step() {
-  if (step_.scheme == coupling::Scheme::semi_implicit) {
-    renewals_ = renewal_.count();
-    unseen_share_ = fluid_->unseen_share(w_);
-  }
   const auto effort = [&] {
     return fluid_->statistics().pressure_iterations + fluid_->statistics().viscous_iterations;
   };
@@ -326,9 +317,9 @@ void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   write_state(file, fluid_->state());
   fluid_->solvers().save(file);
-  // Writing does not change the statistics.
+  // Writing changes neither.
   if (statistics_) const_cast<RunningStatistics<D>&>(*statistics_).visit(io::Archive(file));
-  file.write_scalar("slowest-contraction", renewal_.slowest());
+  io::Archive(file).common("slowest-contraction", const_cast<Renewal<D>&>(renewal_).slowest());
 }
 
 template <int D>
@@ -337,7 +328,7 @@ void FluidParticipant<D>::load(io::CheckpointReader& file) {
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   fluid_->solvers().load(file);
   if (statistics_) statistics_->visit(io::Archive(file));
-  renewal_.restore(file.read_scalar("slowest-contraction"));
+  io::Archive(file).common("slowest-contraction", renewal_.slowest());
 }
 
 template <int D>

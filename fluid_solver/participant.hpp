@@ -14,7 +14,6 @@
 #include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/output/output.hpp"
 #include "fluid_solver/step/fluid.hpp"
-#include "fluid_solver/step/renewal.hpp"
 
 namespace couplet::fluid {
 
@@ -53,8 +52,8 @@ class FluidParticipant final : public coupling::Participant {
 
   /// View for diagnostics. It refers to this participant, which must outlive it. Call after initialise().
   FluidView<D> view() const {
-    return {mesh_,         *fluid_,           fluid_->sizes(), step_,     bool(interface_),
-            bool(motion_), bool(prescribed_), displacement_,   renewals_, unseen_share_};
+    return {mesh_,         *fluid_,           fluid_->sizes(), step_, bool(interface_),
+            bool(motion_), bool(prescribed_), displacement_};
   }
   const Fluid<D>& fluid() const { return *fluid_; }
 
@@ -92,13 +91,28 @@ class FluidParticipant final : public coupling::Participant {
   bool predicted_ = false;    // prediction of the current step is done
   bool renewed_now_ = false;  // the last pass repeated the prediction
   Renewal<D> renewal_;
-  Vectors<D> w_;  // wall velocity of the last pass
   // Largest displacement of an interface on a mesh at rest, over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
-  int renewals_ = 0;         // repeated predictions in the last step
-  double unseen_share_ = 0;  // error of the friction at the end of the last step, over the load
-  int told_sub_steps_ = 1;   // number of sub-steps last logged
+  int told_sub_steps_ = 1;  // number of sub-steps last logged
 };
+
+/// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its
+/// volume, beyond the error of faces that stand for curved walls. Sets the walls back along their normals by that error, unless
+/// a structure moves them. Collective.
+template <int D>
+void keep_volume(const Fluid<D>& fluid, std::vector<Vec3>& points, double time);
+
+/// Throws Error for an incompressible fluid with a trapped volume, or with a `volume-level` that it does not
+/// need. Without an outlet, walls may change the volume only if something sets the pressure level.
+/// Collective.
+template <int D>
+void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
+
+/// Area shares of the interface faces in the inflow of the given velocities [m^3/s], two values per face: at
+/// t^{n+1} and t^n. They sum to the inflows. Collective.
+template <int D>
+std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
+                                  double dt);
 
 /// Adds the diagnostics of a participant created by make_participant(). Call after its initialise().
 void add_diagnostics(const coupling::Participant& participant, diagnostics::Diagnostics& all);

@@ -12,7 +12,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "mesh_mover/guard.hpp"
+#include "mesh_mover/measures.hpp"
 
 namespace couplet::mesh_mover {
 namespace {
@@ -55,26 +55,6 @@ void append(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index cell, 
     s.weight[i] *= stiffness * geometry.volume[cell] / sum;
 }
 
-}  // namespace
-
-Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
-                         std::span<const double> volumes) {
-  Simplices s;
-  s.dim = mesh.dim;
-  const std::vector<double> stiffness = stiffness_of(mesh, volumes, stiffening);
-  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
-    mesh.dim == 2 ? append<2>(mesh, geometry, c, stiffness[c], s)
-                  : append<3>(mesh, geometry, c, stiffness[c], s);
-    if (c + 1 == mesh.cells.n_owned()) s.n_owned = s.size();
-  }
-  double total = 0;
-  for (Index i = 0; i < s.n_owned; ++i) total += s.weight[i];
-  s.total = parallel::sum(mesh.comm, total);
-  return s;
-}
-
-namespace {
-
 // Minimum cosine between normals at a point of one curved surface (26 degrees), and minimum new part of a
 // normal relative to held directions (6 degrees).
 constexpr double same_surface = 0.9, new_direction = 0.1;
@@ -104,52 +84,6 @@ Tensor3 held_by(std::vector<Vec3> areas) {
   }
   return held;
 }
-
-}  // namespace
-
-HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                            const Parameters& parameters) {
-  const Index n = mesh.points.n_local();
-  std::vector<char> is_fixed(n, 0), is_moved(n, 0);
-  std::vector<std::vector<std::pair<GlobalIndex, Vec3>>> slides(n);
-  for (const mesh::Patch& patch : mesh.patches) {
-    const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
-    if (motion == BoundaryMotion::periodic)
-      throw Error(
-          "boundaries.{}: method: barrier is not available with periodic patches. Use 'method: pseudo-solid', or "
-          "type: slip for both patches.",
-          patch.name);
-    for_faces(patch, [&](Index f) {
-      for (const Index v : mesh.face_points[f]) {
-        if (motion == BoundaryMotion::fixed) is_fixed[v] = 1;
-        if (is_given(motion)) is_moved[v] = 1;
-        if (motion == BoundaryMotion::slip)
-          slides[v].emplace_back(mesh.boundary_id[f - mesh.n_interior], geometry.face_area[f]);
-      }
-    });
-  }
-  HeldPoints held{std::vector<Tensor3>(n), std::vector<Tensor3>(n)};
-  double anything = 0;
-  for (Index v = 0; v < n; ++v) {
-    // The order is the same on every rank.
-    std::ranges::sort(slides[v], {}, &std::pair<GlobalIndex, Vec3>::first);
-    std::vector<Vec3> areas;
-    for (const auto& [face, area] : slides[v]) areas.push_back(area);
-    Tensor3 across = Tensor3::Identity() - held_by(std::move(areas));
-    if (mesh.dim == 2) across(2, 2) = 0;
-    if (across.norm() < 1e-6) across.setZero();
-    held.free[v] = is_fixed[v] || is_moved[v] ? Tensor3(Tensor3::Zero()) : across;
-    held.moved[v] = is_moved[v] && !is_fixed[v] ? across : Tensor3(Tensor3::Zero());
-    if (is_fixed[v] || is_moved[v]) anything = 1;
-  }
-  if (parallel::max(mesh.comm, anything) == 0)
-    throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
-  for (std::vector<Tensor3>* tensors : {&held.free, &held.moved})  // a ghost's faces may be on other ranks
-    mesh.points.update_ghosts({tensors->data()->data(), tensors->size() * 9}, 9);
-  return held;
-}
-
-namespace {
 
 /// Edges of a simplex: of the reference positions plus a displacement, or of a displacement only.
 template <int D>
@@ -232,6 +166,64 @@ double step_here(const SimplexEdges<D>& edges, std::span<const double> u, std::s
 }
 
 }  // namespace
+
+Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
+                         std::span<const double> volumes) {
+  Simplices s;
+  s.dim = mesh.dim;
+  const std::vector<double> stiffness = stiffness_of(mesh, volumes, stiffening);
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
+    mesh.dim == 2 ? append<2>(mesh, geometry, c, stiffness[c], s)
+                  : append<3>(mesh, geometry, c, stiffness[c], s);
+    if (c + 1 == mesh.cells.n_owned()) s.n_owned = s.size();
+  }
+  double total = 0;
+  for (Index i = 0; i < s.n_owned; ++i) total += s.weight[i];
+  s.total = parallel::sum(mesh.comm, total);
+  return s;
+}
+
+HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                            const Parameters& parameters) {
+  const Index n = mesh.points.n_local();
+  std::vector<char> is_fixed(n, 0), is_moved(n, 0);
+  std::vector<std::vector<std::pair<GlobalIndex, Vec3>>> slides(n);
+  for (const mesh::Patch& patch : mesh.patches) {
+    const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
+    if (motion == BoundaryMotion::periodic)
+      throw Error(
+          "boundaries.{}: method: barrier is not available with periodic patches. Use 'method: pseudo-solid', or "
+          "type: slip for both patches.",
+          patch.name);
+    for_faces(patch, [&](Index f) {
+      for (const Index v : mesh.face_points[f]) {
+        if (motion == BoundaryMotion::fixed) is_fixed[v] = 1;
+        if (is_given(motion)) is_moved[v] = 1;
+        if (motion == BoundaryMotion::slip)
+          slides[v].emplace_back(mesh.boundary_id[f - mesh.n_interior], geometry.face_area[f]);
+      }
+    });
+  }
+  HeldPoints held{std::vector<Tensor3>(n), std::vector<Tensor3>(n)};
+  double anything = 0;
+  for (Index v = 0; v < n; ++v) {
+    // The order is the same on every rank.
+    std::ranges::sort(slides[v], {}, &std::pair<GlobalIndex, Vec3>::first);
+    std::vector<Vec3> areas;
+    for (const auto& [face, area] : slides[v]) areas.push_back(area);
+    Tensor3 across = Tensor3::Identity() - held_by(std::move(areas));
+    if (mesh.dim == 2) across(2, 2) = 0;
+    if (across.norm() < 1e-6) across.setZero();
+    held.free[v] = is_fixed[v] || is_moved[v] ? Tensor3(Tensor3::Zero()) : across;
+    held.moved[v] = is_moved[v] && !is_fixed[v] ? across : Tensor3(Tensor3::Zero());
+    if (is_fixed[v] || is_moved[v]) anything = 1;
+  }
+  if (parallel::max(mesh.comm, anything) == 0)
+    throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
+  for (std::vector<Tensor3>* tensors : {&held.free, &held.moved})  // a ghost's faces may be on other ranks
+    mesh.points.update_ghosts({tensors->data()->data(), tensors->size() * 9}, 9);
+  return held;
+}
 
 BarrierSystem::BarrierSystem(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                              const Simplices& simplices, const HeldPoints& held)

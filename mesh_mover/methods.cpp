@@ -161,16 +161,6 @@ class PseudoSolid final : public MotionMethod {
   linalg::SolveStatistics last_;
 };
 
-}  // namespace
-
-std::unique_ptr<MotionMethod> make_pseudo_solid(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                                                const Parameters& parameters,
-                                                std::span<const double> volumes) {
-  return std::make_unique<PseudoSolid>(mesh, geometry, parameters, volumes);
-}
-
-namespace {
-
 constexpr double turn = 2 * std::numbers::pi;
 // Ratio r2/r1 below which there is no room to rotate.
 constexpr double least_room = 1.05;
@@ -329,6 +319,12 @@ class Rotations final : public MotionMethod {
 };
 
 }  // namespace
+
+std::unique_ptr<MotionMethod> make_pseudo_solid(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
+                                                const Parameters& parameters,
+                                                std::span<const double> volumes) {
+  return std::make_unique<PseudoSolid>(mesh, geometry, parameters, volumes);
+}
 
 std::unique_ptr<MotionMethod> make_rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                              const Parameters& parameters, std::span<const double> volumes) {

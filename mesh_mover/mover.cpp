@@ -59,6 +59,10 @@ std::vector<std::string> interface_patches(const Parameters& parameters) {
   return names;
 }
 
+// Times at which prescribed motions are tested: one per five steps, which costs a fifth of the mesh motion.
+constexpr int most_looks = 40;
+constexpr double looks_per_step = 0.2;
+
 }  // namespace
 
 Mover::Mover(const Parameters& parameters, const app::ParticipantContext& context)
@@ -70,7 +74,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       mesh_(std::move(loaded.mesh)),
       geometry_(std::move(loaded.geometry)),
       periodic_(mesh_, geometry_),
-      guard_(mesh_, geometry_, parameters),
+      measures_(mesh_, geometry_, parameters),
       curved_(mesh_, geometry_, parameters),
       moving_(mesh_, geometry_, parameters),
       chooses_(parameters.method == Method::automatic && !incremental() && periodic_.empty()),
@@ -190,7 +194,7 @@ std::string Mover::place_and_judge() {
   curved_.put_back(displacement_);
   refuse_torn();
   place();
-  return guard_.refusal(moved_);
+  return measures_.refusal(moved_);
 }
 
 /// Sets displacement_ and moved_.
@@ -235,20 +239,24 @@ coupling::StepReport Mover::accept_step() {
   if (laplacian_) tell_choice();
   laplacian_.reset();
   if (incremental()) make_method();
+  quality_now_ = state();
+  const double jacobian = quality_now_.worst[MeshState::scaled_jacobian].value;
+  least_jacobian_ = std::min(least_jacobian_.value_or(jacobian), jacobian);
   return report;
 }
 
 MeshState Mover::state() {
   place();
-  return guard_.measure(moved_);
+  return measures_.measure(moved_);
 }
 
 void Mover::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   file.write(mesh::Entries::points, "displacement", accepted_);
-  file.write_scalar("barrier-in-force", parameters_.method == Method::barrier && !laplacian_ ? 1 : 0);
-  // The incremental form has no state between steps.
   io::Archive archive(file);
+  bool by_barrier = parameters_.method == Method::barrier && !laplacian_;
+  archive.common("barrier-in-force", by_barrier);
+  // The incremental form has no state between steps.
   if (!incremental()) (laplacian_ ? laplacian_ : method_)->visit(archive);
 }
 
@@ -257,30 +265,26 @@ void Mover::load(io::CheckpointReader& file) {
   file.read(mesh::Entries::points, "displacement", accepted_);
   displacement_ = accepted_;
   laplacian_.reset();
+  io::Archive archive(file);
+  bool by_barrier = false;
+  archive.common("barrier-in-force", by_barrier);
   // A later end time includes more motions: then the barrier is used from here on, from the mesh as read.
-  const bool by_barrier = file.read_scalar("barrier-in-force") > 0,
-             begins = chooses_ && ahead_ && !by_barrier;
+  const bool begins = chooses_ && ahead_ && !by_barrier;
   const Method wanted = by_barrier || ahead_ ? Method::barrier : Method::automatic;
   if (chooses_ && (begins || parameters_.method != wanted)) {
     parameters_.method = wanted;
     make_method();
   }
   placed_ = false;
-  io::Archive archive(file);
-  if (incremental())
-    make_method();
-  else if (!begins)
-    method_->visit(archive);
+  if (incremental()) make_method();
+  if (!incremental() && !begins) method_->visit(archive);
 }
 
 void Mover::write_monitors(double time) {
-  const MeshState now = state();
-  const double jacobian = now.worst[MeshState::scaled_jacobian].value;
-  least_jacobian_ = std::min(least_jacobian_.value_or(jacobian), jacobian);
   if (!quality_) return;
   std::vector<double> row{time};
-  for (const Worst& worst : now.worst) row.push_back(worst.value);
-  const Worst& worst = now.worst[MeshState::scaled_jacobian];
+  for (const Worst& worst : quality_now_.worst) row.push_back(worst.value);
+  const Worst& worst = quality_now_.worst[MeshState::scaled_jacobian];
   row.insert(row.end(), {double(worst.cell), worst.place.x(), worst.place.y(), worst.place.z()});
   quality_->row(row);
 }
@@ -295,23 +299,15 @@ void Mover::write_output(double time, int) {
   if (!fields_) return;
   place();
   using Place = io::OutputField::Place;
-  const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved_),
-                            jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved_),
-                            edges = guard_.of_cells(MeshState::edge_ratio, moved_);
+  const std::vector<double> volume = measures_.of_cells(MeshState::volume_ratio, moved_),
+                            jacobian = measures_.of_cells(MeshState::scaled_jacobian, moved_),
+                            edges = measures_.of_cells(MeshState::edge_ratio, moved_);
   fields_->write(time, moved_.points,
                  {{"displacement", "m", Place::points, mesh_.dim, displacement_},
                   {"volume-ratio", "1", Place::cells, 1, volume},
                   {"scaled-jacobian", "1", Place::cells, 1, jacobian},
                   {"edge-ratio", "1", Place::cells, 1, edges}});
 }
-
-namespace {
-
-// Times at which prescribed motions are tested: one per five steps, which costs a fifth of the mesh motion.
-constexpr int most_looks = 40;
-constexpr double looks_per_step = 0.2;
-
-}  // namespace
 
 void Mover::tell_choice() const {
   if (parallel::comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason_);

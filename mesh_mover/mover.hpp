@@ -13,7 +13,7 @@
 #include "common/io/fields/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/periodic_points.hpp"
-#include "mesh_mover/guard.hpp"
+#include "mesh_mover/measures.hpp"
 #include "mesh_mover/methods.hpp"
 #include "mesh_mover/parameters.hpp"
 #include "mesh_mover/patches.hpp"
@@ -67,7 +67,7 @@ class Mover final : public coupling::Participant {
   const mesh::Geometry geometry_;
   mesh::PeriodicPoints periodic_;
   std::unique_ptr<mesh::Geometry> base_;  // incremental: geometry of the last step
-  Guard guard_;
+  CellMeasures measures_;
   CurvedSlide curved_;
   MovingPatches moving_;
   std::unique_ptr<MotionMethod> method_;
@@ -82,6 +82,7 @@ class Mover final : public coupling::Participant {
   bool placed_ = false;  // moved_ corresponds to displacement_
   mesh::Geometry moved_;
   std::unique_ptr<io::Series> quality_;
+  MeshState quality_now_;                    // of the accepted mesh
   std::optional<double> least_jacobian_;     // of the run
   std::unique_ptr<io::FieldWriter> fields_;  // only without a fluid
 };

@@ -50,7 +50,7 @@ enum class Form {
 enum class StiffeningVolumes { reference, current };
 
 /// Limits of a moved mesh; 0 or infinity allows any cell that is not inverted.
-struct GuardParameters {
+struct QualityLimits {
   double smallest_scaled_jacobian = -1;
   std::optional<double> largest_edge_ratio, largest_angle, largest_area_change, largest_shape_change;
   bool judges_shape() const {
@@ -73,7 +73,7 @@ struct Parameters {
   double poisson_ratio = 0;
   /// Smallest allowed volume of a cell, relative to the reference.
   double smallest_volume_ratio = 0.0;
-  GuardParameters guard;
+  QualityLimits guard;
   std::map<std::string, Boundary> boundaries;
   linalg::LinearOptions linear{
       .method = linalg::LinearMethod::direct_symmetric, .relative_tolerance = 1e-10, .max_iterations = 500};
@@ -81,7 +81,7 @@ struct Parameters {
 
 void declare(config::Section& section, Parameters& parameters);
 
-using Card = diagnostics::EffectCard<Parameters>;
+using Card = diagnostics::EffectEntry<Parameters>;
 std::span<const Card> effect_cards();
 
 }  // namespace couplet::mesh_mover

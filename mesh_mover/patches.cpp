@@ -69,6 +69,26 @@ constexpr double round_off = 1e-12;
 // Squared relative extent of the points below which a direction has none.
 constexpr double least_extent = 1e-10;
 
+// Largest 1 - |cosine| between a face and the patch's mean normal for a flat patch.
+constexpr double flat = 1e-9;
+
+/// True if all faces are parallel. Parts may face each other (two sides of a slice), so that their face
+/// vectors cancel. Collective.
+bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
+  Tensor3 sum = Tensor3::Zero();
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const Vec3& area = geometry.face_area[f];
+    sum += area * area.transpose() / area.norm();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sum.data(), 9, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  // Eigenvector of the largest eigenvalue.
+  const Vec3 normal = Eigen::SelfAdjointEigenSolver<Tensor3>(sum).eigenvectors().col(2);
+  double off = 0;
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    off = std::max(off, 1 - std::abs(geometry.face_area[f].normalized().dot(normal)));
+  return parallel::max(mesh.comm, off) <= flat;
+}
+
 }  // namespace
 
 AffineFit::AffineFit(const mesh::Mesh& mesh, const mesh::Geometry& geometry, std::vector<Index> points)
@@ -119,30 +139,6 @@ std::optional<AffineFit::Coefficients> AffineFit::operator()(std::span<const dou
   if (!(largest[1] <= round_off * largest[0])) return std::nullopt;
   return Coefficients{a, b[0], b[1], b[2]};
 }
-
-namespace {
-
-// Largest 1 - |cosine| between a face and the patch's mean normal for a flat patch.
-constexpr double flat = 1e-9;
-
-/// True if all faces are parallel. Parts may face each other (two sides of a slice), so that their face
-/// vectors cancel. Collective.
-bool is_flat(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
-  Tensor3 sum = Tensor3::Zero();
-  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-    const Vec3& area = geometry.face_area[f];
-    sum += area * area.transpose() / area.norm();
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sum.data(), 9, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  // Eigenvector of the largest eigenvalue.
-  const Vec3 normal = Eigen::SelfAdjointEigenSolver<Tensor3>(sum).eigenvectors().col(2);
-  double off = 0;
-  for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    off = std::max(off, 1 - std::abs(geometry.face_area[f].normalized().dot(normal)));
-  return parallel::max(mesh.comm, off) <= flat;
-}
-
-}  // namespace
 
 CurvedSlide::CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters)
     : mesh_(mesh), geometry_(geometry) {

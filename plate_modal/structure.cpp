@@ -176,14 +176,13 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   fluid_force_.resize(std::max(fluid_force_.size(), viscous.size()), 0.);
   for (std::size_t i = 0; i < viscous.size(); ++i) fluid_force_[i] += viscous[i];
   surface_.add_load(fluid_force_, fluid);
-  pressure_acts_ = false;
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     // A partner's load is its mean over the step, valid at mid-step; schemes that solve later extrapolate it.
     const time::TimeScheme scheme = parameters_.time_scheme.type;
     const bool looks_back = time::uses_acceleration(scheme) || time::uses_old_level(scheme);
     const auto load = [&](double after, std::span<double> total) {
       if (pressure_)
-        add_pressure(step_.time + after, total);
+        pressure_->at(step_.time + after, total);
       else
         std::ranges::fill(total, 0);
       for (std::size_t m = 0; m < fluid.size(); ++m) total[m] += fluid[m];
@@ -209,15 +208,10 @@ coupling::Exchange Structure::solve(const coupling::Exchange& in) {
   return out;
 }
 
-void Structure::add_pressure(double t, std::span<double> load) {
-  pressure_->at(t, load);
-  pressure_acts_ = pressure_acts_ || std::ranges::any_of(load, [](double f) { return f != 0; });
-}
-
 /// q = Q/omega^2 of each mode; K u = f on rank 0.
 void Structure::solve_static(double t, std::span<const double> fluid) {
   std::vector<double> load(fluid.size(), 0);
-  if (pressure_) add_pressure(t, load);
+  if (pressure_) pressure_->at(t, load);
   for (std::size_t m = 0; m < load.size(); ++m) {
     trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (surface_.omega()[m] * surface_.omega()[m]);
     trial_.v[m] = 0;
@@ -271,17 +265,12 @@ coupling::StepReport Structure::accept_step() {
 }
 
 void Structure::save(io::CheckpointWriter& file) const {
-  file.write_common("omega", surface_.omega());
-  file.write_common("state", base::to_numbers(state_));
+  const_cast<Structure*>(this)->visit(io::Archive(file));  // writing changes nothing
 }
 
 void Structure::load(io::CheckpointReader& file) {
-  if (file.read_common("omega") != surface_.omega())
-    throw Error(
-        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
-        "supports or the number of modes differ.");
   const ModalState fresh = initial_state();
-  base::from_numbers(file.read_common("state"), state_, "modes");
+  visit(io::Archive(file));
   for (const auto part :
        {&ModalState::q, &ModalState::v, &ModalState::a, &ModalState::q_old, &ModalState::v_old})
     if ((state_.*part).size() != (fresh.*part).size())
@@ -289,6 +278,16 @@ void Structure::load(io::CheckpointReader& file) {
   take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
   trial_ = state_;
   displacement_ = surface_.motion(state_.q);
+}
+
+void Structure::visit(io::Archive archive) {
+  std::vector<double> omega = surface_.omega();
+  archive.common("omega", omega);
+  if (omega != surface_.omega())
+    throw Error(
+        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
+        "supports or the number of modes differ.");
+  archive.common("state", state_);
 }
 
 void Structure::write_output(double time, int) { results_->write_fields(time); }

@@ -32,7 +32,7 @@ class Structure final : public coupling::Participant {
   /// View for diagnostics. It refers to this structure, which must outlive it.
   PlateView view() const {
     return {parameters_, context_.comm, built_, surface_,      *oscillators_, contact_.get(), pressure_.get(),
-            step_,       trial_,        state_, displacement_, deflection_,   fluid_force_,   pressure_acts_};
+            step_,       trial_,        state_, displacement_, deflection_,   fluid_force_};
   }
   const Parameters& parameters() const { return parameters_; }
   const PlateContext& context() const { return context_; }
@@ -50,7 +50,7 @@ class Structure final : public coupling::Participant {
   std::vector<double> received(const coupling::Exchange& in, const char* name) const;
   void make_contact();
   void refuse_wound_springs() const;
-  void add_pressure(double t, std::span<double> load);
+  void visit(io::Archive archive);
   void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;
@@ -72,7 +72,6 @@ class Structure final : public coupling::Participant {
   bool repeats_ = false;
   coupling::Step step_;
   std::vector<double> fluid_force_;  // of a partner in the last solve(), 3 a face
-  bool pressure_acts_ = false;       // a prescribed pressure was not 0 somewhere in the last solve()
   std::unique_ptr<PlateResults> results_;
 };
 

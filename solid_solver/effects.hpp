@@ -10,7 +10,7 @@
 
 namespace couplet::solid {
 
-using SolidCard = diagnostics::EffectCard<SolidParameters>;
+using SolidCard = diagnostics::EffectEntry<SolidParameters>;
 /// True if the volume strain of cells replaces that of faces, which avoids locking near incompressibility.
 bool has_volume_strain_of_cells(const SolidParameters& parameters);
 /// All effects beyond linear elasticity, in the order of the report.

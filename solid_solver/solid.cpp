@@ -12,7 +12,6 @@
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
-#include "solid_solver/output/heat_quantities.hpp"
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 

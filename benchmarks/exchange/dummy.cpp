@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A participant without computations: n vertices on a sheet, three numbers in each direction, y_i = c_i - g_i
 // x_i. Usage: dummy one|two VERTICES [changing], where `changing` varies g in each step, to defeat an
-// accelerator; or dummy plain VERTICES on two processes, which sends the same bytes by MPI only.
+// accelerator; or dummy plain VERTICES on two processes, which sends the same bytes there and back by MPI only,
+// or on three, through the second, which has the coupler's place.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -18,19 +19,23 @@ double seconds(Clock::time_point since) {
 }
 
 int plain(int n) {
-  int rank = 0;
+  int rank = 0, ranks = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   std::vector<double> values(3 * std::size_t(n), rank);
   constexpr int rounds = 200;
   double least = 1e9;
   for (int k = 0; k < rounds; ++k) {
     MPI_Barrier(MPI_COMM_WORLD);
     const auto start = Clock::now();
-    for (int way = 0; way < 2; ++way)
-      if (rank == way)
-        MPI_Send(values.data(), 3 * n, MPI_DOUBLE, 1 - rank, 0, MPI_COMM_WORLD);
-      else
-        MPI_Recv(values.data(), 3 * n, MPI_DOUBLE, 1 - rank, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    for (int hop = 0; hop < 2 * (ranks - 1); ++hop) {
+      const bool back = hop >= ranks - 1;
+      const int from = back ? 2 * (ranks - 1) - hop : hop, to = back ? from - 1 : from + 1;
+      if (rank == from)
+        MPI_Send(values.data(), 3 * n, MPI_DOUBLE, to, 0, MPI_COMM_WORLD);
+      else if (rank == to)
+        MPI_Recv(values.data(), 3 * n, MPI_DOUBLE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    }
     least = std::min(least, seconds(start));
   }
   if (rank == 0) std::printf("plain %.6f ms there and back\n", 1e3 * least);

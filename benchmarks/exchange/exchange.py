@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""What an exchange of 1e5 vectors of three costs a pass: two dummies and the coupler, against the same bytes by MPI alone.
+"""What an exchange of 1e5 vectors of three costs a pass: two dummies and the coupler, against the same bytes by MPI alone,
+between the two dummies and through a third process, which has the coupler's place.
 Usage: exchange.py [VERTICES] [--bin build/bin]   (compiles dummy.cpp with the client's sources by mpicxx)"""
 import argparse
 import os
@@ -31,7 +32,7 @@ KINDS = {"constant": "{type: constant, initial-relaxation: 0.66}", "aitken": "{t
 
 
 def measure(vertices, programs, end=0.2):
-    """Returns {kind: (passes a step, ms a pass without the dummies' own)} and ms of MPI alone, there and back."""
+    """Returns {kind: (passes a step, ms a pass without the dummies' own)} and ms of MPI alone, there and back: between two, and through a third."""
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     with tempfile.TemporaryDirectory() as folder:
         dummy = pathlib.Path(folder) / "dummy"
@@ -43,7 +44,8 @@ def measure(vertices, programs, end=0.2):
             if done.returncode:
                 sys.exit(done.stdout[-2000:] + done.stderr[-2000:])
             return done.stdout
-        plain = float(re.search(r"plain ([\d.]+) ms", run("--mca", "pml", "ob1", "--mca", "btl", "self,vader", "-n", 2, dummy, "plain", vertices))[1])
+        plain = [float(re.search(r"plain ([\d.]+) ms", run("--mca", "pml", "ob1", "--mca", "btl", "self,vader", "-n", ranks, dummy, "plain", vertices))[1])
+                 for ranks in (2, 3)]
         found = {}
         for kind, text in KINDS.items():
             changing = ["changing"] if "changing" in kind else []
@@ -52,7 +54,7 @@ def measure(vertices, programs, end=0.2):
                       "-n", 1, dummy, "two", vertices, *changing)
             passes, ms, own = (float(w) for w in re.search(r"passes (\d+), ([\d.]+) ms a pass, of it the dummies' own ([\d.]+)", out).groups())
             found[kind] = passes / round(end / 0.01), ms - own
-        return found, plain
+        return found, *plain
 
 
 if __name__ == "__main__":
@@ -60,7 +62,7 @@ if __name__ == "__main__":
     parser.add_argument("vertices", nargs="?", type=int, default=100000)
     parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/bin")
     options = parser.parse_args()
-    results, alone = measure(options.vertices, options.bin.resolve())
-    print(f"MPI alone: {alone:.3f} ms there and back of {options.vertices} vectors")
+    results, alone, through = measure(options.vertices, options.bin.resolve())
+    print(f"MPI alone: {alone:.3f} ms there and back of {options.vertices} vectors, {through:.3f} ms through a third process")
     for kind, (passes, ms) in results.items():
-        print(f"{kind}: {ms:.3f} ms a pass ({ms / alone:.1f} times), {passes:.1f} passes a step, {ms * passes:.1f} ms a step")
+        print(f"{kind}: {ms:.3f} ms a pass ({ms / alone:.1f} and {ms / through:.1f} times), {passes:.1f} passes a step, {ms * passes:.1f} ms a step")

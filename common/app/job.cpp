@@ -17,7 +17,7 @@
 #include "common/app/case/case_file.hpp"
 #include "common/app/case/command_line.hpp"
 #include "common/app/loop/step_loop.hpp"
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
@@ -127,9 +127,9 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
 }
 
 /// Reports an exception once per participant and ends all programs of the job.
-[[noreturn]] void end_the_job(Watch& watch, const char* what, bool configuring) {
-  if (watch.claim_report()) log::error("{}", what);
-  watch.ending();
+[[noreturn]] void end_the_job(Supervisor& supervisor, const char* what, bool configuring) {
+  if (supervisor.claim_report()) log::error("{}", what);
+  supervisor.ending();
   leave(configuring ? exit_configuration : exit_failed);
 }
 
@@ -198,9 +198,9 @@ int leave_together(MPI_Comm programs, int code) {
 }
 
 int attend(const CommandLine& command_line, const Program& program, const CaseFile& file,
-           const std::string& label, MPI_Comm programs, std::optional<StartGuard>& start_guard,
+           const std::string& label, MPI_Comm programs, std::optional<StartDeadline>& start_guard,
            const std::function<int(const Job&)>& run) {
-  Watch watch(programs, label);
+  Supervisor supervisor(programs, label);
   log::setup(label, 0, command_line.verbosity);
   try {
     const std::vector<Attendant> attendants =
@@ -214,27 +214,27 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
     for (const Attendant& a : attendants)
       rank += a.participant == file.participant && a.world_rank < world_rank;
     FaultInjection faults(label, rank);
-    job.watch = &watch;
+    job.supervisor = &supervisor;
     job.faults = &faults;
     job.enter(Phase::roll_call);
-    const Verdict verdict = judge(attendants, file.expected, file.coupled);
-    if (!verdict.problem.empty()) {
-      if (world_rank == speaker(attendants)) fmt::print(stderr, "couplet: {}\n", verdict.problem);
+    const Attendance attendance = attendance_of(attendants, file.expected, file.coupled);
+    if (!attendance.problem.empty()) {
+      if (world_rank == speaker(attendants)) fmt::print(stderr, "couplet: {}\n", attendance.problem);
       all_agree_to_start(MPI_COMM_WORLD, true);
-      watch.ending();  // the launcher ends the others after the first exit with this code
+      supervisor.ending();  // the launcher ends the others after the first exit with this code
       return exit_configuration;
     }
     if (!all_agree_to_start(MPI_COMM_WORLD, false)) {
-      watch.ending();
+      supervisor.ending();
       return exit_configuration;
     }
     MPI_Comm_split(MPI_COMM_WORLD, color, world_rank, &job.comm);
     job.rank = parallel::comm_rank(job.comm);
-    watch.set_rank(job.rank);
+    supervisor.set_rank(job.rank);
     for (const Attendant& a : attendants)
-      if (!a.process.empty()) watch.add_guest(a.participant, a.process);
+      if (!a.process.empty()) supervisor.add_guest(a.participant, a.process);
     job.name = file.participant;
-    job.alone = verdict.alone;
+    job.alone = attendance.alone;
     job.document = &*file.document;
     job.simulation = file.simulation;
     job.choices = file.choices;
@@ -243,17 +243,17 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
     diagnostics::accept(command_line.accept);
     prepare(job, command_line, program.is_coupler);
     job.enter(Phase::initialise);
-    watch.limit_silence(job.simulation.hang_timeout);
+    supervisor.limit_silence(job.simulation.hang_timeout);
     start_guard.reset();
     for (const std::string& doubt : file.doubts)
       diagnostics::finding(job.rank, {.id = "questionable-key", .sentence = doubt});
     const int code = run(job);
-    watch.enter(Phase::waiting);  // for the others: no sign of life of this process is due
-    if (code == 0 && Watch::has_stopped()) return exit_stopped;
+    supervisor.enter(Phase::waiting);  // for the others: no sign of life of this process is due
+    if (code == 0 && Supervisor::has_stopped()) return exit_stopped;
     return code == 0 ? code_of_findings(job, command_line.strict) : code;
   } catch (const std::exception& error) {
     const bool of_the_user = dynamic_cast<const Error*>(&error) && !dynamic_cast<const SolveFailure*>(&error);
-    end_the_job(watch, error.what(), of_the_user && watch.phase() <= Phase::initialise);
+    end_the_job(supervisor, error.what(), of_the_user && supervisor.phase() <= Phase::initialise);
   }
 }
 
@@ -292,7 +292,7 @@ int run_job(int argc, char** argv, const Program& program, const std::function<i
   const std::string label = file.participant.empty() ? program.name : file.participant;
   // MPI's own start takes seconds on a busy machine.
   const double patience = file.simulation.hang_timeout > 0 ? std::max(file.simulation.hang_timeout, 4.0) : 0;
-  std::optional<StartGuard> start_guard(std::in_place, patience, label);
+  std::optional<StartDeadline> start_guard(std::in_place, patience, label);
   MPI_Init(&argc, &argv);
   // Reduces the timer slack, because Linux adds 50 us to each short sleep by default.
   prctl(PR_SET_TIMERSLACK, 2000UL);
@@ -301,7 +301,7 @@ int run_job(int argc, char** argv, const Program& program, const std::function<i
   start_guard.reset();
   std::fflush(nullptr);
   const int agreed_code = leave_together(programs, code);
-  Watch::finished();
+  Supervisor::finished();
   return agreed_code;
 }
 

@@ -10,8 +10,8 @@
 
 #include "common/app/case/case_file.hpp"
 #include "common/app/case/roll_call.hpp"
-#include "common/app/loop/simulation.hpp"
-#include "common/app/watch/watch.hpp"
+#include "common/app/loop/step_loop.hpp"
+#include "common/app/supervision/supervisor.hpp"
 
 namespace couplet::app {
 
@@ -30,12 +30,12 @@ struct Job {
   std::filesystem::path restart_folder;            ///< checkpoint to continue from; empty for a fresh start
   double restart_time;                             ///< its time [s]; NaN for a fresh start
   std::vector<diagnostics::EffectChoice> choices;  ///< of `effects: auto`
-  Watch* watch = nullptr;
+  Supervisor* supervisor = nullptr;
   FaultInjection* faults = nullptr;
 
   /// Tells the other processes the current phase of this one.
   void enter(Phase phase) const {
-    watch->enter(phase);
+    supervisor->enter(phase);
     faults->at(couplet::app::name(phase));
   }
   const Member* find(const std::string& participant) const;

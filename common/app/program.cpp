@@ -59,7 +59,7 @@ void warn_of_shared_cores(const Job& job) {
 
 int run(const Job& job, const Program& program) {
   const std::shared_ptr<void> environment = program.environment ? program.environment(job.comm) : nullptr;
-  Watch::install();
+  Supervisor::install();
   ParticipantContext context;
   context.comm = job.comm;
   context.name = job.name;

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "common/app/loop/simulation.hpp"
+#include "common/app/loop/step_loop.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"

@@ -11,7 +11,7 @@
 #include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
-#include "common/coupling/serve.hpp"
+#include "common/coupling/channel.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/diagnostics/finding.hpp"
@@ -70,19 +70,19 @@ class Bookkeeping {
     if (command.op == coupling::Op::begin_step || command.op == coupling::Op::write_output ||
         command.op == coupling::Op::finalise)
       release();
-    if (command.op == coupling::Op::begin_step) job_.watch->set_time(command.step.time);
+    if (command.op == coupling::Op::begin_step) job_.supervisor->set_time(command.step.time);
     job_.enter(phase_of(command.op));
   }
   /// Until the files are there, an error is one of the start.
   void release() {
-    job_.watch->enter(Phase::initialise);
+    job_.supervisor->enter(Phase::initialise);
     base::release_files();
   }
   void done(const coupling::Command& command) {
     const double seconds = seconds_since(since_);
     log::timers().add(couplet::coupling::name(command.op), seconds);
     report_.spent(seconds, RunReport::processor_seconds() - processor_since_);
-    if (command.op == coupling::Op::accept_step) job_.watch->set_time(command.time);
+    if (command.op == coupling::Op::accept_step) job_.supervisor->set_time(command.time);
   }
 
  private:

@@ -22,6 +22,7 @@ struct Cloud {
     return false;
   }
 };
+constexpr double equal = 1 + 2e-9;  // of squares
 using Tree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, Index>;
 /// Indices and squared distances. The type of an item depends on nanoflann's version.
@@ -45,7 +46,6 @@ std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
   const std::size_t all = state_->cloud.points.size();
   k = std::min(k, all);
   if (k == 0) return {};
-  constexpr double equal = 1 + 2e-9;  // of squares
   std::vector<Index> indices;
   std::vector<double> squares;
   // Queries more than k points until the last one is farther than the k-th.
@@ -64,12 +64,28 @@ std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
   return indices;
 }
 
+std::vector<Index> PointTree::closest(const Vec3& p) const {
+  const std::size_t all = state_->cloud.points.size();
+  static thread_local std::vector<double> squares;  // keeps its memory
+  std::vector<Index> indices;
+  for (std::size_t n = std::min<std::size_t>(2, all);; n = std::min(4 * n, all)) {
+    indices.resize(n), squares.resize(n);
+    state_->tree.knnSearch(p.data(), n, indices.data(), squares.data());
+    while (!squares.empty() && squares.back() > squares.front() * equal) squares.pop_back();
+    if (squares.size() < n || n == all) break;
+  }
+  indices.resize(squares.size());
+  return indices;
+}
+
 std::vector<Index> PointTree::within(const Vec3& p, double distance) const {
-  Found found;
+  static thread_local Found found;  // keeps its memory
   // nanoflann excludes points at the limit. A distance of 0 must include the position itself.
   const double square = distance * distance * (1 + 1e-9) + std::numeric_limits<double>::min();
-  state_->tree.radiusSearch(p.data(), square, found, {});
+  nanoflann::RadiusResultSet<double, Index> set(square, found);
+  state_->tree.radiusSearchCustomCallback(p.data(), set);
   std::vector<Index> indices;
+  indices.reserve(found.size());
   for (const auto& item : found) indices.push_back(item.first);
   return indices;
 }

@@ -18,6 +18,8 @@ class PointTree {
   /// The k nearest points, nearest first, or all if there are fewer. Points at the same distance (to
   /// round-off) are sorted by index, so the result does not depend on other points in the tree.
   std::vector<Index> nearest(const Vec3& p, std::size_t k) const;
+  /// The nearest point and all others at the same distance (to round-off), unsorted.
+  std::vector<Index> closest(const Vec3& p) const;
   /// All points within this distance [m], unsorted.
   std::vector<Index> within(const Vec3& p, double distance) const;
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/description.hpp"
 
 #include <fmt/format.h>
 

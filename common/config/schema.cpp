@@ -5,7 +5,6 @@
 
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
-#include "common/config/description.hpp"
 #include "common/config/load.hpp"
 #include "common/config/values.hpp"
 

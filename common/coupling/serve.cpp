@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/coupling/serve.hpp"
 
 #include <chrono>
 #include <filesystem>

@@ -52,7 +52,8 @@ void Diagnostics::accepted(double time) {
 }
 
 void Diagnostics::look() {
-  if (steps_ == 0) return;
+  if (steps_ == looked_at_) return;
+  looked_at_ = steps_;
   Report report;
   for (const Named& one : all_) one.diagnostic->look(report);
   take(report);

@@ -121,7 +121,7 @@ class Diagnostics {
   int rank_;
   bool with_errors_;
   std::vector<Named> all_;
-  long steps_ = 0;
+  long steps_ = 0, looked_at_ = 0;
   double time_ = 0;
   std::vector<Finding> worst_;        // of each id and subject
   std::vector<Coordinate> position_;  // of each quantity, closest to its limit

@@ -14,7 +14,7 @@ namespace couplet::diagnostics {
 /// Effect of a program. `asked_by` returns the key and value in the scene that enable it, or an empty string
 /// if it is off.
 template <class Parameters>
-struct EffectCard {
+struct EffectEntry {
   const char* name;
   const char* keys;  ///< keys that enable it, for the documentation
   std::string (*asked_by)(const Parameters&);
@@ -44,7 +44,7 @@ struct CaseScene {
 };
 
 template <class Parameters>
-std::vector<Effect> effects_of(std::span<const EffectCard<Parameters>> cards, const Parameters& parameters) {
+std::vector<Effect> effects_of(std::span<const EffectEntry<Parameters>> cards, const Parameters& parameters) {
   std::vector<Effect> effects;
   for (const auto& card : cards)
     effects.push_back(

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -50,37 +49,6 @@ struct FaceGradient {
     }
     return gradient;
   }
-};
-
-/// Least-squares fit of quadratics around a center: 1, x_a, x_a x_b (a <= b) with x = (place - centre) /
-/// reach. Near samples have larger weights 1 / (0.05 + x^2). Undetermined terms become small, those of
-/// directions without samples zero.
-class NearQuadratic {
- public:
-  static constexpr int most_terms = 10, most_values = 3;
-  using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_terms, 1>;
-  using Coefficients =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_terms, most_values>;
-
-  /// `reach` [m] is the largest distance of a sample, `values` the number of values per sample, at most 3.
-  NearQuadratic(int dim, const Vec3& centre, double reach, int values)
-      : dim_(dim), n_(1 + dim + dim * (dim + 1) / 2), values_(values), centre_(centre), reach_(reach) {}
-  void add(const Vec3& place, std::span<const double> values);
-  /// Coefficients of the fit; row i holds term i of each value.
-  Coefficients solve();
-  Terms terms(const Vec3& place) const;
-
- private:
-  using Row = std::array<double, 16>;  // terms from 0, values from 12
-
-  int dim_, n_, values_;
-  Vec3 centre_;
-  double reach_;
-  std::size_t waiting_ = 0;
-  std::array<Row, 4> batch_{};
-  std::array<Row, most_terms> products_{};  // upper triangle of the normal equations, right-hand sides
-
-  void take_batch();
 };
 
 /// Mean gradient of each owned cell by Gauss's theorem from values and gradients at points, which define a

@@ -138,17 +138,6 @@ void CheckpointWriter::write_common(const std::string& name, std::span<const dou
   write(name, counts ? values : std::span<const double>{});
 }
 
-void CheckpointWriter::write_scalar(const std::string& name, double value) {
-  if (memory_) {
-    memory_->arrays_[scalar_path(name)] = {value};
-    return;
-  }
-  MPI_Bcast(&value, 1, MPI_DOUBLE, 0, state_->comm);
-  const bool root = parallel::comm_rank(state_->comm) == 0;
-  hdf5::write_table(state_->id, scalar_path(name), hdf5::distribute_rows(state_->comm, root ? 1 : 0, 1),
-                    &value);
-}
-
 void CheckpointWriter::close() {
   if (memory_ || state_->id < 0) return;
   hdf5::close_file(state_->comm, state_->id, state_->file);

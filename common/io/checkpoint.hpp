@@ -62,7 +62,6 @@ class CheckpointWriter {
   void write(const FieldEntries& entries, const std::string& name, std::span<const double> values);
   /// Writes values that are the same on all ranks (those of rank 0).
   void write_common(const std::string& name, std::span<const double> values);
-  void write_scalar(const std::string& name, double value);
   /// Writes this rank's contribution to sums over all ranks.
   void write_sums(const std::string& name, std::span<const double> values);
   /// Writes values of this rank. They can only be read by the same number of ranks.
@@ -105,9 +104,6 @@ class CheckpointReader {
   std::vector<double> read_or_none(const FieldEntries& entries, const std::string& name, std::size_t width);
   void read_common(const std::string& name, std::span<double> values);
   std::vector<double> read_common(const std::string& name);
-  double read_scalar(const std::string& name);
-  /// Reads a whole number from 0 to `most`.
-  std::size_t read_count(const std::string& name, std::size_t most);
   /// Reads this rank's contribution. On another number of ranks, rank 0 gets the sum, the others zeros.
   void read_sums(const std::string& name, std::span<double> values);
   /// Reads the values this rank wrote. Throws Error for another size or another number of ranks.
@@ -132,6 +128,7 @@ class Archive final {
   explicit Archive(CheckpointReader& in) : in_(&in) {}
 
   bool reads() const { return in_ != nullptr; }
+  MPI_Comm comm() const { return out_ ? out_->comm() : in_->comm(); }
   /// Sets a prefix for the names that follow, so that parts of a state may use the same names.
   void set_prefix(std::string prefix) { prefix_ = std::move(prefix); }
 
@@ -164,6 +161,13 @@ class Archive final {
       out_->write(entries, prefix_ + name, values);
     else
       values = in_->read_or_none(entries, prefix_ + name, width);
+  }
+  /// Archives a field of known size.
+  void field(const FieldEntries& entries, const std::string& name, std::span<double> values) {
+    if (out_)
+      out_->write(entries, prefix_ + name, values);
+    else
+      in_->read(entries, prefix_ + name, values);
   }
 
  private:

@@ -60,12 +60,6 @@ FieldCheck check_of_field(const hdf5::Reader& in, const std::string& name) {
   return {std::uint64_t(rows), std::size_t(width)};
 }
 
-double scalar_on_file(const hdf5::Reader& in, const std::string& name) {
-  double value = 0;
-  in.read(scalar_path(name), {0, 1, 1, 1}, &value);
-  return value;
-}
-
 int ranks_that_wrote(const hdf5::Reader& in) {
   const double written = in.number("/", "ranks");
   if (!(written >= 1 && written < 1e8) || written != std::floor(written))
@@ -96,7 +90,6 @@ void examine_content(const hdf5::Reader& in) {
   examine_stamp(in);
   for (const std::string& name : in.leaves("arrays")) layout_of_array(in, name, ranks);
   for (const std::string& name : in.leaves("fields")) check_of_field(in, name);
-  for (const std::string& name : in.leaves("scalars")) scalar_on_file(in, name);
 }
 
 /// Throws Error for a damaged file. Compares its digest before HDF5 reads it.
@@ -302,26 +295,6 @@ void CheckpointReader::read_sums(const std::string& name, std::span<double> valu
     for (std::size_t i = 0; i < part.size() && parallel::comm_rank(state_->comm) == 0; ++i)
       values[i] += part[i];
   }
-}
-
-std::size_t CheckpointReader::read_count(const std::string& name, std::size_t most) {
-  const double value = read_scalar(name);
-  if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
-    throw Error(
-        "The {} gives {} as '{}'; expected a whole number from 0 to {}.",
-        memory_ ? std::string("saved state") : fmt::format("checkpoint '{}'", state_->in.file().string()),
-        value, name, most);
-  return static_cast<std::size_t>(value);
-}
-
-double CheckpointReader::read_scalar(const std::string& name) {
-  if (memory_) return in_memory(scalar_path(name)).front();
-  return parallel::on_all(state_->comm, [&] {
-    if (!state_->in.has(scalar_path(name)))
-      throw Error("The checkpoint '{}' has no value '{}'. It was written by another program or another case.",
-                  state_->in.file().string(), name);
-    return scalar_on_file(state_->in, name);
-  });
 }
 
 }  // namespace couplet::io

@@ -71,7 +71,7 @@ class ScopedTimer {
 /// Timers of this process.
 Timers& timers();
 
-/// Signs of life of this process for the watch over a job (common/app/watch/watch).
+/// Signs of life of this process for the watch over a job (common/app/supervision/supervisor).
 struct LifeSigns {
   std::atomic<double>* last = nullptr;    ///< time of the last sign [s], steady clock of the machine
   std::atomic<int>* long_work = nullptr;  ///< above 0 within LongWork

@@ -6,11 +6,12 @@ import pathlib
 import sys
 
 import numpy as np
+from scipy.interpolate import barycentric_interpolate
 
 here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parents[1] / "client/python"))
 import couplet  # noqa: E402
-from couplet.interpolation import extremum, lagrange  # noqa: E402
+from couplet.series import extremum  # noqa: E402
 
 REFERENCE = {"u_min": -0.2803833, "v_max": 0.2466511, "v_min": -0.4350186}
 
@@ -25,7 +26,7 @@ def extrema(folder):
     place = np.unique(np.round(centres[:, 0], 9))
     u = velocity[order].reshape(n, n, n, 3)
     i = int(np.searchsorted(place, 0.5))
-    beside, weights = slice(i - 2, i + 2), lagrange(place[i - 2 : i + 2], 0.5)
+    beside, weights = slice(i - 2, i + 2), barycentric_interpolate(place[i - 2 : i + 2], np.eye(4), 0.5)
     upright = np.einsum("i,k,ijk->j", weights, weights, u[beside, :, beside, 0])
     across = np.einsum("j,k,ijk->i", weights, weights, u[:, beside, beside, 1])
     return {"u_min": extremum(place, upright, -1), "v_max": extremum(place, across, 1), "v_min": extremum(place, across, -1)}

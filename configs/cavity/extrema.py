@@ -6,11 +6,12 @@ import pathlib
 import sys
 
 import numpy as np
+from scipy.interpolate import barycentric_interpolate
 
 here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parents[1] / "client/python"))
 import couplet  # noqa: E402
-from couplet.interpolation import extremum, lagrange  # noqa: E402
+from couplet.series import extremum  # noqa: E402
 
 REFERENCE = {"u_min": -0.3885698, "v_max": 0.3769447, "v_min": -0.5270771}
 
@@ -28,7 +29,7 @@ def extrema(folder):
         values = velocity[order][:, axis].reshape(n, n)
         columns = grid[:, 0, axis]
         i = int(np.searchsorted(columns, 0.5))
-        line = lagrange(columns[i - 2 : i + 2], 0.5) @ values[i - 2 : i + 2]
+        line = barycentric_interpolate(columns[i - 2 : i + 2], values[i - 2 : i + 2], 0.5)
         for name, sign in names:
             found[name] = extremum(grid[0, :, 1 - axis], line, sign)
     return found

@@ -6,6 +6,6 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "client/python"))
-from couplet import tank  # noqa: E402
+import figures  # noqa: E402
 
-print(tank.picture(HERE, 38, "Case A: Andasol, 50 MW, 290 to 390 °C"))
+print(figures.picture(HERE, 38, "Case A: Andasol, 50 MW, 290 to 390 °C"))

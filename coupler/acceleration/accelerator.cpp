@@ -63,24 +63,17 @@ std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& para
   return nullptr;
 }
 
-void write_columns(io::CheckpointWriter& file, const parallel::GlobalOrder& order, const std::string& name,
-                   const Columns& columns) {
-  const std::size_t n = order.n_local(), m = columns.size();
-  std::vector<double> rows(n * m);
-  for (std::size_t j = 0; j < m; ++j)
-    for (std::size_t i = 0; i < n; ++i) rows[i * m + j] = columns[j][i];
-  file.write(order, name, rows);
-}
-
-std::vector<std::vector<double>> read_columns(io::CheckpointReader& file, const parallel::GlobalOrder& order,
-                                              const std::string& name, std::size_t m) {
+void visit_columns(io::Archive& archive, const parallel::GlobalOrder& order, const std::string& name,
+                   std::vector<std::vector<double>>& columns, std::size_t m) {
   const std::size_t n = order.n_local();
   std::vector<double> rows(n * m);
-  file.read(order, name, rows);
-  std::vector<std::vector<double>> columns(m, std::vector<double>(n));
+  if (archive.reads()) columns.assign(m, std::vector<double>(n));
+  for (std::size_t j = 0; j < m; ++j)
+    for (std::size_t i = 0; i < n; ++i) rows[i * m + j] = columns[j][i];
+  archive.field(order, name, rows);
+  if (!archive.reads()) return;
   for (std::size_t j = 0; j < m; ++j)
     for (std::size_t i = 0; i < n; ++i) columns[j][i] = rows[i * m + j];
-  return columns;
 }
 
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
@@ -157,14 +150,6 @@ void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
     learn();
   }
   forget_pass();
-}
-
-void AitkenRelaxation::save(io::CheckpointWriter& file, const IterateOrder&) const {
-  file.write_scalar("omega", first_);
-}
-
-void AitkenRelaxation::load(io::CheckpointReader& file, const IterateOrder&) {
-  first_ = file.read_scalar("omega");
 }
 
 bool converged(const Residual& residual, const ConvergenceParameters& parameters) {

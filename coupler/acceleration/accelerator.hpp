@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/index_map.hpp"
 #include "coupler/parameters/parameters.hpp"
 
@@ -40,12 +41,9 @@ struct IterateOrder {
             parallel::GlobalOrder::as_they_are(comm, x.rider.size())};
   }
 };
-/// Vectors in such an order, each a column of one field. Collective.
-using Columns = std::vector<std::span<const double>>;
-void write_columns(io::CheckpointWriter& file, const parallel::GlobalOrder& order, const std::string& name,
-                   const Columns& columns);
-std::vector<std::vector<double>> read_columns(io::CheckpointReader& file, const parallel::GlobalOrder& order,
-                                              const std::string& name, std::size_t n);
+/// Archives `n` vectors in such an order, each a column of one field. Collective.
+void visit_columns(io::Archive& archive, const parallel::GlobalOrder& order, const std::string& name,
+                   std::vector<std::vector<double>>& columns, std::size_t n);
 
 /// Computes the next guess of x = H(x) from previous passes, such that r = H(x) - x vanishes. Vectors are
 /// flat and distributed. Scalar products are over the communicator of make_accelerator(); all calls are
@@ -72,8 +70,7 @@ class Accelerator {
   virtual int columns() const { return 0; }
   virtual long resets() const { return 0; }
   /// Call only between steps. A restart is bitwise identical for the same number of ranks. Collective.
-  virtual void save(io::CheckpointWriter& file, const IterateOrder& order) const = 0;
-  virtual void load(io::CheckpointReader& file, const IterateOrder& order) = 0;
+  virtual void visit(io::Archive& archive, const IterateOrder& order) = 0;
 };
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm);
@@ -105,8 +102,7 @@ class ConstantRelaxation final : public Accelerator {
   void accept(const Iterate&, const Iterate&) override {}
   void map_changed() override {}
   double relaxation() const override { return omega_; }
-  void save(io::CheckpointWriter&, const IterateOrder&) const override {}
-  void load(io::CheckpointReader&, const IterateOrder&) override {}
+  void visit(io::Archive&, const IterateOrder&) override {}
 
  private:
   double omega_;
@@ -129,8 +125,7 @@ class AitkenRelaxation final : public Accelerator {
   void accept(const Iterate& x, const Iterate& image) override;
   void map_changed() override { forget_pass(); }
   double relaxation() const override { return omega_; }
-  void save(io::CheckpointWriter& file, const IterateOrder& order) const override;
-  void load(io::CheckpointReader& file, const IterateOrder& order) override;
+  void visit(io::Archive& archive, const IterateOrder&) override { archive.common("omega", first_); }
 
  private:
   void take_residual(const Iterate& x, const Iterate& image);

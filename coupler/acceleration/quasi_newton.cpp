@@ -31,6 +31,43 @@ void add_to(std::vector<double>& y, const Eigen::VectorXd& c, Column column) {
     }
 }
 
+/// Rotates rows `row` and `row` + 1 of R and the corresponding columns of Q.
+struct Rotation {
+  int row;
+  double c, s;
+};
+
+/// Eliminates R_{i+1,column}; Q must be rotated accordingly.
+void rotate(Eigen::MatrixXd& r, int i, int column, std::vector<Rotation>& turns) {
+  const double a = r(i, column), b = r(i + 1, column);
+  if (b == 0) return;
+  const double length = std::hypot(a, b), c = a / length, s = b / length;
+  for (int j = 0; j < r.cols(); ++j) {
+    const double up = r(i, j), down = r(i + 1, j);
+    r(i, j) = c * up + s * down;
+    r(i + 1, j) = -s * up + c * down;
+  }
+  r(i + 1, column) = 0;
+  turns.push_back({i, c, s});
+}
+
+void turn(std::vector<std::vector<double>>& q, const std::vector<Rotation>& turns, std::size_t first,
+          std::size_t count) {
+  for (const Rotation& t : turns) {
+    double *up = q[std::size_t(t.row)].data() + first, *down = q[std::size_t(t.row) + 1].data() + first;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double u = up[k], d = down[k];
+      up[k] = t.c * u + t.s * d;
+      down[k] = -t.s * u + t.c * d;
+    }
+  }
+}
+
+/// v -= t q.
+void take_away(double t, const double* q, double* v, std::size_t count) {
+  for (std::size_t k = 0; k < count; ++k) v[k] -= t * q[k];
+}
+
 }  // namespace
 
 QuasiNewton::QuasiNewton(const AccelerationParameters& parameters, MPI_Comm comm)
@@ -128,70 +165,21 @@ void QuasiNewton::add(Pair pair) {
   while (columns() > parameters_.maximum_columns) drop_oldest();
 }
 
-void QuasiNewton::save(io::CheckpointWriter& file, const IterateOrder& order) const {
-  qr_.save(file, "iqn", order.unknown);
-  Columns unknown, rider;
-  for (const Iterate& image : images_) unknown.emplace_back(image.unknown), rider.emplace_back(image.rider);
-  write_columns(file, order.unknown, "iqn.images", unknown);
-  write_columns(file, order.rider, "iqn.riders", rider);
-  file.write_common("iqn.step-of", std::vector<double>(step_of_.begin(), step_of_.end()));
-  file.write_scalar("iqn.step", step_);
-}
-
-void QuasiNewton::load(io::CheckpointReader& file, const IterateOrder& order) {
-  qr_.load(file, "iqn", order.unknown);
+void QuasiNewton::visit(io::Archive& archive, const IterateOrder& order) {
+  qr_.visit(archive, "iqn", order.unknown);
   const auto m = std::size_t(columns());
-  std::vector<std::vector<double>> unknown = read_columns(file, order.unknown, "iqn.images", m),
-                                   rider = read_columns(file, order.rider, "iqn.riders", m);
+  std::vector<std::vector<double>> unknown, rider;
+  if (!archive.reads())
+    for (const Iterate& image : images_) unknown.push_back(image.unknown), rider.push_back(image.rider);
+  visit_columns(archive, order.unknown, "iqn.images", unknown, m);
+  visit_columns(archive, order.rider, "iqn.riders", rider, m);
+  archive.common("iqn.step", step_, step_of_);
+  if (!archive.reads()) return;
   images_.clear();
   for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(rider[j])});
-  const std::vector<double> steps = file.read_common("iqn.step-of");
-  if (steps.size() != m)
-    throw Error("The checkpoint's steps of differences ('iqn.step-of') are damaged. Use an earlier one.");
-  step_of_.assign(steps.begin(), steps.end());
-  step_ = file.read_scalar("iqn.step");
+  if (step_of_.size() != m)
+    throw Error("The checkpoint's steps of differences ('iqn.step') are damaged. Use an earlier one.");
 }
-
-namespace {
-
-/// Rotates rows `row` and `row` + 1 of R and the corresponding columns of Q.
-struct Rotation {
-  int row;
-  double c, s;
-};
-
-/// Eliminates R_{i+1,column}; Q must be rotated accordingly.
-void rotate(Eigen::MatrixXd& r, int i, int column, std::vector<Rotation>& turns) {
-  const double a = r(i, column), b = r(i + 1, column);
-  if (b == 0) return;
-  const double length = std::hypot(a, b), c = a / length, s = b / length;
-  for (int j = 0; j < r.cols(); ++j) {
-    const double up = r(i, j), down = r(i + 1, j);
-    r(i, j) = c * up + s * down;
-    r(i + 1, j) = -s * up + c * down;
-  }
-  r(i + 1, column) = 0;
-  turns.push_back({i, c, s});
-}
-
-void turn(std::vector<std::vector<double>>& q, const std::vector<Rotation>& turns, std::size_t first,
-          std::size_t count) {
-  for (const Rotation& t : turns) {
-    double *up = q[std::size_t(t.row)].data() + first, *down = q[std::size_t(t.row) + 1].data() + first;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double u = up[k], d = down[k];
-      up[k] = t.c * u + t.s * d;
-      down[k] = -t.s * u + t.c * d;
-    }
-  }
-}
-
-/// v -= t q.
-void take_away(double t, const double* q, double* v, std::size_t count) {
-  for (std::size_t k = 0; k < count; ++k) v[k] -= t * q[k];
-}
-
-}  // namespace
 
 void GrowingQr::push_front(std::vector<double> v) {
   const int m = columns();
@@ -270,19 +258,12 @@ Eigen::VectorXd GrowingQr::minimise(std::span<const double> r) const {
   return -r_.triangularView<Eigen::Upper>().solve(t);
 }
 
-void GrowingQr::save(io::CheckpointWriter& file, const std::string& name,
-                     const parallel::GlobalOrder& order) const {
-  file.write_scalar(name + ".columns", columns());
-  write_columns(file, order, name + ".q", {q_.begin(), q_.end()});
-  file.write_common(name + ".r", {r_.data(), std::size_t(r_.size())});
-}
-
-void GrowingQr::load(io::CheckpointReader& file, const std::string& name,
-                     const parallel::GlobalOrder& order) {
-  const std::size_t m = file.read_count(name + ".columns", most_columns);
-  std::vector<double> r(m * m);
-  q_ = read_columns(file, order, name + ".q", m);
-  file.read_common(name + ".r", r);
+void GrowingQr::visit(io::Archive& archive, const std::string& name, const parallel::GlobalOrder& order) {
+  std::vector<double> r(r_.data(), r_.data() + r_.size());
+  archive.common(name + ".r", r);
+  const auto m = static_cast<std::size_t>(std::lround(std::sqrt(double(r.size()))));
+  if (r.size() != m * m) throw Error("The checkpoint's '{}.r' is damaged. Use an earlier one.", name);
+  visit_columns(archive, order, name + ".q", q_, m);
   r_ = Eigen::Map<Eigen::MatrixXd>(r.data(), Eigen::Index(m), Eigen::Index(m));
 }
 

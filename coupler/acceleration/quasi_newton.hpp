@@ -14,9 +14,6 @@
 
 namespace couplet::coupler {
 
-/// Maximum number of columns in a checkpoint.
-inline constexpr std::size_t most_columns = 10000;
-
 /// QR decomposition of a tall matrix with distributed rows whose columns change: new ones are added at the
 /// front, any may be removed. Uses Gram-Schmidt twice for a new column and Givens rotations for the rest
 /// [Golub, Van Loan 2013, 6.5]. A change of m columns costs 10 m flops per row and two sums over the ranks.
@@ -34,8 +31,7 @@ class GrowingQr {
   /// Returns c that minimizes |r + A c|.
   Eigen::VectorXd minimise(std::span<const double> r) const;
 
-  void save(io::CheckpointWriter& file, const std::string& name, const parallel::GlobalOrder& order) const;
-  void load(io::CheckpointReader& file, const std::string& name, const parallel::GlobalOrder& order);
+  void visit(io::Archive& archive, const std::string& name, const parallel::GlobalOrder& order);
 
  private:
   MPI_Comm comm_;
@@ -61,8 +57,7 @@ class QuasiNewton final : public Accelerator {
   double relaxation() const override { return share_; }
   int columns() const override { return qr_.columns(); }
   long resets() const override { return resets_; }
-  void save(io::CheckpointWriter& file, const IterateOrder& order) const override;
-  void load(io::CheckpointReader& file, const IterateOrder& order) override;
+  void visit(io::Archive& archive, const IterateOrder& order) override;
 
  private:
   struct Pair {

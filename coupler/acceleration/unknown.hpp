@@ -13,6 +13,21 @@
 
 namespace couplet::coupler {
 
+/// Datum of the unknown, or of its riders.
+struct UnknownPart {
+  std::size_t giver;
+  coupling::Interface::Datum datum;
+  int components = 1;
+  std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `rider`
+  bool rides = false;
+  std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
+  double weight = 1;                      ///< of a rider always 1
+  bool scaled = false;                    ///< its weight is known
+  bool asked_within = false;              ///< somebody takes its values within the step
+  std::optional<std::size_t> within{};    ///< of a value within the step: the part of its end
+  double share = 1;                       ///< of the step
+};
+
 /// Unknowns of a group's iteration: data that a participant takes before they are given in the same pass, and
 /// data that a participant gives to itself. In serial order (Gauss-Seidel) these are the data given to
 /// earlier members, in parallel order (Jacobi) all data of the group. A velocity beside a displacement of the
@@ -21,19 +36,7 @@ namespace couplet::coupler {
 /// unknowns as well, at the times seen in the first pass of a step, and follow all others.
 class Unknown {
  public:
-  struct Part {
-    std::size_t giver;
-    coupling::Interface::Datum datum;
-    int components = 1;
-    std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `rider`
-    bool rides = false;
-    std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
-    double weight = 1;                      ///< of a rider always 1
-    bool scaled = false;                    ///< its weight is known
-    bool asked_within = false;              ///< somebody takes its values within the step
-    std::optional<std::size_t> within{};    ///< of a value within the step: the part of its end
-    double share = 1;                       ///< of the step
-  };
+  using Part = UnknownPart;
   /// `group`: indices into `sides`.
   Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
           const std::vector<std::size_t>& group, bool side_by_side);

@@ -109,7 +109,7 @@ std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity,
   return {sums[0], sums[1]};
 }
 
-VolumeLevel::Flow VolumeLevel::flow(const Cavity& c, const std::vector<coupling::Exchange>& known) const {
+CavityFlow VolumeLevel::flow(const Cavity& c, const std::vector<coupling::Exchange>& known) const {
   const coupling::Exchange wall = links_->input(c.side, known);
   const std::vector<double>& place = values_of(wall, "displacement");
   const CavityWall::Flux flux = c.wall.flux(values_of(wall, "velocity"), c.wall.areas(place));
@@ -124,7 +124,7 @@ VolumeLevel::Defect VolumeLevel::defect(const std::vector<coupling::Exchange>& k
   Defect d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const Cavity& c = cavities_[std::size_t(k)];
-    const Flow now = flow(c, known);
+    const CavityFlow now = flow(c, known);
     const double error = c.change + now.swept - c.inflow - dt_ / 2 * (now.begin + now.end);
     d.value[k] = 2 / dt_ * (error - c.allowed);
     d.size[k] = now.size + 2 / dt_ * std::abs(c.change - c.inflow);
@@ -216,7 +216,7 @@ void VolumeLevel::find(std::vector<coupling::Exchange>& known, const std::functi
 
 void VolumeLevel::accept(const std::vector<coupling::Exchange>& given) {
   for (Cavity& c : cavities_) {
-    const Flow now = flow(c, given);
+    const CavityFlow now = flow(c, given);
     c.change += now.swept;
     c.inflow += dt_ / 2 * (now.begin + now.end);
     // The wall was at rest before the first step.
@@ -228,33 +228,20 @@ void VolumeLevel::accept(const std::vector<coupling::Exchange>& given) {
   }
 }
 
-void VolumeLevel::save(io::CheckpointWriter& file, const std::vector<Side>& sides) const {
-  std::vector<double> numbers{slope_dt_};
-  for (const Cavity& c : cavities_)
-    numbers.insert(numbers.end(), {c.accepted_level, c.change, c.inflow, c.swing[0], c.swing[1], c.flow});
-  numbers.insert(numbers.end(), slope_.data(), slope_.data() + slope_.size());
-  file.write_common("volume-level", numbers);
-  for (const Cavity& c : cavities_)
-    file.write(sides[c.side].order(comm_, coupling::Interface::Place::vertices), "volume-place-" + c.name,
-               c.place);
-}
-
-void VolumeLevel::load(io::CheckpointReader& file, const std::vector<Side>& sides) {
-  const std::vector<double> numbers = file.read_common("volume-level");
-  const std::size_t n = cavities_.size();
-  if (numbers.size() != 1 + 6 * n && numbers.size() != 1 + 6 * n + n * n)
+void VolumeLevel::visit(io::Archive& archive, const std::vector<Side>& sides) {
+  std::size_t n = cavities_.size();
+  std::vector<double> slope(slope_.data(), slope_.data() + slope_.size());
+  archive.common("volume-level", n, slope_dt_, slope);
+  if (n != cavities_.size() || (!slope.empty() && slope.size() != n * n))
     throw Error("The checkpoint is from a coupling with other closed fluids.");
-  slope_dt_ = numbers[0];
-  for (std::size_t k = 0; k < n; ++k) {
-    Cavity& c = cavities_[k];
-    const double* saved = &numbers[1 + 6 * k];
-    c.accepted_level = saved[0], c.change = saved[1], c.inflow = saved[2];
-    c.swing = {saved[3], saved[4]}, c.flow = saved[5], c.begun = true;
-    c.place =
-        file.read(sides[c.side].order(comm_, coupling::Interface::Place::vertices), "volume-place-" + c.name);
+  if (!slope.empty())
+    slope_ = Eigen::Map<const Eigen::MatrixXd>(slope.data(), Eigen::Index(n), Eigen::Index(n));
+  for (Cavity& c : cavities_) {
+    archive.common("volume-level-" + c.name, c.accepted_level, c.change, c.inflow, c.swing, c.flow);
+    archive.field(sides[c.side].order(comm_, coupling::Interface::Place::vertices), "volume-place-" + c.name,
+                  c.place, std::size_t(dim_));
+    c.begun = c.begun || archive.reads();
   }
-  if (numbers.size() == 1 + 6 * n + n * n)
-    slope_ = Eigen::Map<const Eigen::MatrixXd>(&numbers[1 + 6 * n], Eigen::Index(n), Eigen::Index(n));
 }
 
 std::vector<std::string> VolumeLevel::columns() const {

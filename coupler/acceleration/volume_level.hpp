@@ -8,11 +8,34 @@
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
-#include "coupler/exchange/face_corners.hpp"
+#include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/links.hpp"
 #include "coupler/parameters/schedule.hpp"
 
 namespace couplet::coupler {
+
+/// Closed fluid whose level VolumeLevel finds.
+struct Cavity {
+  std::size_t side;
+  std::string name;
+  CavityWall wall;
+  double level = 0, accepted_level = 0;  // [Pa]
+  double change = 0, inflow = 0;         // of the volume since the start [m^3]
+  std::array<double, 2> swing{};         // h at t^n and t^{n-1} [m^3/s]
+  double flow = 0;                       // largest flow of recent steps through wall and openings [m^3/s]
+  double allowed = 0;                    // E* of the current step [m^3]
+  bool begun = false;                    // a step has been accepted
+  std::vector<double> place{};           // displacement of its vertices at t^n
+  std::vector<double> load{};            // without the level, of this pass [N]
+  std::vector<Vec3> areas{};             // on which the level acts in this pass
+};
+
+/// Flow through one cavity's wall and openings, once all data have been given; over all ranks.
+struct CavityFlow {
+  double mismatch, size;  ///< h; total of all flows [m^3/s]
+  double end, begin;      ///< Q [m^3/s]
+  double swept;           ///< since t^n [m^3]
+};
 
 /// Pressure level of closed incompressible fluids. Without an outlet the pressure is known up to a constant
 /// lambda, which enforces the volume. In each pass lambda shifts the structure's response until its wall
@@ -44,37 +67,16 @@ class VolumeLevel {
   void find(std::vector<coupling::Exchange>& known, const std::function<void()>& answer);
   void accept(const std::vector<coupling::Exchange>& given);
 
-  void save(io::CheckpointWriter& file, const std::vector<Side>& sides) const;
-  void load(io::CheckpointReader& file, const std::vector<Side>& sides);
+  void visit(io::Archive& archive, const std::vector<Side>& sides);
   /// Data for volume.csv.
   std::vector<std::string> columns() const;
   std::vector<double> row() const;
 
  private:
-  struct Cavity {
-    std::size_t side;
-    std::string name;
-    CavityWall wall;
-    double level = 0, accepted_level = 0;  // [Pa]
-    double change = 0, inflow = 0;         // of the volume since the start [m^3]
-    std::array<double, 2> swing{};         // h at t^n and t^{n-1} [m^3/s]
-    double flow = 0;                       // largest flow of recent steps through wall and openings [m^3/s]
-    double allowed = 0;                    // E* of the current step [m^3]
-    bool begun = false;                    // a step has been accepted
-    std::vector<double> place{};           // displacement of its vertices at t^n
-    std::vector<double> load{};            // without the level, of this pass [N]
-    std::vector<Vec3> areas{};             // on which the level acts in this pass
-  };
   struct Defect {
     Eigen::VectorXd value, size;
   };
-  /// Flow through one cavity's wall and openings, once all data have been given; over all ranks.
-  struct Flow {
-    double mismatch, size;  ///< h; total of all flows [m^3/s]
-    double end, begin;      ///< Q [m^3/s]
-    double swept;           ///< since t^n [m^3]
-  };
-  Flow flow(const Cavity& cavity, const std::vector<coupling::Exchange>& known) const;
+  CavityFlow flow(const Cavity& cavity, const std::vector<coupling::Exchange>& known) const;
   Defect defect(const std::vector<coupling::Exchange>& known) const;
   Defect answer_to(std::vector<coupling::Exchange>& known, const std::function<void()>& answer);
   void put(const Cavity& cavity, coupling::Exchange& given) const;

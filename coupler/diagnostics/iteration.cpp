@@ -6,28 +6,38 @@
 
 #include "common/io/checkpoint.hpp"
 #include "common/time/step_errors.hpp"
-#include "coupler/diagnostics/guards.hpp"
 #include "coupler/diagnostics/view.hpp"
 
 namespace couplet::coupler {
 namespace {
 
-/// Stops a diverging iteration within a few passes (see IterationGuard).
+// |1 - omega (1 + r)| = factor for the heaviest mode
+std::string too_much_added_mass(double factor, int passes, double omega) {
+  const double r = (factor + 1) / omega - 1;
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {}. With constant relaxation "
+      "{:g} this implies an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} "
+      "converge, at any step. Use `acceleration.type: aitken` or `iqn-ils`, which adapt it.",
+      factor, passes == 1 ? "a pass" : fmt::format("{} passes", passes), omega, r, 2 / (1 + r));
+}
+
+/// Stops a diverging iteration within a few passes (see ResidualGrowth).
 class IterationGrowth final : public CouplingDiagnostic {
  public:
   explicit IterationGrowth(const CouplingView& view) : view_(view) {}
-  void begin_step() override { guard_.start_step(), scales_.clear(); }
+  void begin_step() override { growth_.start_step(), scales_.clear(); }
   void passed(const std::vector<Residual>& residuals, double omega) override {
     scales_.resize(residuals.size(), 0);
     for (std::size_t i = 0; i < scales_.size(); ++i)
-      if (scales_[i] == 0 && residuals[i].scale() > 0) scales_[i] = residuals[i].scale(), guard_.start_step();
+      if (scales_[i] == 0 && residuals[i].scale() > 0)
+        scales_[i] = residuals[i].scale(), growth_.start_step();
     if (!std::ranges::all_of(residuals,
                              [&](const Residual& r) { return converged(r, view_.parameters.convergence); }))
-      guard_.pass(largest(residuals, scales_), omega, is_constant());
+      growth_.pass(largest(residuals, scales_), omega, is_constant());
   }
   std::optional<app::StepFailure> suspects() const override {
     const double omega = view_.parameters.acceleration.initial_relaxation;
-    if (const auto grew = guard_.suspects(is_constant() ? omega : 0))
+    if (const auto grew = growth_.suspects(is_constant() ? omega : 0))
       return app::StepFailure(*grew, !is_constant());
     return {};
   }
@@ -38,17 +48,9 @@ class IterationGrowth final : public CouplingDiagnostic {
   }
 
   const CouplingView& view_;
-  IterationGuard guard_;
+  ResidualGrowth growth_;
   std::vector<double> scales_;  // of the data, as they first were in the step
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {
-  return view.pass.schedule().iterates ? std::make_shared<IterationGrowth>(view) : nullptr;
-}
-
-namespace {
 
 // Relative residual above which a step does not solve the coupled problem.
 constexpr double useless_residual = 0.5;
@@ -77,14 +79,6 @@ class UnconvergedStep final : public CouplingDiagnostic {
  private:
   const CouplingView& view_;
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> unconverged_step(const CouplingView& view) {
-  return view.pass.schedule().iterates ? std::make_shared<UnconvergedStep>(view) : nullptr;
-}
-
-namespace {
 
 // Contraction above which the residual only shows that the error is large.
 constexpr double slowest = 0.99;
@@ -128,14 +122,6 @@ class CouplingError final : public CouplingDiagnostic {
   std::vector<Residual> residuals_, before_;  // of the last two passes of the step under way
   std::vector<time::StepErrors> errors_;      // of each datum
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> coupling_error(const CouplingView& view) {
-  return view.pass.schedule().iterates ? std::make_shared<CouplingError>(view) : nullptr;
-}
-
-namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -202,6 +188,52 @@ class AddedMass final : public CouplingDiagnostic {
 };
 
 }  // namespace
+
+void ResidualGrowth::pass(double residual, double omega, bool constant) {
+  ++passes_;
+  if (passes_ == 1) first_ = residual;
+  if (passes_ > 1 && residual > last_) {
+    if (growing_ == 0) at_turn_ = last_;
+    ++growing_;
+  } else {
+    growing_ = 0;
+  }
+  last_ = residual;
+  if (!grows()) return;
+  const bool ran_away = residual > too_far * first_;
+  if (growing_ < patience && !ran_away) return;
+  if (constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
+  throw SolveFailure(
+      "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
+      "one. If smaller steps do not help, `acceleration.type: iqn-ils` handles several modes at once; the "
+      "participants' own tolerances may be too loose for it.",
+      factor(), growing_, omega);
+}
+
+bool ResidualGrowth::grows() const { return growing_ > 0 && last_ > 2 * at_turn_; }
+
+double ResidualGrowth::factor() const { return std::pow(last_ / at_turn_, 1. / growing_); }
+
+std::optional<std::string> ResidualGrowth::suspects(double relaxation) const {
+  if (!grows()) return {};
+  if (relaxation > 0) return too_much_added_mass(factor(), growing_, relaxation);
+  return fmt::format(
+      "the coupling diverges: the residual grew by {:.3g} per pass before a participant failed. Use a lower "
+      "`acceleration.initial-relaxation`, or `predictor.order: 0` for the first steps.",
+      factor());
+}
+
+std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {
+  return view.pass.schedule().iterates ? std::make_shared<IterationGrowth>(view) : nullptr;
+}
+
+std::shared_ptr<CouplingDiagnostic> unconverged_step(const CouplingView& view) {
+  return view.pass.schedule().iterates ? std::make_shared<UnconvergedStep>(view) : nullptr;
+}
+
+std::shared_ptr<CouplingDiagnostic> coupling_error(const CouplingView& view) {
+  return view.pass.schedule().iterates ? std::make_shared<CouplingError>(view) : nullptr;
+}
 
 std::shared_ptr<CouplingDiagnostic> added_mass(const CouplingView& view) {
   return view.parameters.scheme == coupling::Scheme::explicit_ ? std::make_shared<AddedMass>(view) : nullptr;

@@ -28,6 +28,24 @@ double extent_of(MPI_Comm comm, const std::vector<Vec3>& points) {
   return parallel::max(comm, most);
 }
 
+/// Answers of a participant within a step.
+struct Answers {
+  std::string name;
+  coupling::Exchange taken, given;
+  int passes = 0, looked = 0, same = 0;
+};
+
+/// Motion that a participant gives, over the run.
+struct GivenMotion {
+  std::size_t side;
+  std::string name;
+  std::vector<double> x, v;                           // of the last accepted step
+  double rate_rate = 0, rate_end = 0, rate_mean = 0;  // sums of products over the run
+  double extent = 0, largest = 0;                     // [m]
+  int steps = 0;
+  bool reported = false;
+};
+
 /// Detects two faults of participants that residuals do not explain: a response that ignores the input (a
 /// solver whose guess meets its own tolerance), and a velocity that is not the rate of the displacement.
 class DataOfParticipants final : public CouplingDiagnostic {
@@ -70,7 +88,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
   }
 
   void observe(diagnostics::Report& report) override {
-    for (Motion& one : motions_) {
+    for (GivenMotion& one : motions_) {
       if (one.reported) continue;
       add(one, values_of(view_.pass.given()[one.side], "displacement"),
           values_of(view_.pass.given()[one.side], "velocity"));
@@ -93,7 +111,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
   }
 
   void visit(io::Archive& archive) override {
-    for (Motion& one : motions_) {
+    for (GivenMotion& one : motions_) {
       const Side& side = view_.pass.sides()[one.side];
       archive.common("motion-" + one.name, one.rate_rate, one.rate_end, one.rate_mean, one.largest, one.steps,
                      one.reported);
@@ -104,23 +122,8 @@ class DataOfParticipants final : public CouplingDiagnostic {
   }
 
  private:
-  struct Answers {
-    std::string name;
-    coupling::Exchange taken, given;
-    int passes = 0, looked = 0, same = 0;
-  };
-  struct Motion {
-    std::size_t side;
-    std::string name;
-    std::vector<double> x, v;                           // of the last accepted step
-    double rate_rate = 0, rate_end = 0, rate_mean = 0;  // sums of products over the run
-    double extent = 0, largest = 0;                     // [m]
-    int steps = 0;
-    bool reported = false;
-  };
-
   /// Compares v^{n+1} and (v^n + v^{n+1})/2 with (x^{n+1} - x^n)/dt, by least squares over the run.
-  void add(Motion& one, const std::vector<double>& x, const std::vector<double>& v) const {
+  void add(GivenMotion& one, const std::vector<double>& x, const std::vector<double>& v) const {
     std::array<double, 3> sums{};
     double most = 0;
     const bool known = one.steps > 0 && one.x.size() == x.size() && v.size() == x.size();
@@ -138,16 +141,8 @@ class DataOfParticipants final : public CouplingDiagnostic {
 
   const CouplingView& view_;
   std::vector<Answers> answers_;
-  std::vector<Motion> motions_;
+  std::vector<GivenMotion> motions_;
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> data_of_participants(const CouplingView& view) {
-  return std::make_shared<DataOfParticipants>(view);
-}
-
-namespace {
 
 // No mesh follows a wall that far; millimeters instead of meters give a factor of a thousand.
 constexpr double farthest = 30;
@@ -188,14 +183,6 @@ class DisplacementScale final : public CouplingDiagnostic {
   const CouplingView& view_;
   std::vector<double> extents_;  // by side [m]; 0 if it gives no displacement or has no extent
 };
-
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> displacement_scale(const CouplingView& view) {
-  return std::make_shared<DisplacementScale>(view);
-}
-
-namespace {
 
 constexpr int patience = 10;  // steps
 
@@ -255,14 +242,6 @@ class StructureAtRest final : public CouplingDiagnostic {
   std::vector<int> steps_;  // of each in a row, under load and without motion
 };
 
-}  // namespace
-
-std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view) {
-  return std::make_shared<StructureAtRest>(view);
-}
-
-namespace {
-
 /// Forces at faces that no participant receives, relative to received ones: RMS over faces and steps.
 class LostLoad final : public CouplingDiagnostic {
  public:
@@ -316,6 +295,18 @@ class LostLoad final : public CouplingDiagnostic {
 };
 
 }  // namespace
+
+std::shared_ptr<CouplingDiagnostic> data_of_participants(const CouplingView& view) {
+  return std::make_shared<DataOfParticipants>(view);
+}
+
+std::shared_ptr<CouplingDiagnostic> displacement_scale(const CouplingView& view) {
+  return std::make_shared<DisplacementScale>(view);
+}
+
+std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view) {
+  return std::make_shared<StructureAtRest>(view);
+}
 
 std::shared_ptr<CouplingDiagnostic> lost_load(const CouplingView& view) {
   auto made = std::make_shared<LostLoad>(view);

@@ -3,17 +3,132 @@
 
 #include <mpi.h>
 
+#include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "common/app/loop/step_loop.hpp"
+#include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "coupler/acceleration/accelerator.hpp"
+#include "common/parallel/index_map.hpp"
+#include "coupler/acceleration/unknown.hpp"
 #include "coupler/output/record.hpp"
 #include "coupler/parameters/schedule.hpp"
 #include "coupler/pass.hpp"
 
 namespace couplet::coupler {
+
+/// Watches the residuals of one step, to detect divergence within a few passes.
+class ResidualGrowth {
+ public:
+  void start_step() { *this = {}; }
+  /// Call after each pass with |r| (any fixed norm) and the factor of its x. Throws SchemeFailure if constant
+  /// relaxation diverges due to added mass; each mode's error has the factor 1 - omega (1 + r) [Causin,
+  /// Gerbeau and Nobile 2005], so smaller steps do not help. Throws SolveFailure if an accelerated residual
+  /// grows over `patience` passes or by `too_far` in total.
+  void pass(double residual, double omega, bool constant);
+
+  /// Call after a pass that a participant could not answer. Returns a reason if the residual was growing: a
+  /// diverging motion folds a mesh before `patience` passes are over. `relaxation`: the constant one, or 0.
+  std::optional<std::string> suspects(double relaxation) const;
+
+  static constexpr int patience = 5;
+  static constexpr double too_far = 1e6;
+
+ private:
+  bool grows() const;
+  double factor() const;  // per pass
+
+  double first_ = 0, last_ = 0;
+  int passes_ = 0, growing_ = 0;
+  double at_turn_ = 0;  // residual at which the growth began
+};
+
+/// Detects the two-step oscillation of loosely coupled schemes in the accepted motion. The velocity jumps d_n
+/// = (x^{n+1} - x^n)/dt_n - (x^n - x^{n-1})/dt_{n-1} then alternate, grow, and are as large as the velocity.
+/// Variable steps do not hide it. Explicit added mass has the factor -r per step (r: added mass over the
+/// structure's) for any step size. Growth is distinguished from two frequencies that beat: it lasts at least three periods, does not slow
+/// down, and exceeds all swings before it.
+class StepOscillation {
+ public:
+  /// `comm`: communicator over whose ranks the motion is distributed. `tolerance`: tolerance of the coupling, relative to the
+  /// largest motion of the run. Swings below it or below `floor` are not part of the answer.
+  explicit StepOscillation(MPI_Comm comm = MPI_COMM_SELF, double tolerance = 0)
+      : comm_(comm), tolerance_(tolerance) {}
+  /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
+  /// nothing.
+  std::optional<std::string> accepted(const std::vector<double>& x, double dt, coupling::Scheme scheme);
+  /// Call after a failed step. Returns a reason if the accepted steps before it had begun to oscillate.
+  std::optional<std::string> suspects(coupling::Scheme scheme) const;
+  /// Number of consecutive steps in which the motion has reversed.
+  int turns() const { return turns_; }
+
+  /// Data for checkpoints: values equal on all ranks, and `count` values of the motion from `first` on, in
+  /// order.
+  void visit_numbers(io::Archive& archive);
+  void visit_fields(io::Archive& archive, const parallel::GlobalOrder& order, const std::string& name,
+                    std::size_t first, std::size_t count, std::size_t width);
+
+  static constexpr double floor = 1e-3;
+  static constexpr int periods = 3;
+
+ private:
+  std::string told(double growth, coupling::Scheme scheme) const;
+  double pair(std::size_t i) const;
+  double share() const;  // amplitude over the largest motion
+  bool counts() const;   // the swings are part of the answer and larger than all before
+
+  MPI_Comm comm_;
+  double tolerance_, largest_ = 0;  // largest: norm of x over the run
+  std::vector<double> x_, velocity_, jump_;
+  int turns_ = 0, levels_ = 0;  // levels: number of known accepted states
+  std::vector<double> sizes_;   // of the differences since the oscillation began
+  std::deque<double> speed_;    // of the last steps
+  double before_ = 0, dt_ = 0;  // largest pair of sizes in the oscillations before; last step
+};
+
+/// Compares the work on both sides of the interface, which differs only by the coupling error.
+class WorkBalance {
+ public:
+  /// Adds the work of a step on both sides [J].
+  void accepted(double fluid, double structure);
+  /// Result at the end of the run: a sentence with numbers, and whether the balance is sound.
+  struct Result {
+    bool sound = true;
+    std::string text;
+    double part = 0;  ///< difference relative to the net work or energy
+    bool useless = false;
+  };
+  /// Compares the difference with the smaller net work, or with the structure's largest energy if that is
+  /// larger, because work that is returned hides nothing. `by_nearest`: nearest mapping of motion and load.
+  /// `lagging`: one pass per step. The fluid then sees an extrapolated wall whose velocity jitters, so loads
+  /// alternate and the works differ even if the motion is accurate to parts in a thousand. Such a result is
+  /// not called useless.
+  Result result(bool by_nearest = false, bool lagging = false) const;
+  /// Adds the structures' energy after a step [J]; NaN if unknown. Until then the largest net work taken is
+  /// used.
+  void energy(double value) { energy_ = value > energy_ ? value : energy_; }
+
+  /// Data for checkpoints.
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(fluid_, structure_, exchanged_, steps_, energy_, stored_);
+  }
+
+  /// Limits of the difference: sound below the first, relative to net work or energy; useless above the
+  /// second, relative to all work exchanged. The latter needs this many steps, because the first steps of a
+  /// motion differ more.
+  static constexpr double sound_part = 0.05, useless_part = 0.5;
+  static constexpr long judged_steps = 20;
+
+ private:
+  double fluid_ = 0, structure_ = 0, exchanged_ = 0;  // sums over the run; exchanged: of the larger |work|
+  double energy_ = 0, stored_ = 0;  // largest energy of the structures; largest net work taken
+  long steps_ = 0;
+};
 
 /// State of a coupled run after the last solved or accepted step, as diagnostics see it.
 struct CouplingView {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/exchange/face_corners.hpp"
+#include "coupler/exchange/transfer.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -113,22 +113,12 @@ std::vector<double> ForeignStructure::velocity() const {
   return v;
 }
 
-void ForeignStructure::save(io::CheckpointWriter& file) const {
+void ForeignStructure::visit(io::Archive& archive) {
   if (!derives_velocity_) return;
-  const auto order = parallel::GlobalOrder::as_they_are(file.comm(), n_values_);
-  file.write(order, name() + "-displacement", now_);
-  file.write(order, name() + "-displacement-before", older_);
-  file.write_scalar(name() + "-dt", dt_);
-  file.write_scalar(name() + "-dt-before", old_dt_);
-}
-
-void ForeignStructure::load(io::CheckpointReader& file) {
-  if (!derives_velocity_) return;
-  const auto order = parallel::GlobalOrder::as_they_are(file.comm(), n_values_);
-  now_ = file.read_or_none(order, name() + "-displacement", 1);
-  older_ = file.read_or_none(order, name() + "-displacement-before", 1);
-  dt_ = file.read_scalar(name() + "-dt");
-  old_dt_ = file.read_scalar(name() + "-dt-before");
+  const auto order = parallel::GlobalOrder::as_they_are(archive.comm(), n_values_);
+  archive.field(order, name() + "-displacement", now_, 1);
+  archive.field(order, name() + "-displacement-before", older_, 1);
+  archive.common(name() + "-steps", dt_, old_dt_);
 }
 
 coupling::Reply ForeignStructure::receive() {

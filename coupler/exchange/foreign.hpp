@@ -7,12 +7,8 @@
 
 #include "common/coupling/channel.hpp"
 #include "common/coupling/messages.hpp"
+#include "common/io/checkpoint.hpp"
 #include "coupler/parameters/parameters.hpp"
-
-namespace couplet::io {
-class CheckpointReader;
-class CheckpointWriter;
-}  // namespace couplet::io
 
 namespace couplet::coupler {
 
@@ -53,8 +49,7 @@ class ForeignStructure final : public coupling::Channel {
   double waiting_seconds() const override { return channel_->waiting_seconds(); }
 
   /// Earlier displacements, from which the velocity is computed; empty if the structure gives its velocity.
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  void visit(io::Archive& archive);
 
  private:
   void adapt_displacement(coupling::Interface& own, coupling::Surfaces& surfaces);

@@ -120,6 +120,14 @@ void check_scheme(const CouplingParameters& p, const std::string& who,
 
 bool speaks_precice(const Partner& p) { return p.introduction.starts_with("xml-"); }
 
+void check_dimensions(const std::vector<Side>& sides, const std::string& structure) {
+  const Side& first = *std::ranges::find(sides, structure, &Side::name);
+  for (const Side& other : sides)
+    if (other.interface.dim != first.interface.dim)
+      throw Error("'{}' has {} dimensions and '{}' has {}: both must have the same.", other.name,
+                  other.interface.dim, first.name, first.interface.dim);
+}
+
 }  // namespace
 
 std::string without_state(double checkpoint_interval, const std::vector<Partner>& partners) {
@@ -153,18 +161,6 @@ void check_introductions(const CouplingParameters& parameters, const std::vector
       check_scheme(parameters, p.name(), parts(records[i], '\x1f'));
   }
 }
-
-namespace {
-
-void check_dimensions(const std::vector<Side>& sides, const std::string& structure) {
-  const Side& first = *std::ranges::find(sides, structure, &Side::name);
-  for (const Side& other : sides)
-    if (other.interface.dim != first.interface.dim)
-      throw Error("'{}' has {} dimensions and '{}' has {}: both must have the same.", other.name,
-                  other.interface.dim, first.name, first.interface.dim);
-}
-
-}  // namespace
 
 void check_roles(const CouplingParameters& p, const std::vector<Side>& sides) {
   if (p.moves_alone()) return;  // neither has an interface

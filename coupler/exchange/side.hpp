@@ -67,6 +67,7 @@ int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const cou
 /// is sent if all are there already. Items are copied as bytes. Collective.
 template <class Item, class Owner>
 std::vector<Item> to_owners(MPI_Comm comm, std::vector<Item> items, const Owner& owner) {
+  if (parallel::comm_size(comm) == 1) return items;
   const int rank = parallel::comm_rank(comm);
   const bool stay = std::ranges::all_of(items, [&](const Item& item) { return int(owner(item)) == rank; });
   if (!parallel::any(comm, !stay)) return items;

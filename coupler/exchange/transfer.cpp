@@ -2,7 +2,7 @@
 #include "coupler/exchange/transfer.hpp"
 
 #include <algorithm>
-#include <cstdint>
+#include <limits>
 
 #include "common/parallel/collective.hpp"
 #include "coupler/exchange/side.hpp"
@@ -39,6 +39,103 @@ void sort_rows(GlobalIndex first, GlobalIndex end, std::vector<Transfer::Entry>&
   }
 }
 
+/// Product for N components, known at compile time, or 0.
+template <std::size_t N>
+void multiply(const std::vector<std::size_t>& first, const std::vector<Index>& column,
+              const std::vector<double>& weight, const double* from, std::size_t components, double* to) {
+  const std::size_t n = N > 0 ? N : components;
+  for (std::size_t t = 0; t + 1 < first.size(); ++t)
+    for (std::size_t e = first[t]; e < first[t + 1]; ++e)
+      for (std::size_t c = 0; c < n; ++c) to[t * n + c] += weight[e] * from[std::size_t(column[e]) * n + c];
+}
+
+using Entry = Transfer::Entry;
+using Entries = std::vector<Entry>;
+
+/// Sums one row of the product by source.
+class RowSums {
+ public:
+  /// Sources from `first` to `end` - 1.
+  RowSums(GlobalIndex first, GlobalIndex end) : first_(first), place_(std::size_t(end - first), -1) {}
+  void add(GlobalIndex source, double value) {
+    Index& place = place_[std::size_t(source - first_)];
+    if (place < 0)
+      place = Index(sums_.size()), sums_.push_back({0, source, value});
+    else
+      sums_[std::size_t(place)].weight += value;
+  }
+  /// Returns the sums by ascending source and clears them.
+  void take(GlobalIndex target, Entries& to) {
+    std::ranges::sort(sums_, {}, &Entry::source);
+    for (const Entry& e : sums_)
+      to.push_back({target, e.source, e.weight}), place_[std::size_t(e.source - first_)] = -1;
+    sums_.clear();
+  }
+
+ private:
+  GlobalIndex first_;
+  std::vector<Index> place_;  // of a source among the sums; -1 if it has none
+  Entries sums_;
+};
+
+/// Rows of a map at some places: those of this rank, and copies from other ranks.
+class MapRows {
+ public:
+  /// `own`: this rank's entries by owner, in order. `needed`: positions on other ranks, ascending.
+  MapRows(MPI_Comm comm, const coupling::Starts& starts, const Entries& own,
+          const std::vector<GlobalIndex>& needed)
+      : first_(starts[std::size_t(parallel::comm_rank(comm))]),
+        end_(starts[std::size_t(parallel::comm_rank(comm)) + 1]),
+        own_(own) {
+    at_.assign(std::size_t(end_ - first_) + 1, 0);
+    for (const Entry& e : own_) ++at_[std::size_t(e.target - first_) + 1];
+    for (std::size_t t = 1; t < at_.size(); ++t) at_[t] += at_[t - 1];
+    if (parallel::comm_size(comm) == 1) return;
+    struct Question {
+      GlobalIndex place;
+      int asks;
+    };
+    std::vector<Question> ask;
+    for (const GlobalIndex p : needed) ask.push_back({p, parallel::comm_rank(comm)});
+    struct Answer {
+      Entry entry;
+      int to;
+    };
+    std::vector<Answer> answers;
+    for (const Question& q : to_owners(
+             comm, std::move(ask), [&](const Question& q) { return coupling::owner_of(starts, q.place); }))
+      for (const Entry& e : row(q.place)) answers.push_back({e, q.asks});
+    for (const Answer& a : to_owners(comm, std::move(answers), [](const Answer& a) { return a.to; }))
+      copies_.push_back(a.entry);
+  }
+  std::span<const Entry> row(GlobalIndex place) const {
+    if (place >= first_ && place < end_) {
+      const std::size_t begin = at_[std::size_t(place - first_)], end = at_[std::size_t(place - first_) + 1];
+      return {own_.data() + begin, end - begin};
+    }
+    const auto found = std::ranges::equal_range(copies_, place, {}, &Entry::target);
+    return {found.data(), found.size()};
+  }
+  /// The first source and one beyond the last.
+  std::pair<GlobalIndex, GlobalIndex> sources() const {
+    GlobalIndex low = std::numeric_limits<GlobalIndex>::max(), high = -1;
+    for (const auto* entries : {&own_, &copies_})
+      for (const Entry& e : *entries) low = std::min(low, e.source), high = std::max(high, e.source);
+    return high < 0 ? std::pair{GlobalIndex(0), GlobalIndex(0)} : std::pair{low, high + 1};
+  }
+
+ private:
+  GlobalIndex first_, end_;
+  const Entries& own_;
+  std::vector<std::size_t> at_;
+  Entries copies_;  // ascending: they come rank by rank, each in the order of the questions
+};
+
+bool all_there(const coupling::Starts& starts, std::size_t rank, const Entries& entries) {
+  return std::ranges::all_of(
+      entries, [&](const Entry& e) { return e.target >= starts[rank] && e.target < starts[rank + 1]; });
+}
+
 }  // namespace
 
 std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const coupling::Starts& targets,
@@ -59,7 +156,7 @@ Transfer::Transfer(MPI_Comm comm, const coupling::Starts& targets, const couplin
   n_sources_ = std::size_t(sources[rank + 1] - sources[rank]);
   std::vector<GlobalIndex> foreign;
   for (const Entry& e : entries)
-    if (coupling::owner_of(sources, e.source) != int(rank)) foreign.push_back(e.source);
+    if (e.source < sources[rank] || e.source >= sources[rank + 1]) foreign.push_back(e.source);
   std::ranges::sort(foreign);
   foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
   const std::size_t n_targets = std::size_t(targets[rank + 1] - targets[rank]);
@@ -111,20 +208,6 @@ std::vector<double> Transfer::fetch(std::span<const double> values, int componen
   return all;
 }
 
-namespace {
-
-/// Product for N components, known at compile time, or 0.
-template <std::size_t N>
-void multiply(const std::vector<std::size_t>& first, const std::vector<Index>& column,
-              const std::vector<double>& weight, const double* from, std::size_t components, double* to) {
-  const std::size_t n = N > 0 ? N : components;
-  for (std::size_t t = 0; t + 1 < first.size(); ++t)
-    for (std::size_t e = first[t]; e < first[t + 1]; ++e)
-      for (std::size_t c = 0; c < n; ++c) to[t * n + c] += weight[e] * from[std::size_t(column[e]) * n + c];
-}
-
-}  // namespace
-
 std::vector<double> Transfer::apply(std::span<const double> values, int components) const {
   if (same_) return {values.begin(), values.end()};
   const std::vector<double> fetched = alone_ ? std::vector<double>{} : fetch(values, components);
@@ -141,107 +224,8 @@ std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries) {
   return entries;
 }
 
-namespace {
-
-using Entry = Transfer::Entry;
-using Entries = std::vector<Entry>;
-
-/// Sums one row of the product by source, in an open-addressing hash table.
-class RowSums {
- public:
-  void add(GlobalIndex source, double value) {
-    if (2 * (used_.size() + 1) > keys_.size()) grow();
-    const std::size_t slot = slot_of(source);
-    if (keys_[slot] == nothing) keys_[slot] = source, values_[slot] = 0, used_.push_back(source);
-    values_[slot] += value;
-  }
-  /// Returns the sums by ascending source and clears the table.
-  void take(GlobalIndex target, Entries& to) {
-    std::ranges::sort(used_);
-    for (const GlobalIndex source : used_) to.push_back({target, source, values_[slot_of(source)]});
-    std::ranges::fill(keys_, nothing);
-    used_.clear();
-  }
-
- private:
-  static constexpr GlobalIndex nothing = -1;
-  /// Slot of the source, or the empty one for it.
-  std::size_t slot_of(GlobalIndex source) const {
-    const std::size_t mask = keys_.size() - 1;
-    std::size_t slot = std::size_t(std::uint64_t(source) * 0x9E3779B97F4A7C15u >> 32) & mask;
-    while (keys_[slot] != nothing && keys_[slot] != source) slot = (slot + 1) & mask;
-    return slot;
-  }
-  void grow() {
-    std::vector<GlobalIndex> keys(2 * keys_.size(), nothing);
-    std::vector<double> values(keys.size());
-    keys_.swap(keys), values_.swap(values);
-    for (std::size_t i = 0; i < keys.size(); ++i)
-      if (keys[i] != nothing) {
-        const std::size_t slot = slot_of(keys[i]);
-        keys_[slot] = keys[i], values_[slot] = values[i];
-      }
-  }
-  std::vector<GlobalIndex> keys_ = std::vector<GlobalIndex>(128, nothing), used_;
-  std::vector<double> values_ = std::vector<double>(128);
-};
-
-/// Rows of a map at some places: those of this rank, and copies from other ranks.
-class MapRows {
- public:
-  /// `own`: this rank's entries by owner, in order. `needed`: positions on other ranks, ascending.
-  MapRows(MPI_Comm comm, const coupling::Starts& starts, const Entries& own,
-          const std::vector<GlobalIndex>& needed)
-      : first_(starts[std::size_t(parallel::comm_rank(comm))]),
-        end_(starts[std::size_t(parallel::comm_rank(comm)) + 1]),
-        own_(own) {
-    at_.assign(std::size_t(end_ - first_) + 1, 0);
-    for (const Entry& e : own_) ++at_[std::size_t(e.target - first_) + 1];
-    for (std::size_t t = 1; t < at_.size(); ++t) at_[t] += at_[t - 1];
-    if (parallel::comm_size(comm) == 1) return;
-    struct Question {
-      GlobalIndex place;
-      int asks;
-    };
-    std::vector<Question> ask;
-    for (const GlobalIndex p : needed) ask.push_back({p, parallel::comm_rank(comm)});
-    struct Answer {
-      Entry entry;
-      int to;
-    };
-    std::vector<Answer> answers;
-    for (const Question& q : to_owners(
-             comm, std::move(ask), [&](const Question& q) { return coupling::owner_of(starts, q.place); }))
-      for (const Entry& e : row(q.place)) answers.push_back({e, q.asks});
-    for (const Answer& a : to_owners(comm, std::move(answers), [](const Answer& a) { return a.to; }))
-      copies_.push_back(a.entry);
-  }
-  std::span<const Entry> row(GlobalIndex place) const {
-    if (place >= first_ && place < end_) {
-      const std::size_t begin = at_[std::size_t(place - first_)], end = at_[std::size_t(place - first_) + 1];
-      return {own_.data() + begin, end - begin};
-    }
-    const auto found = std::ranges::equal_range(copies_, place, {}, &Entry::target);
-    return {found.data(), found.size()};
-  }
-
- private:
-  GlobalIndex first_, end_;
-  const Entries& own_;
-  std::vector<std::size_t> at_;
-  Entries copies_;  // ascending: they come rank by rank, each in the order of the questions
-};
-
-bool all_there(const coupling::Starts& starts, int rank, const Entries& entries) {
-  return std::ranges::all_of(entries, [&](const Entry& e) {
-    return e.target >= starts[std::size_t(rank)] && e.target < starts[std::size_t(rank) + 1];
-  });
-}
-
-}  // namespace
-
 Entries product(MPI_Comm comm, const coupling::Starts& between, const Entries& second, const Entries& first) {
-  const int rank = parallel::comm_rank(comm);
+  const auto rank = std::size_t(parallel::comm_rank(comm));
   const bool ready = all_there(between, rank, first) && std::ranges::is_sorted(first, by_row);
   const bool all_ready = !parallel::any(comm, !ready);
   const Entries moved = all_ready ? Entries{} : by_owner(comm, between, first);
@@ -250,13 +234,16 @@ Entries product(MPI_Comm comm, const coupling::Starts& between, const Entries& s
   const Entries& after = sorted.empty() ? second : sorted;
   std::vector<GlobalIndex> needed;
   for (const Entry& e : after)
-    if (coupling::owner_of(between, e.source) != rank) needed.push_back(e.source);
+    if (e.source < between[rank] || e.source >= between[rank + 1]) needed.push_back(e.source);
   std::ranges::sort(needed);
   needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
   const MapRows rows(comm, between, all_ready ? first : moved, needed);
   Entries result;
-  result.reserve(after.size() + after.size() / 2);
-  RowSums sums;
+  std::size_t most = 0;
+  for (const Entry& e : after) most += rows.row(e.source).size();
+  result.reserve(most / 2);  // neighboring rows have common sources
+  const auto [first_source, end_source] = rows.sources();
+  RowSums sums(first_source, end_source);
   for (std::size_t i = 0; i < after.size(); ++i) {
     for (const Entry& e : rows.row(after[i].source)) sums.add(e.source, after[i].weight * e.weight);
     if (i + 1 == after.size() || after[i + 1].target != after[i].target) sums.take(after[i].target, result);

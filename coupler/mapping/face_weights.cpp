@@ -7,9 +7,7 @@
 #include <cmath>
 
 #include "common/base/point_tree.hpp"
-#include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 
@@ -20,6 +18,69 @@ constexpr double same_way = 0.5, not_against = -0.5;
 bool alike(const coupling::Interface& s, Index a, Index b, double least_cosine) {
   return s.face_areas[a].dot(s.face_areas[b]) >
          least_cosine * s.face_areas[a].norm() * s.face_areas[b].norm();
+}
+
+/// Corner weights of a polygon: integrals of corner functions, linear over the triangles about the mean
+/// corner, over its area.
+std::vector<double> fan_weights(const std::vector<Vec3>& at) {
+  const std::size_t n = at.size();
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : at) centre += p / double(n);
+  std::vector<double> weights(n, 0.);
+  double total = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t j = (i + 1) % n;
+    const double area = 0.5 * (at[i] - centre).cross(at[j] - centre).norm();
+    weights[i] += area / 3, weights[j] += area / 3;
+    total += area;
+  }
+  if (!(total > 0)) return std::vector<double>(n, 1 / double(n));
+  for (double& w : weights) w = w / total + 1 / (3 * double(n));
+  return weights;
+}
+
+/// Smallest change of the weights that moves the mean of the corners to `centre`, in the directions that
+/// these span.
+void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& weights) {
+  const std::size_t n = at.size();
+  Vec3 off = centre, mean = Vec3::Zero();
+  for (std::size_t i = 0; i < n; ++i) off -= weights[i] * at[i], mean += at[i] / double(n);
+  std::vector<Vec3> rest;  // of the corners' offsets, without the directions found
+  double size = 0;
+  rest.reserve(n);
+  for (const Vec3& p : at) rest.push_back(p - mean), size = std::max(size, rest.back().squaredNorm());
+  size = std::sqrt(size);
+  if (!(off.norm() > 1e-14 * size)) return;
+  // Orthonormal directions by Gram-Schmidt with pivoting, and the corners' coordinates along them, over their
+  // length.
+  std::vector<Vec3> along(n, Vec3::Zero());
+  Vec3 goal = Vec3::Zero();
+  Eigen::Matrix3d direction = Eigen::Matrix3d::Zero();
+  int rank = 0;
+  for (; rank < 3; ++rank) {
+    const auto longest = std::ranges::max_element(rest, {}, [](const Vec3& d) { return d.squaredNorm(); });
+    if (!(longest->norm() > 1e-9 * size)) break;
+    const Vec3 d = (*longest - direction * (direction.transpose() * *longest)).normalized();
+    direction.col(rank) = d;
+    double square = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      along[i][rank] = d.dot(rest[i]);
+      rest[i] -= along[i][rank] * d, square += along[i][rank] * along[i][rank];
+    }
+    const double scale = 1 / std::sqrt(square);
+    for (Vec3& a : along) a[rank] *= scale;
+    goal[rank] = d.dot(off) * scale;
+  }
+  // Without the round-off of the mean, which would change the sum of the weights on a nearly flat face.
+  Vec3 level = Vec3::Zero();
+  for (const Vec3& a : along) level += a / double(n);
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  for (Vec3& a : along) a -= level, products += a * a.transpose();
+  for (int k = rank; k < 3; ++k) products(k, k) = 1;
+  const Vec3 factor = products.inverse() * goal;
+  for (const Vec3& a : along)
+    if (!(std::abs(factor.dot(a)) <= 1)) return;  // not a center of this face
+  for (std::size_t i = 0; i < n; ++i) weights[i] += factor.dot(along[i]);
 }
 
 }  // namespace
@@ -41,6 +102,7 @@ Slopes::~Slopes() = default;
 
 std::vector<Index> Slopes::touching(Index face, std::size_t shared, double least_cosine) const {
   std::vector<Index> all, result;
+  all.reserve(16), result.reserve(8);
   for (const Index v : corners(surface_, face))
     all.insert(all.end(), faces_of_[std::size_t(v)].begin(), faces_of_[std::size_t(v)].end());
   std::ranges::sort(all);
@@ -66,14 +128,21 @@ Slope Slopes::least_squares(Index face, const std::vector<Index>& neighbours, bo
   Eigen::RowVectorXd weight(n);
   for (Eigen::Index i = 0; i < n; ++i) weight[i] = 1 / std::max(way.col(i).squaredNorm(), 1e-300);
   const Eigen::Matrix3Xd weighted = way.array().rowwise() * weight.array();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Eigen::Matrix3d(way * weighted.transpose()));
+  Eigen::Matrix<double, 3, 2> plane;
+  plane.col(0) = normal.unitOrthogonal(), plane.col(1) = normal.cross(plane.col(0));
+  const Eigen::Matrix2d strength = plane.transpose() * (way * weighted.transpose()) * plane;
+  const double mean = strength.trace() / 2, high = mean + std::hypot(strength(0, 0) - mean, strength(0, 1));
   Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
   int directions = 0;
-  for (int d = 0; d < 3; ++d) {
-    const double strength = solver.eigenvalues()[d];
-    if (!(strength > 1e-3 * solver.eigenvalues()[2]) || n == 0) continue;
-    inverse += solver.eigenvectors().col(d) * solver.eigenvectors().col(d).transpose() / strength;
-    ++directions;
+  if (2 * mean - high > 1e-3 * high) {
+    inverse = plane * strength.inverse() * plane.transpose();
+    directions = 2;
+  } else if (high > 0) {
+    // The eigenvector of the larger value, from the longer column of A - low I.
+    const Eigen::Matrix2d rest = strength - (2 * mean - high) * Eigen::Matrix2d::Identity();
+    const Vec3 along = plane * rest.col(rest(0, 0) > rest(1, 1) ? 0 : 1).normalized();
+    inverse = along * along.transpose() / high;
+    directions = 1;
   }
   spans = directions >= surface_.dim - 1;
   Slope slope{neighbours, Eigen::Matrix3Xd(3, n + 1)};
@@ -120,51 +189,6 @@ const Slope& Slopes::at(Index face) {
   return slope;
 }
 
-namespace {
-
-/// Corner weights of a polygon: integrals of corner functions, linear over the triangles about the mean
-/// corner, over its area.
-std::vector<double> fan_weights(const std::vector<Vec3>& at) {
-  const std::size_t n = at.size();
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : at) centre += p / double(n);
-  std::vector<double> weights(n, 0.);
-  double total = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t j = (i + 1) % n;
-    const double area = 0.5 * (at[i] - centre).cross(at[j] - centre).norm();
-    weights[i] += area / 3, weights[j] += area / 3;
-    total += area;
-  }
-  if (!(total > 0)) return std::vector<double>(n, 1 / double(n));
-  for (double& w : weights) w = w / total + 1 / (3 * double(n));
-  return weights;
-}
-
-/// Smallest change of the weights that moves the mean of the corners to `centre`, in the directions that
-/// these span. `Most`: number of corners at compile time, to avoid allocation, or Eigen::Dynamic.
-template <int Most>
-void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& weights) {
-  const auto n = Eigen::Index(at.size());
-  Vec3 off = centre, mean = Vec3::Zero();
-  double size = 0;
-  for (std::size_t i = 0; i < at.size(); ++i) off -= weights[i] * at[i], mean += at[i] / double(n);
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, Most> spread(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    spread.col(i) = at[std::size_t(i)] - mean;
-    size = std::max(size, spread.col(i).norm());
-  }
-  if (!(off.norm() > 1e-14 * size)) return;
-  Eigen::CompleteOrthogonalDecomposition<decltype(spread)> factors;
-  factors.setThreshold(1e-9);
-  factors.compute(spread);
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1> change = factors.solve(off);
-  if (change.cwiseAbs().maxCoeff() > 1) return;  // not a center of this face
-  for (Eigen::Index i = 0; i < n; ++i) weights[std::size_t(i)] += change[i];
-}
-
-}  // namespace
-
 std::span<const Index> corners(const coupling::Interface& surface, Index face) {
   return {surface.face_vertices.data() + surface.face_offset[face],
           std::size_t(surface.face_offset[face + 1] - surface.face_offset[face])};
@@ -178,14 +202,13 @@ double reach(const coupling::Interface& surface, Index face) {
 }
 
 std::vector<double> corner_weights(const coupling::Interface& surface, Index face) {
+  const auto vertex = corners(surface, face);
   std::vector<Vec3> at;
-  for (const Index v : corners(surface, face)) at.push_back(surface.vertices[v]);
+  at.reserve(vertex.size());
+  for (const Index v : vertex) at.push_back(surface.vertices[v]);
   std::vector<double> weights =
       at.size() > 3 ? fan_weights(at) : std::vector<double>(at.size(), 1 / double(at.size()));
-  if (at.size() <= 8)
-    meet<8>(surface.face_centres[face], at, weights);
-  else
-    meet<Eigen::Dynamic>(surface.face_centres[face], at, weights);
+  meet(surface.face_centres[face], at, weights);
   return weights;
 }
 
@@ -198,6 +221,7 @@ std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const coupling::In
     return entries;
   }
   const SurfacePart mine = all.with(faces.positions);
+  entries.reserve(mine.surface.face_vertices.size());
   for (Index f = 0; f < Index(mine.faces.size()); ++f) {
     const std::vector<double> weights = corner_weights(mine.surface, f);
     const auto vertex = corners(mine.surface, f);
@@ -210,7 +234,10 @@ std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const coupling::In
 using Eigen::MatrixXd;
 
 FaceIntegrals::FaceIntegrals(const coupling::Interface& structure, MappingParameters::Type type)
-    : structure_(structure), tree_(structure.face_centres), slopes_(structure, type) {
+    : structure_(structure),
+      tree_(structure.face_centres),
+      slopes_(structure, type),
+      place_(structure.face_centres.size(), -1) {
   means_.reserve(structure.face_centres.size());
   for (Index s = 0; s < Index(structure.face_centres.size()); ++s) {
     widest_ = std::max(widest_, reach(structure, s));
@@ -222,53 +249,61 @@ FaceIntegrals::FaceIntegrals(const coupling::Interface& structure, MappingParame
   }
 }
 
-std::vector<Index> FaceIntegrals::candidates(const Vec3& centre, double reach) const {
-  std::vector<Index> list = tree_.within(centre, reach + widest_);
-  if (list.size() < nearest_faces) {
-    const std::vector<Index> near = tree_.nearest(centre, nearest_faces);
-    list.insert(list.end(), near.begin(), near.end());
+Weights* FaceIntegrals::weights_of(Index source, std::size_t corners) {
+  Index& place = place_[std::size_t(source)];
+  if (place < 0) {
+    place = Index(sources_.size());
+    sources_.push_back(source);
+    weights_.resize(weights_.size() + corners, {0, 0});
   }
-  std::ranges::sort(list);
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-  return list;
+  return weights_.data() + std::size_t(place) * corners;
 }
 
-void FaceIntegrals::find(const coupling::Interface& surface, Index face, bool dual,
-                         std::vector<Part>& parts) {
-  parts.clear();
+void FaceIntegrals::find(const coupling::Interface& surface, Index face, bool dual) {
+  for (const Index s : sources_) place_[std::size_t(s)] = -1;
+  sources_.clear(), weights_.clear();
   const Vec3& centre = surface.face_centres[face];
   const double extent = reach(surface, face);
-  const std::vector<Cover> covered = covers(surface, face, structure_, candidates(centre, extent));
+  // A little more, so that most faces find enough at once.
+  std::vector<Index> around = tree_.within(centre, 1.25 * std::max(extent + widest_, 2 * extent));
+  if (around.size() < nearest_faces) around = tree_.nearest(centre, nearest_faces);
+  std::ranges::sort(around);
+  const std::vector<Cover> covered = covers(surface, face, structure_, around);
   const auto vertex = corners(surface, face);
-  const auto n = Eigen::Index(vertex.size());
+  const std::size_t n = vertex.size();
   // Adds sources without weight, because corrections for a curved surface are spread over more faces.
   if (surface.dim == 3 && dual)
-    for (const Index s : tree_.within(centre, 2 * extent))
-      if (surface.face_areas[face].dot(structure_.face_areas[s]) < 0)
-        for (Index i = 0; i < Index(n); ++i) parts.push_back({i, s, {0, 0}});
-  Eigen::Matrix3Xd at(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) at.col(i) = surface.vertices[vertex[std::size_t(i)]];
-  MatrixXd test = MatrixXd::Identity(n, n);
+    for (const Index s : around)
+      if ((structure_.face_centres[s] - centre).squaredNorm() <= 4 * extent * extent * (1 + 1e-9) &&
+          surface.face_areas[face].dot(structure_.face_areas[s]) < 0)
+        weights_of(s, n);
+  MatrixXd test = MatrixXd::Identity(Index(n), Index(n));
   if (dual) {
-    MatrixXd all = MatrixXd::Zero(n, n);
+    MatrixXd all = MatrixXd::Zero(Index(n), Index(n));
     for (const Cover& part : covered) all += part.products;
     const Eigen::VectorXd sizes = all.rowwise().sum();
     test = sizes.asDiagonal() * all.inverse();
   }
+  Eigen::Matrix3Xd at(3, n), way_dual(3, n), way_more(3, n);
+  for (std::size_t i = 0; i < n; ++i) at.col(Index(i)) = surface.vertices[vertex[i]] - centre;
   MatrixXd tested(n, n), more(n, n);
   for (const Cover& part : covered) {
-    tested.noalias() = test * part.products, more = tested - part.products;
+    tested.noalias() = test.lazyProduct(part.products);
     const Slope& slope = slopes_.at(part.other);
-    const auto way = [&](const MatrixXd& m, Eigen::Index i) {
-      return Vec3(at * m.row(i).transpose() - m.row(i).sum() * mean(part.other));
-    };
-    for (Eigen::Index i = 0; i < n; ++i) {
-      parts.push_back({Index(i), part.other, {tested.row(i).sum(), more.row(i).sum()}});
-      const Vec3 way_dual = way(tested, i), way_more = way(more, i);
-      for (std::size_t k = 0; k < slope.around.size(); ++k) {
-        const auto along = slope.weights.col(Eigen::Index(k));
-        parts.push_back({Index(i), slope.around[k], {way_dual.dot(along), way_more.dot(along)}});
-      }
+    // Integrals of the functions and their moments about the source's mean; `more` is the excess over the corner
+    // functions.
+    more.noalias() = tested - part.products;
+    way_dual.noalias() =
+        at.lazyProduct(tested.transpose()) - (mean(part.other) - centre) * tested.rowwise().sum().transpose();
+    way_more.noalias() =
+        at.lazyProduct(more.transpose()) - (mean(part.other) - centre) * more.rowwise().sum().transpose();
+    Weights* own = weights_of(part.other, n);
+    for (Index i = 0; i < Index(n); ++i) own[i].dual += tested.row(i).sum(), own[i].more += more.row(i).sum();
+    for (std::size_t k = 0; k < slope.around.size(); ++k) {
+      const Vec3 along = slope.weights.col(Index(k));
+      Weights* weights = weights_of(slope.around[k], n);
+      for (Index i = 0; i < Index(n); ++i)
+        weights[i].dual += way_dual.col(i).dot(along), weights[i].more += way_more.col(i).dot(along);
     }
   }
 }

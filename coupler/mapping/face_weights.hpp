@@ -77,23 +77,23 @@ class FaceIntegrals {
   /// Position at which the mean over a face of the structure equals the value of a linear field.
   const Vec3& mean(Index s) const { return means_[std::size_t(s)]; }
 
-  /// Contribution of a face to the row of one of its corners.
-  struct Part {
-    Index corner, source;  ///< a face of the structure
-    Weights weights;
-  };
-  /// Without `dual`, uses the corner functions themselves.
-  void find(const coupling::Interface& surface, Index face, bool dual, std::vector<Part>& parts);
+  /// Finds the contributions of a face to the rows of its corners. Without `dual`, uses the corner functions
+  /// themselves.
+  void find(const coupling::Interface& surface, Index face, bool dual);
+  /// Faces of the structure found last, each once, and their weights: n for the n corners of the face.
+  const std::vector<Index>& sources() const { return sources_; }
+  const std::vector<Weights>& weights() const { return weights_; }
 
  private:
-  /// Faces of the structure that may cover one with this center and reach, in ascending order.
-  std::vector<Index> candidates(const Vec3& centre, double reach) const;
+  Weights* weights_of(Index source, std::size_t corners);
 
   const coupling::Interface& structure_;
   base::PointTree tree_;
   Slopes slopes_;
   std::vector<Vec3> means_;
   double widest_ = 0;
+  std::vector<Index> place_, sources_;  // place_: in sources_, by face of the structure; -1 elsewhere
+  std::vector<Weights> weights_;
 };
 
 /// Map from faces of `structure` to vertices of `surface`. Each vertex takes the mean of the structure's

@@ -10,9 +10,7 @@
 #include "common/base/text.hpp"
 #include "common/coupling/step_plan.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/mapping/conjugate_map.hpp"
 #include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {

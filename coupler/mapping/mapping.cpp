@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/mapping/mapping.hpp"
+#include "coupler/mapping/links.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -155,9 +154,20 @@ void require_sums(MPI_Comm comm, const PointSet& from, const PointSet& to,
   const auto rank = std::size_t(parallel::comm_rank(comm));
   const GlobalIndex first = from.starts[rank];
   std::vector<double> taken(std::size_t(from.starts[rank + 1] - first), 0.), size = taken;
-  for (const auto& e : by_owner(comm, from.starts, transposed(entries)))
-    taken[std::size_t(e.target - first)] += e.weight,
-        size[std::size_t(e.target - first)] += std::abs(e.weight);
+  const auto add = [&](const Transfer::Entry& e) {
+    taken[std::size_t(e.source - first)] += e.weight,
+        size[std::size_t(e.source - first)] += std::abs(e.weight);
+  };
+  std::vector<Transfer::Entry> others;
+  for (const auto& e : entries)
+    if (e.source >= first && e.source < from.starts[rank + 1])
+      add(e);
+    else
+      others.push_back(e);
+  for (const auto& e : to_owners(comm, std::move(others), [&](const Transfer::Entry& e) {
+         return coupling::owner_of(from.starts, e.source);
+       }))
+    add(e);
   double worst = 0;
   for (const GlobalIndex p : from.positions) {
     const auto i = std::size_t(p - first);

@@ -10,7 +10,6 @@
 #include "common/base/error.hpp"
 #include "common/base/point_tree.hpp"
 #include "coupler/mapping/face_weights.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 
@@ -47,40 +46,6 @@ Eigen::MatrixXd coordinates(const std::vector<Vec3>& points, std::span<const Ind
   for (std::size_t d = 0; d < kept.size(); ++d) result.col(Eigen::Index(d)) = along.col(kept[d]);
   return result;
 }
-
-}  // namespace
-
-std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<const Index> sources,
-                                  const Vec3& x) {
-  const auto n = Eigen::Index(sources.size());
-  if (n == 1) return {1.};
-  double reach = 0;
-  for (const Index i : sources)
-    for (const Index j : sources) reach = std::max(reach, (points[i] - points[j]).norm());
-  reach *= 1.5;
-  if (reach == 0) return std::vector<double>(sources.size(), 1. / double(n));
-  const Eigen::MatrixXd at = coordinates(points, sources, x);
-  const Eigen::Index m = n + 1 + at.cols();
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(m, m);
-  Eigen::VectorXd b(m);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j)
-      a(i, j) = wendland((points[sources[i]] - points[sources[j]]).norm() / reach);
-    b[i] = wendland((points[sources[i]] - x).norm() / reach);
-  }
-  a.block(0, n, n, 1).setOnes();
-  a.block(0, n + 1, n, at.cols()) = at.topRows(n);
-  a.bottomLeftCorner(m - n, n) = a.topRightCorner(n, m - n).transpose();
-  b[n] = 1;
-  b.tail(at.cols()) = at.row(n).transpose();
-  Eigen::VectorXd w = a.partialPivLu().solve(b);
-  // The smallest weights that fit, for coincident sources or too few of them for the polynomial.
-  if (!w.allFinite() || (a * w - b).norm() > 1e-11 * b.norm())
-    w = a.completeOrthogonalDecomposition().solve(b);
-  return {w.data(), w.data() + n};
-}
-
-namespace {
 
 /// Nearest place on a face, as weights of its corners.
 struct OnFace {
@@ -124,6 +89,36 @@ struct FacesAround {
 };
 
 }  // namespace
+
+std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<const Index> sources,
+                                  const Vec3& x) {
+  const auto n = Eigen::Index(sources.size());
+  if (n == 1) return {1.};
+  double reach = 0;
+  for (const Index i : sources)
+    for (const Index j : sources) reach = std::max(reach, (points[i] - points[j]).norm());
+  reach *= 1.5;
+  if (reach == 0) return std::vector<double>(sources.size(), 1. / double(n));
+  const Eigen::MatrixXd at = coordinates(points, sources, x);
+  const Eigen::Index m = n + 1 + at.cols();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(m, m);
+  Eigen::VectorXd b(m);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j)
+      a(i, j) = wendland((points[sources[i]] - points[sources[j]]).norm() / reach);
+    b[i] = wendland((points[sources[i]] - x).norm() / reach);
+  }
+  a.block(0, n, n, 1).setOnes();
+  a.block(0, n + 1, n, at.cols()) = at.topRows(n);
+  a.bottomLeftCorner(m - n, n) = a.topRightCorner(n, m - n).transpose();
+  b[n] = 1;
+  b.tail(at.cols()) = at.row(n).transpose();
+  Eigen::VectorXd w = a.partialPivLu().solve(b);
+  // The smallest weights that fit, for coincident sources or too few of them for the polynomial.
+  if (!w.allFinite() || (a * w - b).norm() > 1e-11 * b.norm())
+    w = a.completeOrthogonalDecomposition().solve(b);
+  return {w.data(), w.data() + n};
+}
 
 void require_corners(bool known) {
   if (!known)

@@ -9,8 +9,8 @@
 #include "common/diagnostics/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/exchange/face_corners.hpp"
-#include "coupler/mapping/surroundings.hpp"
+#include "coupler/exchange/transfer.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -31,15 +31,6 @@ std::vector<double> extents(MPI_Comm comm, const Side& side) {
     result.push_back(extent);
   }
   return result;
-}
-
-/// Extent of the face nearest to each point [m].
-std::vector<double> local_size(MPI_Comm comm, const std::vector<Vec3>& points, const Side& side) {
-  PointSet faces = side.places(Place::faces);
-  faces.sizes = extents(comm, side);
-  std::vector<double> sizes;
-  for (const Neighbour& n : nearest(comm, points, faces)) sizes.push_back(n.size);
-  return sizes;
 }
 
 double mean(MPI_Comm comm, const std::vector<double>& values) {
@@ -77,10 +68,10 @@ std::string other_extent(const PointBox& a, const std::string& from, const Point
           : "");
 }
 
-/// True if each of these points has another within a tenth of the face size.
-bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<double>& size) {
+/// True if each of these points has another within a tenth of the size of the nearest face.
+bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<Neighbour>& face) {
   bool far = false;
-  for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * size[i];
+  for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * face[i].size;
   return !parallel::any(comm, far);
 }
 
@@ -93,118 +84,6 @@ std::string not_nested(const std::string& from, const std::string& to) {
       "any meshes.",
       from, to);
 }
-
-}  // namespace
-
-PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
-  PlaceReport report;
-  // Lumped participants (points with areas) have no extent to compare.
-  if (from.faces.back() < 2 || to.faces.back() < 2 || from.vertices.back() < 2 || to.vertices.back() < 2)
-    return report;
-  const PointSet source = from.places(Place::vertices), target = to.places(Place::vertices);
-  const std::vector<double> target_size = local_size(comm, target.points, to),
-                            source_size = local_size(comm, source.points, from);
-  report.problem = other_extent(PointBox(comm, source.points), from.name, PointBox(comm, target.points),
-                                to.name, std::max(mean(comm, source_size), mean(comm, target_size)));
-  if (!report.problem.empty()) return report;
-  const std::vector<Neighbour> found = nearest(comm, target.points, source);
-  // Sizes of the source's faces at the targets.
-  const std::vector<double> there = local_size(comm, target.points, from);
-  for (std::size_t i = 0; i < target.points.size() && report.problem.empty(); ++i) {
-    const double size = std::max(there[i], target_size[i]);
-    if (found[i].distance <= 2 * size) continue;
-    const Vec3& p = target.points[i];
-    report.problem = fmt::format(
-        "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest point of '{}', where "
-        "the face size is {:.3g} m: the two interfaces are not the same surface. Check the meshes and which "
-        "patches are of type interface.",
-        p.x(), p.y(), p.z(), to.name, found[i].distance, from.name, size);
-  }
-  report.problem = first_text(comm, report.problem);
-  if (!report.problem.empty()) return report;
-  report.nests =
-      all_near(comm, found, there) || all_near(comm, nearest(comm, source.points, target), source_size);
-  if (const int most = most_followers(comm, found, source.starts); most >= 3)
-    report.notes.push_back(
-        fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
-                    "motion is stepped. `mapping.type: projection` avoids this.",
-                    from.name, to.name, most));
-  return report;
-}
-
-void require_finite(MPI_Comm comm, const coupling::Exchange& data, const coupling::Interface& interface,
-                    const std::vector<coupling::Interface::Datum>& of, const std::string& who) {
-  std::string problem;
-  for (const auto& datum : of) {
-    const auto found = data.find(datum.name);
-    if (found == data.end() || !problem.empty()) continue;
-    const auto& values = found->second;
-    // Zero times a value is zero or NaN; four partial sums avoid a branch per value.
-    double sums[4] = {};
-    for (std::size_t i = 0; i + 4 <= values.size(); i += 4)
-      for (std::size_t c = 0; c < 4; ++c) sums[c] += 0 * values[i + c];
-    for (std::size_t i = values.size() / 4 * 4; i < values.size(); ++i) sums[0] += 0 * values[i];
-    if (sums[0] + sums[1] + sums[2] + sums[3] == 0) continue;
-    const auto bad = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
-    if (bad == values.end()) continue;
-    const auto entry = std::size_t(bad - values.begin()) / std::size_t(datum.size(interface.dim));
-    const bool at_vertices = datum.place == Place::vertices;
-    const std::vector<Vec3>& places = at_vertices ? interface.vertices : interface.face_centres;
-    const std::vector<GlobalIndex>& ids = at_vertices ? interface.vertex_ids : interface.face_ids;
-    const Vec3 p = entry < places.size() ? places[entry] : Vec3::Zero().eval();
-    problem = fmt::format("'{}' gave a '{}' that is not finite at {} {}, ({:.6g}, {:.6g}, {:.6g}).", who,
-                          datum.name, at_vertices ? "vertex" : "face",
-                          entry < ids.size() ? ids[entry] : GlobalIndex(entry), p.x(), p.y(), p.z());
-  }
-  if (const std::string text = first_text(comm, problem); !text.empty()) throw SolveFailure("{}", text);
-}
-
-void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
-                    const std::vector<std::size_t>& group) {
-  const auto place = [&](std::size_t i) { return std::ranges::find(group, i) - group.begin(); };
-  for (const auto& own : links.all()) {
-    if (own.giver != own.taker) continue;
-    const bool behind = std::ranges::all_of(links.all(), [&](const Links::Link& l) {
-      return l.taker != own.taker || l.datum.name != "velocity" || place(l.giver) < place(own.taker);
-    });
-    if (behind && schedule.iterates && !schedule.side_by_side) continue;
-    throw Error(
-        "'{}' anticipates the response of its walls (`surface-density` at its interface), so the structure "
-        "must be solved before it in each pass. Use 'coupling.order: structure-first' (in an exchange: the "
-        "structure first in the list) with 'scheme: semi-implicit' or 'implicit', or remove the key.",
-        sides[own.taker].name);
-  }
-}
-
-void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
-                  const MappingParameters& mapping) {
-  std::set<std::pair<std::size_t, std::size_t>> judged;
-  std::vector<int> givers(sides.size(), 0), fluids(sides.size(), 0);
-  for (const auto& link : links.all()) {
-    if (link.datum.name != "displacement") continue;
-    ++givers[link.taker];
-    const auto& gives = sides[link.taker].interface.gives;
-    if (std::ranges::any_of(gives, coupling::is_amount)) ++fluids[link.giver];
-  }
-  for (const auto& link : links.all()) {
-    if (link.datum.name != "displacement") continue;
-    const Side &from = sides[link.giver], &to = sides[link.taker];
-    // Each of several bodies has only a part of the fluid's surface, each of several fluids a part of the
-    // body's. The matched map has its own check.
-    if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1 || fluids[link.giver] > 1)
-      continue;
-    if (!judged.insert({link.giver, link.taker}).second) continue;
-    const PlaceReport report = judge_places(comm, from, to);
-    if (!report.problem.empty()) throw Error("{}", report.problem);
-    const bool by_nearest = mapping.type == MappingParameters::Type::nearest;
-    if (by_nearest && !report.nests && std::ranges::any_of(from.interface.takes, coupling::is_amount))
-      throw Error("{}", not_nested(from.name, to.name));
-    if (by_nearest)
-      for (const std::string& note : report.notes) log::warn("{}", note);
-  }
-}
-
-namespace {
 
 void add_up(MPI_Comm comm, double* values, int n) {
   MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_SUM, comm);
@@ -288,6 +167,122 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
 }
 
 }  // namespace
+
+PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to, bool by_nearest) {
+  PlaceReport report;
+  // Lumped participants (points with areas) have no extent to compare.
+  if (from.faces.back() < 2 || to.faces.back() < 2 || from.vertices.back() < 2 || to.vertices.back() < 2)
+    return report;
+  const PointSet source = from.places(Place::vertices), target = to.places(Place::vertices);
+  PointSet source_faces = from.places(Place::faces), target_faces = to.places(Place::faces);
+  source_faces.sizes = extents(comm, from), target_faces.sizes = extents(comm, to);
+  report.problem =
+      other_extent(PointBox(comm, source.points), from.name, PointBox(comm, target.points), to.name,
+                   std::max(mean(comm, source_faces.sizes), mean(comm, target_faces.sizes)));
+  if (!report.problem.empty()) return report;
+  const std::vector<Neighbour> found = nearest(comm, target.points, source),
+                               face = nearest(comm, target.points, source_faces);
+  // The size of its own faces is only needed where a point is far for those of the source.
+  std::vector<std::size_t> far;
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < target.points.size(); ++i)
+    if (!(found[i].distance <= 2 * face[i].size)) far.push_back(i), places.push_back(target.points[i]);
+  if (parallel::any(comm, !far.empty())) {
+    const std::vector<Neighbour> own = nearest(comm, places, target_faces);
+    for (std::size_t k = 0; k < far.size() && report.problem.empty(); ++k) {
+      const double size = std::max(face[far[k]].size, own[k].size), distance = found[far[k]].distance;
+      if (distance <= 2 * size) continue;
+      const Vec3& p = places[k];
+      report.problem = fmt::format(
+          "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest point of '{}', where "
+          "the face size is {:.3g} m: the two interfaces are not the same surface. Check the meshes and which "
+          "patches are of type interface.",
+          p.x(), p.y(), p.z(), to.name, distance, from.name, size);
+    }
+  }
+  report.problem = first_text(comm, report.problem);
+  if (!report.problem.empty() || !by_nearest) return report;
+  report.nests = all_near(comm, found, face) || all_near(comm, nearest(comm, source.points, target),
+                                                         nearest(comm, source.points, source_faces));
+  if (const int most = most_followers(comm, found, source.starts); most >= 3)
+    report.notes.push_back(
+        fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
+                    "motion is stepped. `mapping.type: projection` avoids this.",
+                    from.name, to.name, most));
+  return report;
+}
+
+void require_finite(MPI_Comm comm, const coupling::Exchange& data, const coupling::Interface& interface,
+                    const std::vector<coupling::Interface::Datum>& of, const std::string& who) {
+  std::string problem;
+  for (const auto& datum : of) {
+    const auto found = data.find(datum.name);
+    if (found == data.end() || !problem.empty()) continue;
+    const auto& values = found->second;
+    // Zero times a value is zero or NaN; four partial sums avoid a branch per value.
+    double sums[4] = {};
+    for (std::size_t i = 0; i + 4 <= values.size(); i += 4)
+      for (std::size_t c = 0; c < 4; ++c) sums[c] += 0 * values[i + c];
+    for (std::size_t i = values.size() / 4 * 4; i < values.size(); ++i) sums[0] += 0 * values[i];
+    if (sums[0] + sums[1] + sums[2] + sums[3] == 0) continue;
+    const auto bad = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
+    if (bad == values.end()) continue;
+    const auto entry = std::size_t(bad - values.begin()) / std::size_t(datum.size(interface.dim));
+    const bool at_vertices = datum.place == Place::vertices;
+    const std::vector<Vec3>& places = at_vertices ? interface.vertices : interface.face_centres;
+    const std::vector<GlobalIndex>& ids = at_vertices ? interface.vertex_ids : interface.face_ids;
+    const Vec3 p = entry < places.size() ? places[entry] : Vec3::Zero().eval();
+    problem = fmt::format("'{}' gave a '{}' that is not finite at {} {}, ({:.6g}, {:.6g}, {:.6g}).", who,
+                          datum.name, at_vertices ? "vertex" : "face",
+                          entry < ids.size() ? ids[entry] : GlobalIndex(entry), p.x(), p.y(), p.z());
+  }
+  if (const std::string text = first_text(comm, problem); !text.empty()) throw SolveFailure("{}", text);
+}
+
+void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
+                    const std::vector<std::size_t>& group) {
+  const auto place = [&](std::size_t i) { return std::ranges::find(group, i) - group.begin(); };
+  for (const auto& own : links.all()) {
+    if (own.giver != own.taker) continue;
+    const bool behind = std::ranges::all_of(links.all(), [&](const Links::Link& l) {
+      return l.taker != own.taker || l.datum.name != "velocity" || place(l.giver) < place(own.taker);
+    });
+    if (behind && schedule.iterates && !schedule.side_by_side) continue;
+    throw Error(
+        "'{}' anticipates the response of its walls (`surface-density` at its interface), so the structure "
+        "must be solved before it in each pass. Use 'coupling.order: structure-first' (in an exchange: the "
+        "structure first in the list) with 'scheme: semi-implicit' or 'implicit', or remove the key.",
+        sides[own.taker].name);
+  }
+}
+
+void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
+                  const MappingParameters& mapping) {
+  std::set<std::pair<std::size_t, std::size_t>> judged;
+  std::vector<int> givers(sides.size(), 0), fluids(sides.size(), 0);
+  for (const auto& link : links.all()) {
+    if (link.datum.name != "displacement") continue;
+    ++givers[link.taker];
+    const auto& gives = sides[link.taker].interface.gives;
+    if (std::ranges::any_of(gives, coupling::is_amount)) ++fluids[link.giver];
+  }
+  for (const auto& link : links.all()) {
+    if (link.datum.name != "displacement") continue;
+    const Side &from = sides[link.giver], &to = sides[link.taker];
+    // Each of several bodies has only a part of the fluid's surface, each of several fluids a part of the
+    // body's. The matched map has its own check.
+    if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1 || fluids[link.giver] > 1)
+      continue;
+    if (!judged.insert({link.giver, link.taker}).second) continue;
+    const bool by_nearest = mapping.type == MappingParameters::Type::nearest;
+    const PlaceReport report = judge_places(comm, from, to, by_nearest);
+    if (!report.problem.empty()) throw Error("{}", report.problem);
+    if (by_nearest && !report.nests && std::ranges::any_of(from.interface.takes, coupling::is_amount))
+      throw Error("{}", not_nested(from.name, to.name));
+    if (by_nearest)
+      for (const std::string& note : report.notes) log::warn("{}", note);
+  }
+}
 
 SurfaceFacts surface_facts(MPI_Comm comm, const std::vector<const Side*>& sides) {
   SurfaceFacts facts;

@@ -22,8 +22,9 @@ struct PlaceReport {
   bool nests = true;               ///< vertices of one side are vertices of the other
 };
 /// `from` gives motion to `to`. Compares distances with the local face size of both sides, and the extents
-/// with each other. Reports several vertices that follow one (a staircase). Collective.
-PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to);
+/// with each other. For a map by the nearest, also whether the vertices nest, and several that follow one (a
+/// staircase). Collective.
+PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to, bool by_nearest);
 
 /// Throws Error if a fluid that predicts its walls' response (it takes its own data) precedes them. `group`:
 /// in the order of a pass.

@@ -9,7 +9,6 @@
 #include "coupler/exchange/side.hpp"
 #include "coupler/mapping/face_weights.hpp"
 #include "coupler/mapping/sparse_map.hpp"
-#include "coupler/mapping/surroundings.hpp"
 
 namespace couplet::coupler {
 namespace {
@@ -45,46 +44,52 @@ SurfacePart around(MPI_Comm comm, const Surroundings& structure, const coupling:
   return structure.with(sorted(faces));
 }
 
-/// Corrects a row (weights at places, with sum 1) to be exact for linear fields at x, by the smallest change
-/// in directions of sufficient extent.
-void make_linear(const Vec3& x, const std::vector<Vec3>& places, std::vector<double>& weights) {
+/// Corrects a row (weights at places, with sum 1) to be exact for linear fields at the origin, by the smallest
+/// change in directions of sufficient extent.
+void make_linear(const std::vector<Vec3>& places, std::vector<double>& weights) {
   const double n = double(places.size());
-  Vec3 off = x, mean = Vec3::Zero();
-  for (std::size_t i = 0; i < places.size(); ++i) off -= weights[i] * places[i], mean += places[i] / n;
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : places) mean += p / n;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vec3& p : places) spread += (p - mean) * (p - mean).transpose() / n;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
   const double widest = std::sqrt(std::max(0., solver.eigenvalues()[2]));
-  Vec3 change = Vec3::Zero();
-  for (int d = 0; d < 3; ++d) {
-    const Vec3 direction = solver.eigenvectors().col(d);
-    const double deviation = std::sqrt(std::max(0., solver.eigenvalues()[d])), by = direction.dot(off);
-    if (deviation > 1e-6 * widest && std::abs(by) < 2 * deviation)
-      change += by / (n * solver.eigenvalues()[d]) * direction;
+  // Repeated to remove round-off of the first pass.
+  for (int pass = 0; pass < 2; ++pass) {
+    Vec3 off = Vec3::Zero(), change = Vec3::Zero();
+    for (std::size_t i = 0; i < places.size(); ++i) off -= weights[i] * places[i];
+    for (int d = 0; d < 3; ++d) {
+      const Vec3 direction = solver.eigenvectors().col(d);
+      const double deviation = std::sqrt(std::max(0., solver.eigenvalues()[d])), by = direction.dot(off);
+      if (deviation > 1e-6 * widest && std::abs(by) < 2 * deviation)
+        change += by / (n * solver.eigenvalues()[d]) * direction;
+    }
+    double level = 0;  // round-off of the mean, which would change the sum
+    for (const Vec3& p : places) level += change.dot(p - mean) / n;
+    for (std::size_t i = 0; i < places.size(); ++i) weights[i] += change.dot(places[i] - mean) - level;
   }
-  for (std::size_t i = 0; i < places.size(); ++i) weights[i] += change.dot(places[i] - mean);
 }
 
-/// Row with sum 1 that is exact for linear fields at x. On a curved surface, the dual functions miss the
+/// Row with sum 1 that is exact for linear fields at the origin. Places are relative to the row's own, because
+/// in a direction of small extent the round-off of absolute positions would change the sum. On a curved surface, the dual functions miss the
 /// position of their vertex. A share of `more` first moves them nearest to it. This share is the same at all
 /// vertices of a uniform mesh, so a uniform traction remains uniform. Then the smallest change follows.
-void finish_row(int dim, const Vec3& x, const std::vector<Vec3>& places, std::vector<Weights>& row,
+void finish_row(int dim, const std::vector<Vec3>& places, std::vector<Weights>& row,
                 std::vector<double>& weights) {
   double total = 0, longest = 0;
   for (const Weights& w : row) total += w.dual;
-  Vec3 off = x, by_more = Vec3::Zero();
+  Vec3 off = Vec3::Zero(), by_more = Vec3::Zero();
   for (std::size_t i = 0; i < row.size(); ++i) {
     row[i].dual /= total, row[i].more /= total;
-    off -= row[i].dual * places[i], by_more += row[i].more * (places[i] - x);
-    longest = std::max(longest, (places[i] - x).norm());
+    off -= row[i].dual * places[i], by_more += row[i].more * places[i];
+    longest = std::max(longest, places[i].norm());
   }
   const double part = dim == 2 && off.norm() > 1e-9 * longest && by_more.norm() > 1e-9 * longest
                           ? std::clamp(off.dot(by_more) / by_more.squaredNorm(), -1., 1.)
                           : 0;
   weights.clear();
   for (const Weights& w : row) weights.push_back(w.dual + part * w.more);
-  // Repeated to remove round-off of the first pass.
-  for (int pass = 0; pass < 2; ++pass) make_linear(x, places, weights);
+  make_linear(places, weights);
 }
 
 /// Work arrays for one row at a time.
@@ -98,7 +103,8 @@ class RowBuffers {
     row_.back().dual += weight.dual, row_.back().more += weight.more;
   }
   void finish(int dim, GlobalIndex row, const Vec3& x, std::vector<Transfer::Entry>& entries) {
-    finish_row(dim, x, places_, row_, weights_);
+    for (Vec3& place : places_) place -= x;
+    finish_row(dim, places_, row_, weights_);
     for (std::size_t i = 0; i < sources_.size(); ++i)
       if (std::abs(weights_[i]) > 1e-15) entries.push_back({row, sources_[i], weights_[i]});
   }
@@ -138,14 +144,29 @@ std::vector<Share> shares_by_owner(MPI_Comm comm, const coupling::Starts& rows, 
 class OpenRows {
  public:
   /// `faces_of`: number of faces per row. `whole`: true if these are all. `rows`: positions of the rows.
-  OpenRows(std::vector<Index> faces_of, std::vector<char> whole, const std::vector<GlobalIndex>& rows)
-      : left_(std::move(faces_of)), whole_(std::move(whole)), rows_(rows), open_(left_.size()) {}
+  OpenRows(std::vector<Index> faces_of, std::vector<char> whole, const std::vector<GlobalIndex>& rows,
+           std::size_t sources)
+      : left_(std::move(faces_of)),
+        whole_(std::move(whole)),
+        rows_(rows),
+        open_(left_.size()),
+        place_(sources, -1) {}
 
-  void add(std::size_t row, Index source, const Weights& weight) {
+  /// Adds the contributions of a face to the row of its corner i of n.
+  void add(std::size_t row, const FaceIntegrals& integrals, std::size_t i, std::size_t n) {
     auto& list = open_[row];
-    auto known = std::ranges::find(list, source, &Part::first);
-    if (known == list.end()) known = list.insert(list.end(), {source, {0, 0}});
-    known->second.dual += weight.dual, known->second.more += weight.more;
+    if (list.empty()) list.reserve(32);
+    for (std::size_t k = 0; k < list.size(); ++k) place_[std::size_t(list[k].first)] = Index(k);
+    for (std::size_t k = 0; k < integrals.sources().size(); ++k) {
+      const Index source = integrals.sources()[k];
+      const Weights& weight = integrals.weights()[k * n + i];
+      if (const Index place = place_[std::size_t(source)]; place < 0)
+        list.push_back({source, weight});
+      else
+        list[std::size_t(place)].second.dual += weight.dual,
+            list[std::size_t(place)].second.more += weight.more;
+    }
+    for (const auto& [source, weight] : list) place_[std::size_t(source)] = -1;
   }
   /// Completes one of its faces. Calls finished(row, parts by source) for a row that was completed by it.
   template <class Finished>
@@ -168,6 +189,7 @@ class OpenRows {
   std::vector<char> whole_;
   const std::vector<GlobalIndex>& rows_;
   std::vector<std::vector<Part>> open_;
+  std::vector<Index> place_;  // of a source in the row at work; -1 if it has none
 };
 
 /// Vertices of `part` that belong to this rank and to no face of another rank. Collective.
@@ -205,7 +227,7 @@ std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const 
   std::vector<Index> faces_of(list.size(), targets.at_vertices ? 0 : 1);
   if (targets.at_vertices)
     for (const Index v : mine.surface.face_vertices) ++faces_of[v];
-  OpenRows rows(std::move(faces_of), std::move(whole), list);
+  OpenRows rows(std::move(faces_of), std::move(whole), list, structure.faces.size());
   RowBuffers buffers;
   const auto finished = [&](std::size_t row, const std::vector<OpenRows::Part>& parts) {
     buffers.clear();
@@ -214,17 +236,16 @@ std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const 
     buffers.finish(structure.surface.dim, list[row],
                    targets.points.points[std::size_t(list[row] - targets.first)], entries);
   };
-  // The value is that of adjacent surfaces with faces of equal size.
-  entries.reserve(20 * targets.points.points.size());
-  std::vector<FaceIntegrals::Part> parts;
+  // More than adjacent surfaces with faces of equal size have.
+  entries.reserve(40 * targets.points.points.size());
   for (Index f = 0; f < Index(mine.faces.size()); ++f) {
     const auto vertex = corners(mine.surface, f);
-    const auto row = [&](Index corner) { return std::size_t(targets.at_vertices ? vertex[corner] : f); };
-    integrals.find(mine.surface, f, targets.at_vertices, parts);
-    for (const auto& part : parts) rows.add(row(part.corner), part.source, part.weights);
-    if (!targets.at_vertices) rows.done(f, structure, integrals, finished);
-    for (Index i = 0; targets.at_vertices && i < Index(vertex.size()); ++i)
-      rows.done(row(i), structure, integrals, finished);
+    const std::size_t n = vertex.size();
+    integrals.find(mine.surface, f, targets.at_vertices);
+    for (std::size_t i = 0; i < n; ++i)
+      rows.add(std::size_t(targets.at_vertices ? vertex[i] : f), integrals, i, n);
+    for (std::size_t i = 0; i < (targets.at_vertices ? n : 1); ++i)
+      rows.done(std::size_t(targets.at_vertices ? vertex[i] : f), structure, integrals, finished);
   }
   return std::move(rows.shares);
 }
@@ -251,7 +272,7 @@ std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& stru
   for (std::size_t i = 0; i < has.size(); ++i)
     if (!has[i]) lone.push_back(points.points[i]), positions.push_back(points.positions[i]);
   add_interpolation(comm, theirs.faces(), lone, positions, structure.dim == 2 ? 3 : 5, entries);
-  return entries;
+  return by_owner(comm, points.starts, std::move(entries));
 }
 
 }  // namespace

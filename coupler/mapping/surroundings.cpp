@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/mapping/surroundings.hpp"
+#include "coupler/mapping/sparse_map.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -138,6 +138,39 @@ void sort_and_keep_one_each(std::vector<GlobalIndex>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
+const Neighbour none{std::numeric_limits<double>::infinity(), -1, std::numeric_limits<GlobalIndex>::max(), 0,
+                     Vec3::Zero()};
+
+/// Returns true if `a` is nearer, or equally near (to rounding) with a smaller id.
+bool better(const Neighbour& a, const Neighbour& b) {
+  const double equal = 1e-9 * std::max(a.distance, b.distance);
+  if (std::isfinite(equal) && std::abs(a.distance - b.distance) <= equal) return a.id < b.id;
+  return a.distance < b.distance;
+}
+
+std::vector<Neighbour> nearest_here(const std::vector<Vec3>& points, const PointSet& among) {
+  std::vector<Neighbour> found(points.size(), none);
+  if (among.points.empty()) return found;
+  const base::PointTree tree(among.points);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const Index candidate : tree.closest(points[i])) {
+      const auto j = std::size_t(candidate);
+      const Neighbour here{(points[i] - among.points[j]).norm(), among.positions[j], among.ids[j],
+                           among.sizes.empty() ? 1 : among.sizes[j], among.points[j]};
+      if (better(here, found[i])) found[i] = here;
+    }
+  return found;
+}
+
+PointSet owned(MPI_Comm comm, const std::vector<Vec3>& points, const coupling::Starts& starts) {
+  PointSet set;
+  set.points = points, set.starts = starts;
+  set.positions.resize(points.size());
+  std::iota(set.positions.begin(), set.positions.end(), starts[std::size_t(parallel::comm_rank(comm))]);
+  set.ids = set.positions;
+  return set;
+}
+
 }  // namespace
 
 PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
@@ -186,35 +219,6 @@ PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vect
   return result;
 }
 
-namespace {
-
-const Neighbour none{std::numeric_limits<double>::infinity(), -1, std::numeric_limits<GlobalIndex>::max(), 0,
-                     Vec3::Zero()};
-
-/// Returns true if `a` is nearer, or equally near (to rounding) with a smaller id.
-bool better(const Neighbour& a, const Neighbour& b) {
-  const double equal = 1e-9 * std::max(a.distance, b.distance);
-  if (std::isfinite(equal) && std::abs(a.distance - b.distance) <= equal) return a.id < b.id;
-  return a.distance < b.distance;
-}
-
-std::vector<Neighbour> nearest_here(const std::vector<Vec3>& points, const PointSet& among) {
-  std::vector<Neighbour> found(points.size(), none);
-  if (among.points.empty()) return found;
-  const base::PointTree tree(among.points);
-  constexpr std::size_t candidates = 4;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (const Index candidate : tree.nearest(points[i], candidates)) {
-      const auto j = std::size_t(candidate);
-      const Neighbour here{(points[i] - among.points[j]).norm(), among.positions[j], among.ids[j],
-                           among.sizes.empty() ? 1 : among.sizes[j], among.points[j]};
-      if (better(here, found[i])) found[i] = here;
-    }
-  return found;
-}
-
-}  // namespace
-
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among) {
   if (parallel::comm_size(comm) == 1) return nearest_here(points, among);
   return nearest_here(points, nearby(comm, points, {}, 1, among));
@@ -229,19 +233,6 @@ Surroundings::Surroundings(MPI_Comm comm, const coupling::Interface& part) : com
                  !parallel::any(comm, part.face_offset.size() != part.face_centres.size() + 1 &&
                                           !part.face_centres.empty());
 }
-
-namespace {
-
-PointSet owned(MPI_Comm comm, const std::vector<Vec3>& points, const coupling::Starts& starts) {
-  PointSet set;
-  set.points = points, set.starts = starts;
-  set.positions.resize(points.size());
-  std::iota(set.positions.begin(), set.positions.end(), starts[std::size_t(parallel::comm_rank(comm))]);
-  set.ids = set.positions;
-  return set;
-}
-
-}  // namespace
 
 PointSet Surroundings::vertices() const { return owned(comm_, part_.vertices, vertex_starts_); }
 PointSet Surroundings::faces() const { return owned(comm_, part_.face_centres, face_starts_); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/output/monitor.hpp"
+#include "coupler/output/record.hpp"
 
 #include <fmt/format.h>
 
@@ -23,6 +23,13 @@ std::vector<std::string> participant_columns(const std::vector<std::string>& nam
       columns.push_back(name + " " + what);
   columns.push_back("coupler working [s]");
   return columns;
+}
+
+/// CPU seconds of this process without waiting for replies.
+double own_seconds(const std::vector<Partner>& partners) {
+  double seconds = coupling::processor_seconds();
+  for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
+  return seconds;
 }
 
 }  // namespace
@@ -67,17 +74,6 @@ void Monitor::row(const char* file, double time, const std::vector<std::string>&
   row.insert(row.end(), values.begin(), values.end());
   table->second.row(row);
 }
-
-namespace {
-
-/// CPU seconds of this process without waiting for replies.
-double own_seconds(const std::vector<Partner>& partners) {
-  double seconds = coupling::processor_seconds();
-  for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
-  return seconds;
-}
-
-}  // namespace
 
 void Monitor::start(const std::vector<Partner>& partners) {
   step_start_ = Clock::now();

@@ -179,14 +179,9 @@ parallel::GlobalOrder Record::order_of_wall(std::size_t i) const {
   return pass_.sides()[mechanics_.side_of_wall(i)].order(comm_, coupling::Interface::Place::vertices);
 }
 
-void Record::save(io::CheckpointWriter& file) const {
+void Record::visit(io::Archive& archive) {
   for (std::size_t i = 0; i < mechanics_.walls().size(); ++i)
-    file.write(order_of_wall(i), "wall-" + std::to_string(i), mechanics_.walls()[i]);
-}
-
-void Record::load(io::CheckpointReader& file) {
-  for (std::size_t i = 0; i < mechanics_.walls().size(); ++i)
-    file.read(order_of_wall(i), "wall-" + std::to_string(i), mechanics_.walls()[i]);
+    archive.field(order_of_wall(i), "wall-" + std::to_string(i), mechanics_.walls()[i]);
 }
 
 }  // namespace couplet::coupler

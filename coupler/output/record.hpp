@@ -1,19 +1,155 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/coupling/participant.hpp"
+#include "common/io/series.hpp"
+#include "coupler/acceleration/accelerator.hpp"
+#include "coupler/exchange/partners.hpp"
 #include "coupler/exchange/side.hpp"
 #include "coupler/exchange/transfer.hpp"
 #include "coupler/mapping/links.hpp"
-#include "coupler/output/interface_output.hpp"
-#include "coupler/output/monitor.hpp"
-#include "coupler/output/watch_integrals.hpp"
+#include "coupler/parameters/parameters.hpp"
+#include "coupler/parameters/schedule.hpp"
 #include "coupler/pass.hpp"
 
 namespace couplet::coupler {
+
+/// Files of one output: <stem>.<rank>.vtp for each rank of the coupler at that time.
+struct InterfaceFiles {
+  double time = 0;
+  std::string stem;
+  int parts = 0;
+};
+
+/// Writes interface data for ParaView: <participant>.pvd with a VTK file per output and rank of the coupler.
+/// Faces are polygons with the face data; vertex data are at corners, separately for each face. The surface
+/// is the reference configuration, for warping by displacements.
+class InterfaceOutput {
+ public:
+  /// `restart_time`: NaN for a fresh start; else later outputs of a previous run are removed. Collective.
+  InterfaceOutput(MPI_Comm comm, std::filesystem::path folder, const std::vector<Side>& sides,
+                  double restart_time);
+  /// Writes the data last given and taken. Collective.
+  void write(double time, int number, const std::vector<coupling::Exchange>& given,
+             const std::vector<coupling::Exchange>& taken);
+
+ private:
+  struct Surface {
+    const Side* side;
+    std::size_t index;  // among all sides
+    FaceCorners corners;
+    std::vector<InterfaceFiles> files;
+  };
+  void write_piece(const Surface& surface, const std::filesystem::path& file, const coupling::Exchange& given,
+                   const coupling::Exchange& taken) const;
+  void write_list(const Surface& surface) const;
+
+  MPI_Comm comm_;
+  std::filesystem::path folder_;
+  std::vector<Surface> surfaces_;
+};
+
+/// Integrals of transferred data over interfaces or parts of them (`coupling.watch`):
+///   amounts (N, W)            sum of each component
+///   one value q per place     int q dA and its mean
+///   a vector q of dim values  int q . n dA, flux out of the participant; for a velocity the swept volume [m^3/s]
+/// Vertex data are averaged over the corners of faces. Areas are those of the moved surface if the
+/// participant has a displacement and lists its corners, otherwise of the reference configuration. 2-D: per
+/// meter of depth.
+class InterfaceIntegrals {
+ public:
+  /// Throws Error for a missing participant, datum or part or data without an integral. Collective.
+  InterfaceIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
+                     const std::map<std::string, IntegralParameters>& watched);
+
+  /// For example "tip force x [N]".
+  const std::vector<std::string>& columns() const { return columns_; }
+  /// One value per column, equal on all ranks; NaN for a datum not yet transferred. Collective.
+  std::vector<double> row(const std::vector<coupling::Exchange>& given,
+                          const std::vector<coupling::Exchange>& taken) const;
+
+ private:
+  enum class Kind { amount, scalar, flux };
+  struct Surface {
+    std::size_t side;
+    int dim;
+    FaceCorners corners;
+    bool moves;  // areas follow the displacement
+  };
+  struct Integral {
+    std::size_t surface;
+    Kind kind;
+    coupling::Interface::Datum datum;
+    std::vector<bool> counts;  // by face (vertex for amounts there) of this rank
+    std::size_t columns;
+  };
+  Integral integral_of(const std::string& name, const IntegralParameters& p, const Side& side,
+                       const Surface& surface) const;
+  std::vector<Vec3> areas(const Surface& s, const coupling::Exchange& given,
+                          const coupling::Exchange& taken) const;
+  void add_up(const Integral& i, const std::vector<double>& values, const std::vector<Vec3>& areas,
+              double* sums) const;
+
+  MPI_Comm comm_;
+  std::vector<Surface> surfaces_;
+  std::vector<Integral> integrals_;
+  std::vector<std::string> columns_;
+};
+
+/// Output of the coupler by rank 0: residuals.csv (per pass), participants.csv (per step: working and waiting
+/// times, reports, the coupler's own time), balance.csv (forces, moments, work), amounts.csv (transferred
+/// sums), volume.csv (levels of closed fluids), watch.csv (requested integrals), the console line of each
+/// step and the closing summary.
+class Monitor {
+ public:
+  /// `names`: names of all participants. `restart_time`: NaN for a fresh start.
+  Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names, double end_time,
+          double restart_time);
+  /// Starts the clock of the first step; earlier work is not counted.
+  void start(const std::vector<Partner>& partners);
+  void iteration(const coupling::Step& step, int number, const Residual& residual, double omega);
+  /// Adds a row to a table, which is opened with its first row; nothing without columns.
+  void row(const char* file, double time, const std::vector<std::string>& columns,
+           const std::vector<double>& values);
+  void step(const coupling::Step& step, double time, const FixedPointResult& result,
+            const std::vector<Partner>& partners);
+  /// Mean and largest number of iterations, and time per participant.
+  std::string summary(int halvings) const;
+  /// Mean and largest number.
+  std::vector<double> iterations_per_step() const {
+    return {double(iterations_) / double(std::max(1L, steps_)), double(most_iterations_)};
+  }
+  /// See waiting_sentence().
+  std::string waiting(const std::vector<Partner>& partners, const Schedule& schedule) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::filesystem::path folder_;
+  bool writes_;
+  std::vector<std::string> names_;
+  std::optional<io::Series> residuals_, participants_;
+  std::map<std::string, io::Series> tables_;  // opened so far
+  double end_time_, restart_time_, start_time_;
+  Clock::time_point start_ = Clock::now(), step_start_ = Clock::now(), last_line_{};
+  long steps_ = 0, iterations_ = 0, most_iterations_ = 0;
+  std::vector<double> worked_;  // seconds per participant over the run
+  double wall_ = 0;
+  double own_ = 0, own_before_ = 0;  // CPU seconds of the coupler: total, and up to this step
+};
+
+/// Names the participant for which the others wait, from their times at work [s]. Empty for one participant or
+/// a short run. `couplet run -n TOTAL` divides the ranks by the work of the last run.
+std::string waiting_sentence(const std::vector<std::string>& names, const std::vector<double>& seconds,
+                             bool side_by_side);
 
 /// Resultants of the loads on one side of the interface.
 struct Balance {
@@ -100,8 +236,7 @@ class Record {
   Monitor& monitor() { return *monitor_; }
   const Mechanics& mechanics() const { return mechanics_; }
   const std::vector<SideBalance>& balances() const { return balances_; }
-  void save(io::CheckpointWriter& file) const;
-  void load(io::CheckpointReader& file);
+  void visit(io::Archive& archive);
 
  private:
   parallel::GlobalOrder order_of_wall(std::size_t i) const;
@@ -114,7 +249,7 @@ class Record {
   std::vector<SideBalance> balances_;  // of the last accepted step
   std::optional<Monitor> monitor_;
   std::optional<InterfaceOutput> interface_output_;
-  std::optional<WatchIntegrals> watched_;
+  std::optional<InterfaceIntegrals> watched_;
 };
 
 }  // namespace couplet::coupler

@@ -74,7 +74,7 @@ std::vector<std::string> partners_of(const CouplingParameters& p) {
   return names;
 }
 
-void declare(config::Section& section, WatchParameters& p, const std::vector<std::string>& partners) {
+void declare(config::Section& section, IntegralParameters& p, const std::vector<std::string>& partners) {
   section.value("participant", p.participant)
       .required()
       .doc("participant whose interface is watched: its name under `participants`");
@@ -236,8 +236,8 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.value("interface-output", p.interface_output)
       .doc(
           "also write the data of all interfaces for ParaView with each output: coupler/interface/<name>.pvd");
-  section.map<WatchParameters>(
-      "watch", p.watch, [&p](config::Section& s, WatchParameters& w) { declare(s, w, partners_of(p)); },
+  section.map<IntegralParameters>(
+      "watch", p.watch, [&p](config::Section& s, IntegralParameters& w) { declare(s, w, partners_of(p)); },
       "integral",
       "integrals over interfaces, one row per step in coupler/watch.csv: sums of amounts (N, W), fluxes of "
       "vectors, integral and mean of scalars");

@@ -34,7 +34,7 @@ struct MappingParameters {
 };
 
 /// Integral over an interface.
-struct WatchParameters {
+struct IntegralParameters {
   std::string participant, data;
   std::string part;  // of the interface; empty for all of it
 };
@@ -86,7 +86,7 @@ struct CouplingParameters {
   bool mesh_on_guess = false;  // in each pass of the implicit scheme
   MappingParameters mapping;
   bool interface_output = false;  // for ParaView
-  std::map<std::string, WatchParameters> watch;
+  std::map<std::string, IntegralParameters> watch;
   /// Reaction to a guard that attributes the motion to the coupling scheme.
   enum class OnDivergence { stop, warn } on_divergence = OnDivergence::stop;
   /// True if a mesh mover moves bodies of a fluid as prescribed: nothing is iterated then.

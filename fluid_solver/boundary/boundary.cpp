@@ -135,6 +135,46 @@ InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry
   return shape;
 }
 
+fv::Expression turning_of(const BoundaryParameters& b, int dim, const std::string& where) {
+  fv::check_axis(b.rotation->axis, dim, where + ".rotation.axis");
+  fv::Expression speed(b.rotation->speed, where + ".rotation.speed");
+  if (speed.uses_space()) throw Error("{}.rotation.speed: it may depend on t only.", where);
+  return speed;
+}
+
+FaceCorners corners_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
+  FaceCorners corners(std::size_t(patch.count));
+  for (Index i = 0; i < patch.count; ++i)
+    for (const Index v : mesh.face_points[patch.first + i])
+      corners[std::size_t(i)].push_back(geometry.points[v] - geometry.face_centre[patch.first + i]);
+  return corners;
+}
+
+bool uses_space(const std::vector<fv::Expression>& expressions) {
+  return std::ranges::any_of(expressions, [](const fv::Expression& e) { return e.uses_space(); });
+}
+
+double ramp_factor(const BoundaryParameters& b, double t) {
+  if (!b.ramp || t >= *b.ramp) return 1;
+  return t <= 0 ? 0 : 0.5 * (1 - std::cos(std::numbers::pi * t / *b.ramp));
+}
+
+void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
+  std::vector<std::string> patches, missing;
+  for (const mesh::Patch& patch : mesh.patches) {
+    patches.push_back(patch.name);
+    if (!parameters.boundaries.contains(patch.name)) missing.push_back(patch.name);
+  }
+  for (const auto& [name, unused] : parameters.boundaries)
+    if (!mesh.find_patch(name))
+      throw Error("boundaries.{}: the mesh '{}' has no patch '{}'. {}", name, parameters.mesh, name,
+                  base::did_you_mean(name, patches, "patches"));
+  if (!missing.empty())
+    throw Error(
+        "boundaries: the mesh '{}' has patches without a boundary condition: {}. Give each of them a type ({}).",
+        parameters.mesh, base::join(missing), condition_names(" or "));
+}
+
 }  // namespace
 
 fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
@@ -158,33 +198,6 @@ std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& paramete
   return all;
 }
 
-namespace {
-
-fv::Expression turning_of(const BoundaryParameters& b, const std::string& where) {
-  fv::Expression speed(b.rotation->speed, where + ".rotation.speed");
-  if (speed.uses_space()) throw Error("{}.rotation.speed: it may depend on t only.", where);
-  return speed;
-}
-
-FaceCorners corners_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch) {
-  FaceCorners corners(std::size_t(patch.count));
-  for (Index i = 0; i < patch.count; ++i)
-    for (const Index v : mesh.face_points[patch.first + i])
-      corners[std::size_t(i)].push_back(geometry.points[v] - geometry.face_centre[patch.first + i]);
-  return corners;
-}
-
-bool uses_space(const std::vector<fv::Expression>& expressions) {
-  return std::ranges::any_of(expressions, [](const fv::Expression& e) { return e.uses_space(); });
-}
-
-double ramp_factor(const BoundaryParameters& b, double t) {
-  if (!b.ramp || t >= *b.ramp) return 1;
-  return t <= 0 ? 0 : 0.5 * (1 - std::cos(std::numbers::pi * t / *b.ramp));
-}
-
-}  // namespace
-
 template <int D>
 GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                 const mesh::Patch& patch,
@@ -194,7 +207,7 @@ GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& ge
       parameters_(boundaries.at(patch.name)) {
   const BoundaryParameters& b = parameters_;
   const std::string where = "boundaries." + patch.name;
-  if (b.rotation) turning_ = turning_of(b, where);
+  if (b.rotation) turning_ = turning_of(b, D, where);
   if (b.table) {
     table_ = velocity_table(b.table->file, b.table->outside, D);
   } else if (b.mean_speed) {
@@ -261,26 +274,6 @@ void GivenVelocity<D>::average(double t, std::span<const Vec3> centres, Vec<D>* 
 template class GivenVelocity<2>;
 template class GivenVelocity<3>;
 
-namespace {
-
-void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
-  std::vector<std::string> patches, missing;
-  for (const mesh::Patch& patch : mesh.patches) {
-    patches.push_back(patch.name);
-    if (!parameters.boundaries.contains(patch.name)) missing.push_back(patch.name);
-  }
-  for (const auto& [name, unused] : parameters.boundaries)
-    if (!mesh.find_patch(name))
-      throw Error("boundaries.{}: the mesh '{}' has no patch '{}'. {}", name, parameters.mesh, name,
-                  base::did_you_mean(name, patches, "patches"));
-  if (!missing.empty())
-    throw Error(
-        "boundaries: the mesh '{}' has patches without a boundary condition: {}. Give each of them a type ({}).",
-        parameters.mesh, base::join(missing), condition_names(" or "));
-}
-
-}  // namespace
-
 template <int D>
 Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                       const FluidParameters& parameters)
@@ -293,11 +286,13 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   rows_.sort();
 }
 
-/// Adds absorbing patches and inlets with an upstream volume, for a compressible fluid.
+/// Adds absorbing patches and inlets with a volume or line upstream, for a compressible fluid.
 template <int D>
 void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();
-  const bool has_volume = compressible && parameters.compressibility->upstream_volume > 0;
+  const bool has_line = compressible && parameters.compressibility->upstream_line;
+  const bool has_upstream = has_line || (compressible && parameters.compressibility->upstream_volume > 0);
+  const std::string upstream = has_line ? "upstream-line" : "upstream-volume";
   for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     const FaceRange faces{patch.first - mesh.n_interior, patch.count};
@@ -309,10 +304,10 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& pa
             "boundaries.{}.absorbing: an incompressible fluid has no pressure waves to let out; add 'compressibility', or "
             "remove the key.",
             patch.name);
-      if (inlet && has_volume)
+      if (inlet && has_upstream)
         throw Error(
-            "boundaries.{}.absorbing: the 'upstream-volume' behind this inlet already responds to the waves; remove one of the two.",
-            patch.name);
+            "boundaries.{}.absorbing: the '{}' behind this inlet already responds to the waves; remove one of the two.",
+            patch.name, upstream);
       absorbing_patches_.push_back({faces, inlet});
     }
     if (compressible && condition.velocity == GivenBy::flow)
@@ -320,13 +315,13 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& pa
           "boundaries.{}: a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' "
           "with 'absorbing: true'.",
           patch.name);
-    if (!has_volume || !inlet) continue;
+    if (!has_upstream || !inlet) continue;
     rows_.set(faces, {.pressure = 1, .slip_length = no_friction, .inflow = 0.5}, false);
     upstream_patches_.push_back(faces);
     closed_ = false;
   }
-  if (has_volume && upstream_patches_.empty())
-    throw Error("compressibility.upstream-volume: this fluid has no inlet; remove the key.");
+  if (has_upstream && upstream_patches_.empty())
+    throw Error("compressibility.{}: this fluid has no inlet; remove the key.", upstream);
 }
 
 template <int D>

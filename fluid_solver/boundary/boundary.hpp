@@ -167,7 +167,7 @@ class Boundary {
   bool has_convective_outlet() const { return !convective_patches_.empty(); }
   /// Absorbing patches, in the same order on all ranks.
   const std::vector<AbsorbingPatch>& absorbing_patches() const { return absorbing_patches_; }
-  /// Inlets of a compressible fluid with a volume upstream. The pressure of the volume is given at their
+  /// Inlets of a compressible fluid with a volume or line upstream. The pressure of the volume is given at their
   /// faces, and their given velocity is the flow into the volume.
   const std::vector<FaceRange>& upstream_patches() const { return upstream_patches_; }
   bool is_convective(Index boundary_face) const { return convective_[boundary_face] != 0; }

@@ -8,9 +8,8 @@
 
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
-#include "fluid_solver/parameters/effects.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
 
@@ -19,55 +18,6 @@ namespace {
 // Fewer steps only show the start of a motion; a smaller share of the mean square is round-off.
 constexpr int judged_steps = 10;
 constexpr double rounding = 1e-9;
-
-}  // namespace
-
-// Skips the step in which the flow starts, because its pressure contains the impulse of the start.
-void ComplianceWatch::add(double dt, const std::vector<double>& swept, const Totals& now) {
-  sum_.resize(swept.size());
-  square_.resize(swept.size());
-  rate_.resize(swept.size());
-  if (steps_++ > 0) {
-    for (std::size_t i = 0; i < swept.size(); ++i) {
-      const double change = swept[i] - last_[i];
-      sum_[i] += dt * swept[i];
-      square_[i] += dt * swept[i] * swept[i];
-      rate_[i] += change * change / dt;
-    }
-    mean_.swept += dt * now.swept;
-    mean_.pressure_volume += dt * now.pressure_volume;
-    mean_square_.swept += dt * now.swept * now.swept;
-    mean_square_.pressure_volume += dt * now.pressure_volume * now.pressure_volume;
-    time_ += dt;
-  }
-  last_ = swept;
-}
-
-ComplianceWatch::Walls ComplianceWatch::walls() const {
-  Walls w;
-  if (steps_ < judged_steps) return w;
-  for (std::size_t i = 0; i < sum_.size(); ++i) {
-    const double mean = sum_[i] / time_, square = square_[i] / time_, variance = square - mean * mean;
-    if (variance <= rounding * square) continue;
-    w.square += variance;
-    w.size += std::sqrt(variance);
-  }
-  for (const double rate : rate_) w.rate += rate / time_;
-  return w;
-}
-
-ComplianceWatch::Totals ComplianceWatch::totals() const {
-  if (!(time_ > 0)) return {};
-  const auto deviation = [&](double sum, double square) {
-    return std::sqrt(std::max(0.0, square / time_ - sum * sum / (time_ * time_)));
-  };
-  return {deviation(mean_.swept, mean_square_.swept),
-          deviation(mean_.pressure_volume, mean_square_.pressure_volume)};
-}
-
-// Effects of compressibility: density changes, and pressure waves at moving walls.
-
-namespace {
 
 template <int D>
 std::optional<Sound> sound_in(const FluidView<D>& view) {
@@ -108,8 +58,8 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
         }
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
     const auto& known = view_.parameters().compressibility;
-    if (sums[3] > 0) sums[1] += (known ? known->upstream_volume : 0) * sums[2] / sums[3];
-    watch_.add(view_.step.dt, swept, {sums[0], sums[1]});
+    if (sums[3] > 0) sums[1] += (known ? known->unmeshed() : 0) * sums[2] / sums[3];
+    means_.add(view_.step.dt, swept, {sums[0], sums[1]});
   }
   void look(diagnostics::Report& report) override {
     if (view_.parameters().is_compressible()) return;
@@ -119,7 +69,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   /// Evaluates means only at the end, because pressures dominate before walls have moved.
   void conclude(diagnostics::Report& report) override {
     if (view_.parameters().is_compressible()) return;
-    const ComplianceWatch::Walls mine = watch_.walls();
+    const ComplianceMeans::Walls mine = means_.walls();
     std::array<double, 3> walls{mine.square, mine.rate, mine.size};
     MPI_Allreduce(MPI_IN_PLACE, walls.data(), int(walls.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
     const double size = largest_extent(view_.mesh, view_.fluid.state().placement->boundary_centre);
@@ -128,7 +78,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
                              view_.parameters(), [&](const std::string& name) { return some_places(name); },
                              view_.step.time + view_.step.dt, view_.step.dt));
     if (walls[0] > 0) {
-      const ComplianceWatch::Totals totals = watch_.totals();
+      const ComplianceMeans::Totals totals = means_.totals();
       // A plate in the fluid sweeps the same volume on both sides.
       const double stroke = std::max(totals.swept, 0.5 * walls[2]);
       add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
@@ -138,10 +88,10 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   }
   void visit(io::Archive& archive) override {
     if (!moves_) return;
-    archive.common("means", watch_);
+    archive.common("means", means_);
     constexpr std::size_t width = 4;
     std::vector<double> flat(width * std::size_t(view_.mesh.boundary.n_owned()));
-    const auto values = watch_.per_face();
+    const auto values = means_.per_face();
     const auto place = [&](std::size_t i, std::size_t k) {
       return width * std::size_t(faces_[i] - view_.mesh.n_interior) + k;
     };
@@ -182,10 +132,53 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   bool moves_;
   std::vector<Index> faces_;    // of walls that move
   std::vector<Vec3> at_start_;  // their centers
-  ComplianceWatch watch_;
+  ComplianceMeans means_;
 };
 
 }  // namespace
+
+// Skips the step in which the flow starts, because its pressure contains the impulse of the start.
+void ComplianceMeans::add(double dt, const std::vector<double>& swept, const Totals& now) {
+  sum_.resize(swept.size());
+  square_.resize(swept.size());
+  rate_.resize(swept.size());
+  if (steps_++ > 0) {
+    for (std::size_t i = 0; i < swept.size(); ++i) {
+      const double change = swept[i] - last_[i];
+      sum_[i] += dt * swept[i];
+      square_[i] += dt * swept[i] * swept[i];
+      rate_[i] += change * change / dt;
+    }
+    mean_.swept += dt * now.swept;
+    mean_.pressure_volume += dt * now.pressure_volume;
+    mean_square_.swept += dt * now.swept * now.swept;
+    mean_square_.pressure_volume += dt * now.pressure_volume * now.pressure_volume;
+    time_ += dt;
+  }
+  last_ = swept;
+}
+
+ComplianceMeans::Walls ComplianceMeans::walls() const {
+  Walls w;
+  if (steps_ < judged_steps) return w;
+  for (std::size_t i = 0; i < sum_.size(); ++i) {
+    const double mean = sum_[i] / time_, square = square_[i] / time_, variance = square - mean * mean;
+    if (variance <= rounding * square) continue;
+    w.square += variance;
+    w.size += std::sqrt(variance);
+  }
+  for (const double rate : rate_) w.rate += rate / time_;
+  return w;
+}
+
+ComplianceMeans::Totals ComplianceMeans::totals() const {
+  if (!(time_ > 0)) return {};
+  const auto deviation = [&](double sum, double square) {
+    return std::sqrt(std::max(0.0, square / time_ - sum * sum / (time_ * time_)));
+  };
+  return {deviation(mean_.swept, mean_square_.swept),
+          deviation(mean_.pressure_volume, mean_square_.pressure_volume)};
+}
 
 // Density changes scale with half the squared Mach number: 5 % at 0.3.
 diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {

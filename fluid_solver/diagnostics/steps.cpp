@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diagnostics of the steps: their sizes, the guess of a semi-implicit step, flow through openings, ringing pressures.
+// Diagnostics of the steps: their sizes, flow through openings, ringing pressures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 
 namespace couplet::fluid {
@@ -19,8 +18,6 @@ namespace {
 // Factor above the limit at which a prescribed step certainly fails.
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
-// Error of the friction at the end of a step, relative to the load; a growing oscillation reaches it.
-constexpr double near_limit = 0.1;
 
 /// A prescribed step is used even if it is too long for the implicit term on cells with few faces (StepSize).
 /// Checked at each new longest step; with a varying limit (moving cells, eddy viscosity) also every few steps
@@ -63,36 +60,6 @@ class GivenStep final : public diagnostics::Diagnostic {
   int steps_unseen_ = 0;  // whose limit may have changed
 };
 
-/// Number of friction renewals in the semi-implicit scheme, and the resulting error.
-template <int D>
-class FrictionOfTheGuess final : public diagnostics::Diagnostic {
- public:
-  explicit FrictionOfTheGuess(const FluidView<D>& view) : view_(view) {}
-  void observe(diagnostics::Report&) override {
-    if (view_.step.scheme != coupling::Scheme::semi_implicit) return;
-    ++steps_;
-    renewed_ += view_.renewals > 0 ? 1 : 0;
-    largest_ = std::max(largest_, view_.unseen_share);
-  }
-  void conclude(diagnostics::Report& report) override {
-    if (steps_ == 0) return;
-    const bool is_far = largest_ < near_limit || view_.step.scheme != coupling::Scheme::semi_implicit;
-    report.sentences.push_back(fmt::format(
-        "Semi-implicit coupling: the friction was recomputed with an updated wall velocity in {} of {} "
-        "steps; max error at the end of a step {:.2g} of the load{}",
-        renewed_, steps_, largest_,
-        is_far ? "."
-               : ": the scheme is near its limit, where friction drags more than a third of the moving mass; "
-                 "use 'scheme: implicit' or a smaller step."));
-  }
-  void visit(io::Archive& archive) override { archive.common("steps", steps_, renewed_, largest_); }
-
- private:
-  FluidView<D> view_;
-  long steps_ = 0, renewed_ = 0;
-  double largest_ = 0;
-};
-
 /// Courant rate sum |phi - dV/dt|/(2 V) of a cell, or with `friction` sum nu g/(2 D V), which is nu/h^2 of a
 /// cube [1/s]. Collective.
 template <int D>
@@ -132,35 +99,16 @@ class PlaceOnTheMap final : public diagnostics::Diagnostic {
   FluidView<D> view_;
 };
 
-}  // namespace
-
-template <int D>
-diagnostics::Made given_step(const FluidView<D>& view) {
-  return view.parameters().time_step ? std::make_shared<GivenStep<D>>(view) : nullptr;
-}
-template <int D>
-diagnostics::Made friction_of_the_guess(const FluidView<D>& view) {
-  return std::make_shared<FrictionOfTheGuess<D>>(view);
-}
-template <int D>
-diagnostics::Made place_on_the_map(const FluidView<D>& view) {
-  return std::make_shared<PlaceOnTheMap<D>>(view);
-}
-
-template diagnostics::Made given_step(const FluidView<2>&);
-template diagnostics::Made given_step(const FluidView<3>&);
-template diagnostics::Made friction_of_the_guess(const FluidView<2>&);
-template diagnostics::Made friction_of_the_guess(const FluidView<3>&);
-template diagnostics::Made place_on_the_map(const FluidView<2>&);
-template diagnostics::Made place_on_the_map(const FluidView<3>&);
-
-namespace {
-
 // Minimum share of the volume through an opening in one direction (more than an oscillation), and of the
 // volume through the largest opening (more than a trickle).
 constexpr double always = 0.9, much = 0.1;
 // Inflow at a total pressure is reported if its dynamic pressure exceeds this share of the pressure's range in the run.
 constexpr double told_head = 1e-3;
+
+struct Opening {
+  const mesh::Patch* patch;
+  bool inlet, has_direction, total;  // total: takes the total pressure of inflow
+};
 
 /// Direction of the flow through inlets and outlets. If fluid always left through an inlet or entered through
 /// an outlet, a sign or name is wrong. Outlets report fluid that enters at total pressure.
@@ -257,10 +205,6 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
   }
 
  private:
-  struct Opening {
-    const mesh::Patch* patch;
-    bool inlet, has_direction, total;  // total: takes the total pressure of inflow
-  };
   // Per opening on this rank: volume outward and in either direction, volume that entered through the moving
   // opening [m^3], its kinetic energy [J].
   enum { net, gross, inflow, energy, n_sums };
@@ -270,18 +214,6 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
   double low_ = std::numeric_limits<double>::max(),
          high_ = std::numeric_limits<double>::lowest();  // pressures [Pa]
 };
-
-}  // namespace
-
-template <int D>
-diagnostics::Made flow_through_openings(const FluidView<D>& view) {
-  return std::make_shared<FlowThroughOpenings<D>>(view);
-}
-
-template diagnostics::Made flow_through_openings(const FluidView<2>&);
-template diagnostics::Made flow_through_openings(const FluidView<3>&);
-
-namespace {
 
 constexpr int rung_steps = 10;  // consecutive steps before it is reported
 
@@ -310,6 +242,28 @@ class RingingPressure final : public diagnostics::Diagnostic {
 };
 
 }  // namespace
+
+template <int D>
+diagnostics::Made given_step(const FluidView<D>& view) {
+  return view.parameters().time_step ? std::make_shared<GivenStep<D>>(view) : nullptr;
+}
+template <int D>
+diagnostics::Made place_on_the_map(const FluidView<D>& view) {
+  return std::make_shared<PlaceOnTheMap<D>>(view);
+}
+
+template diagnostics::Made given_step(const FluidView<2>&);
+template diagnostics::Made given_step(const FluidView<3>&);
+template diagnostics::Made place_on_the_map(const FluidView<2>&);
+template diagnostics::Made place_on_the_map(const FluidView<3>&);
+
+template <int D>
+diagnostics::Made flow_through_openings(const FluidView<D>& view) {
+  return std::make_shared<FlowThroughOpenings<D>>(view);
+}
+
+template diagnostics::Made flow_through_openings(const FluidView<2>&);
+template diagnostics::Made flow_through_openings(const FluidView<3>&);
 
 template <int D>
 double ringing_share(const mesh::Mesh& mesh, const State<D>& s) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/output/derived.hpp"
 
@@ -161,32 +160,6 @@ std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view) {
       unresolved_walls(largest_yplus(view), view.sizes.largest_peclet(view.fluid.state())));
 }
 
-// Walls that move on a mesh at rest, and gaps that block the flow.
-
-namespace {
-
-/// Largest sum |w . S| / sum |w| |S| of the moving walls of a fixed mesh; NaN without motion. Collective.
-template <int D>
-double through_moving_walls(const Fluid<D>& fluid) {
-  const mesh::Mesh& mesh = fluid.mesh();
-  const State<D>& s = fluid.state();
-  double worst = std::numeric_limits<double>::quiet_NaN();
-  for (const mesh::Patch& patch : mesh.patches) {
-    if (!is_moving_wall(fluid.parameters().boundaries.at(patch.name))) continue;
-    double through = 0, size = 0;
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec<D>& w = s.w[f - mesh.n_interior];
-      through += std::abs(w.dot(s.placement->area[f]));
-      size += w.norm() * s.placement->area[f].norm();
-    }
-    through = parallel::sum(mesh.comm, through), size = parallel::sum(mesh.comm, size);
-    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
-  }
-  return worst;
-}
-
-}  // namespace
-
 template <int D>
 std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {
   if (view.fluid.moving() || !view.stands_still()) return {};
@@ -198,38 +171,6 @@ std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view) {
            fmt::format("max interface displacement / adjacent cell height = {:.2g}", view.wall_displacement),
        .advice = "add a mesh mover: 'coupling: {mesh: {participant: ...}}'",
        .share = std::min(1., 0.5 * view.wall_displacement)});
-}
-
-// A wall with normal motion on a mesh at rest acts as an inlet.
-template <int D>
-std::optional<diagnostics::Finding> walls_along_themselves(const FluidView<D>& view) {
-  bool has_moving_wall = false;
-  for (const auto& [name, b] : view.parameters().boundaries) has_moving_wall |= is_moving_wall(b);
-  if (view.fluid.moving() || !has_moving_wall) return {};
-  const double through = through_moving_walls(view.fluid);
-  return diagnostics::finding_of(
-      {.effect = "walls that move along themselves",
-       .number = through,
-       .limit = 0.1,
-       .what = fmt::format("a moving wall has a normal velocity of {:.2g} times its speed", through),
-       .advice =
-           "its mesh is at rest, so fluid crosses the wall: use a tangential velocity, make it an inlet, "
-           "or move it with 'motion'",
-       .left_out = false});
-}
-
-template <int D>
-std::optional<diagnostics::Finding> blocked_cells(const FluidView<D>& view) {
-  if (!view.fluid.gaps()) return {};
-  double blocked = 0;
-  for (const auto& gap : view.fluid.gaps()->facts()) blocked += gap.cells;
-  blocked /= double(view.mesh.cells.n_global());
-  return diagnostics::finding_of({.effect = "gaps that close",
-                                  .number = blocked,
-                                  .limit = 0.5,
-                                  .what = fmt::format("blocked by gaps: {:.2g} of all cells", blocked),
-                                  .advice = "is 'opening' in meters, and smaller than the channel?",
-                                  .left_out = false});
 }
 
 // The guard stops fast growth; this reports slow growth.

@@ -1,14 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
+#include "fluid_solver/state/state.hpp"
 #include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid {
+
+// Judges effects of turbulence and compressibility by results of a run.
+
+/// Layers that the mesh does not resolve. `peclet`: largest cell Reynolds number. `yplus`: largest y+ at
+/// the walls, 0 without walls. `reynolds`: Reynolds number of the largest speed and the hydraulic diameter.
+diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds);
+/// Eddy viscosity of a turbulence model relative to the molecular one.
+diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity);
+/// Resolution of walls under a turbulence model.
+diagnostics::EffectFinding unresolved_walls(double yplus, double peclet);
+
+/// `speed`: largest [m/s].
+diagnostics::EffectFinding mach_number(double speed, const Sound& sound);
+/// `density` [kg/m^3]; `range`: largest minus smallest pressure [Pa]; `speed`: largest [m/s].
+diagnostics::EffectFinding change_of_density(bool is_compressible, double density, double range, double speed,
+                                             const Sound& sound);
+/// `stroke`: volume swept by moving walls [m^3]. `pressure_volume`: pressure times the volume it compresses
+/// [J]. Both are fluctuations over the run.
+diagnostics::EffectFinding compliance(double density, double stroke, double pressure_volume,
+                                      const Sound& sound);
+/// `rate`: rate of the wall motion [1/s]. `size`: extent of the fluid [m].
+diagnostics::EffectFinding wave_time(double rate, double size, const Sound& sound);
+
+/// Records the wall motion and the pressure response over a run, as fluctuations about the means. Callers sum
+/// over the faces of all ranks.
+class ComplianceMeans {
+ public:
+  /// Sums over all ranks.
+  struct Totals {
+    double swept = 0;            ///< net volume that the walls have swept [m^3]
+    double pressure_volume = 0;  ///< pressure times the volume that it compresses [J]
+  };
+  /// Adds a step of length dt [s]. `swept`: volume swept so far by each face of the moving walls [m^3].
+  void add(double dt, const std::vector<double>& swept, const Totals& totals);
+
+  /// Sums over this rank's faces: mean square of the swept volume [m^6] and of its rate [m^6/s^2], and root
+  /// mean square of the volume [m^3].
+  struct Walls {
+    double square = 0, rate = 0, size = 0;
+  };
+  Walls walls() const;
+  /// Root mean squares about the means.
+  Totals totals() const;
+
+  /// Data for checkpoints: values per face, and values that are equal on all ranks.
+  std::array<std::vector<double>*, 4> per_face() { return {&last_, &sum_, &square_, &rate_}; }
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(time_, mean_.swept, mean_.pressure_volume, mean_square_.swept, mean_square_.pressure_volume,
+            steps_);
+  }
+
+ private:
+  std::vector<double> last_, sum_, square_, rate_;  // per face
+  double time_ = 0;
+  Totals mean_, mean_square_;  // times time_
+  int steps_ = 0;
+};
+
+constexpr double ringing_limit = 0.05;
+
+/// Detects ringing of the trapezoidal rule of a compressible fluid. Waves of less than four steps per period,
+/// neither resolved nor damped, then dominate the change of pressure: |p_0 - 2 p_1 + p_2| > |p_0 - p_2| for
+/// three successive pressures, as root mean squares over the volume. Returns |p_0 - 2 p_1 + p_2|/(4 |p_0|) if
+/// it rings, else 0. Collective.
+template <int D>
+double ringing_share(const mesh::Mesh& mesh, const State<D>& state);
 
 /// State of a fluid run after the last accepted step, as diagnostics see it.
 template <int D>
@@ -22,8 +92,6 @@ struct FluidView {
   bool is_prescribed;          ///< the case moves the mesh
   /// Largest displacement of an interface on a mesh at rest, relative to the cell height there.
   const double& wall_displacement;
-  const int& renewals;         ///< repeated predictions in the last step
-  const double& unseen_share;  ///< error of the friction at the end of the last step, over the load
 
   const FluidParameters& parameters() const { return fluid.parameters(); }
   int rank() const { return parallel::comm_rank(mesh.comm); }

@@ -72,6 +72,9 @@ COUPLET_PROCESSOR_CLONES void turn_search(double gamma, std::span<const double> 
 
 constexpr int most_iterations = 2000;
 
+constexpr int most_passes = 60, passes_alone = 4;
+constexpr linalg::Acceleration pass_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
+
 }  // namespace
 
 ViscousRows::ViscousRows(const mesh::Mesh& mesh) : diagonal(mesh.cells.n_owned()) {
@@ -97,12 +100,12 @@ ViscousRows::ViscousRows(const mesh::Mesh& mesh) : diagonal(mesh.cells.n_owned()
 
 /// a_->diagonal excludes the boundary, inverse_diagonal_ includes it.
 template <int D>
-void ViscousSolver<D>::set_diagonal(const EddyShare& eddies) {
+void ViscousSolver<D>::set_diagonal(std::span<const double> added) {
   const Placement<D>& at = *at_;
   std::copy_n(at.volume.begin(), a_->size(), a_->diagonal.begin());
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const double entry = (beta_ + eddies.at(p, n)) * at.conductance[f];
+    const double entry = (beta_ + (added.empty() ? 0 : added[f])) * at.conductance[f];
     for (const Index c : {p, n})
       if (c < a_->size()) a_->diagonal[c] += entry;
   }
@@ -120,7 +123,7 @@ void ViscousSolver<D>::set_diagonal(const EddyShare& eddies) {
 }
 
 template <int D>
-void ViscousSolver<D>::set_entries(const EddyShare& eddies) {
+void ViscousSolver<D>::set_entries(std::span<const double> added) {
   scale_.resize(mesh_.cells.n_local());
   for (Index c = 0; c < a_->size(); ++c) {
     scale_[c] = std::sqrt(inverse_diagonal_[c]);
@@ -131,20 +134,21 @@ void ViscousSolver<D>::set_entries(const EddyShare& eddies) {
   for (Index c = 0; c < a_->size(); ++c)
     for (const std::size_t end = e + a_->width; e < end; ++e)
       if (const Index f = a_->face[e]; f >= 0)
-        a_->value[e] =
-            -(beta_ + eddies.at(c, a_->column[e])) * at_->conductance[f] * scale_[c] * scale_[a_->column[e]];
+        a_->value[e] = -(beta_ + (added.empty() ? 0 : added[f])) * at_->conductance[f] * scale_[c] *
+                       scale_[a_->column[e]];
 }
 
 template <int D>
-void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies) {
+void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta,
+                               std::span<const double> added) {
   // Equal on all ranks, because each step of a moving mesh has its own placement.
-  if (at == at_ && beta == beta_ && !eddies.eddy && !with_eddies_) return;
+  if (at == at_ && beta == beta_ && added.empty() && !has_more_) return;
   at_ = std::move(at);
   beta_ = beta;
-  with_eddies_ = eddies.eddy;
+  has_more_ = !added.empty();
   if (!a_) a_ = std::make_unique<ViscousRows>(mesh_);
-  set_diagonal(eddies);
-  set_entries(eddies);
+  set_diagonal(added);
+  set_entries(added);
 }
 
 /// Returns x.y of this rank.
@@ -152,7 +156,7 @@ template <int D>
 double ViscousSolver<D>::apply(Vectors<D>& x, Vectors<D>& y) const {
   mesh_.cells.update_ghosts(flat<D>(x), D);
   double sum = multiply(*a_, x, y);
-  for (const BoundaryRow& row : boundary_rows_) {
+  for (const ViscousBoundaryRow<D>& row : boundary_rows_) {
     const Vec<D> part = inverse_diagonal_[row.cell] * row.times(x[row.cell]);
     y[row.cell] += part;
     sum += part.dot(x[row.cell]);
@@ -203,15 +207,6 @@ int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b
 template class ViscousSolver<2>;
 template class ViscousSolver<3>;
 
-namespace {
-
-constexpr int most_passes = 60, passes_alone = 4;
-constexpr linalg::Acceleration pass_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
-// nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
-constexpr double stress_of_eddies = 2;
-
-}  // namespace
-
 /// Residuals accumulate over the steps, so the tolerance is much smaller than the change of u per step.
 template <int D>
 double ImplicitFriction<D>::tolerance() const {
@@ -240,50 +235,34 @@ void ImplicitFriction<D>::guess(const State<D>& from, const Rates<D>& rates, dou
 template <int D>
 void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a,
                                 Vectors<D>& side, Vectors<D>& u) {
-  const EddyShare eddies =
-      from.eddy.empty() ? EddyShare{} : EddyShare{&eddy_, stress_of_eddies * a * step_.dt};
-  if (eddies.eddy) add_eddies(from, side);
-  solver_.prepare(step_.to, a * scene_.fluid.nu * step_.dt, eddies);
+  added_.clear();
+  for (const auto& term : rate_operator_.terms()) {
+    added_rate_.assign(side.size(), Vec<D>::Zero());
+    term->add_implicit(from, step_, a, added_rate_, added_);
+    scene_.obstacles->clear(added_rate_);
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) side[c] += step_.dt * added_rate_[c];
+  }
+  solver_.prepare(step_.to, a * scene_.fluid.nu * step_.dt, added_);
   guess(from, rates, a, side, u);
-  if (eddies.eddy) damp_eddies(from, eddies, side);
+  damp(from, side);
   if (scene_.oblique)
     solve_in_passes(w, a, side, u);
   else
     iterations_ += solver_.solve(w, tolerance(), side, u);
 }
 
-/// Adds the stress of u~ = (1 + r/2) u^n - r/2 u^{n-1} with its own nu_t on the mesh of level n. The nu_t
-/// here and in damp_eddies() must be the same for all three levels. With Adams-Bashforth, a nu_t that
-/// decreases tenfold per step, as in an opening gap, would leave an undamped old rate.
-template <int D>
-void ImplicitFriction<D>::add_eddies(const State<D>& from, Vectors<D>& side) {
-  const double ratio = step_.ratio(), e0 = 1 + ratio / 2, e1 = -ratio / 2;
-  between_ = from.u;
-  between_boundary_ = from.u_boundary;
-  if (ratio > 0) {
-    for (std::size_t c = 0; c < between_.size(); ++c) between_[c] = e0 * from.u[c] + e1 * from.u_old[c];
-    for (std::size_t b = 0; b < between_boundary_.size(); ++b)
-      between_boundary_[b] = e0 * from.u_boundary[b] + e1 * from.u_boundary_old[b];
-  }
-  eddy_rate_.assign(between_.size(), Vec<D>::Zero());
-  rate_operator_.add_eddies(*scene_.parameters.turbulence, *from.placement, between_, between_boundary_,
-                            eddy_, eddy_rate_);
-  scene_.obstacles->clear(eddy_rate_);
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) side[c] += step_.dt * eddy_rate_[c];
-}
-
 /// Adds theta dt nu_t g times the second time difference of u, whose part at n+1 is in the matrix. With a of
 /// modified Crank-Nicolson an extrapolated rate becomes that scheme, and nu_t does not limit the step. In
 /// thin cells, a few times the molecular viscosity would require a thousandth of the convective step.
 template <int D>
-void ImplicitFriction<D>::damp_eddies(const State<D>& from, const EddyShare& eddies, Vectors<D>& side) const {
+void ImplicitFriction<D>::damp(const State<D>& from, Vectors<D>& side) const {
   const double ratio = step_.ratio();
   const auto ahead = [&](Index c) {
     return ratio > 0 ? Vec<D>((1 + ratio) * from.u[c] - ratio * from.u_old[c]) : from.u[c];
   };
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
+  for (Index f = 0; f < static_cast<Index>(added_.size()); ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Vec<D> part = eddies.at(p, n) * step_.to->conductance[f] * (ahead(n) - ahead(p));
+    const Vec<D> part = added_[f] * step_.to->conductance[f] * (ahead(n) - ahead(p));
     side[p] -= part;
     side[n] += part;
   }

@@ -7,43 +7,6 @@
 
 namespace couplet::fluid {
 
-namespace {
-
-// Below this the flow has no gradient, and WALE's quotient is 0/0 [1/s].
-constexpr double no_gradient = 1e-150;
-
-}  // namespace
-
-template <int D>
-double eddy_viscosity(const TurbulenceParameters& model, const Tensor<D>& g, double volume) {
-  const double width = D == 2 ? std::sqrt(volume) : std::cbrt(volume);
-  const double scale = model.constant_of() * width * model.constant_of() * width;
-  const Tensor<D> strain = 0.5 * (g + g.transpose());
-  const double ss = strain.squaredNorm();
-  if (!(ss > no_gradient)) return 0;
-  if (model.model == TurbulenceModel::smagorinsky) return scale * std::sqrt(2 * ss);
-  const Tensor<D> square = g * g;
-  const Tensor<D> symmetric = 0.5 * (square + square.transpose());
-  // Traceless in three dimensions, whatever D: Sd:Sd = s:s - tr(s)^2/3.
-  const double trace = symmetric.trace(), dd = std::max(0.0, symmetric.squaredNorm() - trace * trace / 3);
-  return scale * std::pow(dd, 1.5) / (std::pow(ss, 2.5) + std::pow(dd, 1.25));
-}
-
-template <int D>
-void eddy_viscosity(const TurbulenceParameters& model, const Placement<D>& at,
-                    const std::vector<Tensor<D>>& gradient, std::vector<double>& eddy) {
-  eddy.resize(gradient.size());
-  for (std::size_t c = 0; c < gradient.size(); ++c)
-    eddy[c] = eddy_viscosity<D>(model, gradient[c], at.volume[c]);
-}
-
-template double eddy_viscosity<2>(const TurbulenceParameters&, const Tensor<2>&, double);
-template double eddy_viscosity<3>(const TurbulenceParameters&, const Tensor<3>&, double);
-template void eddy_viscosity(const TurbulenceParameters&, const Placement<2>&, const std::vector<Tensor<2>>&,
-                             std::vector<double>&);
-template void eddy_viscosity(const TurbulenceParameters&, const Placement<3>&, const std::vector<Tensor<3>>&,
-                             std::vector<double>&);
-
 template <int D>
 void velocity_gradient(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient) {
@@ -177,54 +140,21 @@ void RateOperator<D>::add_oblique(const Placement<D>& at, const std::vector<Tens
 }
 
 template <int D>
-void RateOperator<D>::set_eddy_viscosity(const TurbulenceParameters& model, State<D>& s) {
-  velocity_gradient<D>(mesh_, *s.placement, s.u, s.u_boundary, gradient_);
-  eddy_viscosity<D>(model, *s.placement, gradient_, s.eddy);
-}
-
-template <int D>
-void RateOperator<D>::add_stress(const Placement<D>& at, const std::vector<double>& eddy, const Vectors<D>& u,
-                                 const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const {
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Vec<D> part = eddy_stress<D>(at, eddy, u, gradient, f, p, n);
-    rate[p] += part;
-    rate[n] -= part;
-  }
-}
-
-template <int D>
-void RateOperator<D>::add_eddies(const TurbulenceParameters& model, const Placement<D>& at,
-                                 const Vectors<D>& u, const Vectors<D>& u_boundary, std::vector<double>& eddy,
-                                 Vectors<D>& rate) {
-  velocity_gradient<D>(mesh_, at, u, u_boundary, gradient_);
-  eddy_viscosity<D>(model, at, gradient_, eddy);
-  add_stress(at, eddy, u, gradient_, rate);
-}
-
-template <int D>
-void RateOperator<D>::add_dilatation(const State<D>& s, Vectors<D>& rate) {
-  dilatation_.assign(mesh_.cells.n_local(), 0.0);
-  add_outflow(mesh_, s.phi, dilatation_);
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) rate[c] += 0.5 * dilatation_[c] * s.u[c];
-}
-
-template <int D>
 void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
                             const std::vector<Tensor<D>>* gradient) {
   rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
   face_loop(state, split, rates);
   if (fourth_) fourth_->add_rates(state, split ? 0 : nu_, rates.rate);
-  if (compressible_) add_dilatation(state, rates.rate);
-  const bool eddies = !split && !state.eddy.empty();
-  if (!correct_oblique && !eddies) return;
-  if (!gradient) {
-    velocity_gradient<D>(mesh_, *state.placement, state.u, state.u_boundary, gradient_);
-    gradient = &gradient_;
-  }
-  if (correct_oblique) add_oblique(*state.placement, *gradient, split ? rates.viscous : rates.rate);
-  if (eddies) add_stress(*state.placement, state.eddy, state.u, *gradient, rates.rate);
+  const auto gradient_of_state = [&]() -> const std::vector<Tensor<D>>& {
+    if (!gradient) {
+      velocity_gradient<D>(mesh_, *state.placement, state.u, state.u_boundary, gradient_);
+      gradient = &gradient_;
+    }
+    return *gradient;
+  };
+  for (const auto& term : terms_) term->add_rate(state, split, gradient_of_state, rates.rate);
+  if (correct_oblique) add_oblique(*state.placement, gradient_of_state(), split ? rates.viscous : rates.rate);
 }
 
 template <int D>

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/linalg/acceleration.hpp"
@@ -55,18 +57,40 @@ Vec<D> eddy_stress(const Placement<D>& at, const std::vector<double>& eddy, cons
          (at.conductance[f] * change + mean * at.oblique_of(f) + mean.transpose() * area + normal * area);
 }
 
+/// Optional part of the momentum equation. Every function itself loops over faces or cells, and is collective.
+template <int D>
+class MomentumTerm {
+ public:
+  /// Computes the gradient of a state's velocity on first use.
+  using Gradient = std::function<const std::vector<Tensor<D>>&()>;
+  virtual ~MomentumTerm() = default;
+  /// Adds to the rate of a state. `split`: the viscous part is left to add_implicit().
+  virtual void add_rate(const State<D>& state, bool split, const Gradient& gradient, Vectors<D>& rate) = 0;
+  /// Sets the data of the term in a new state.
+  virtual void start(State<D>&) {}
+  /// Adds to the rates of convection and friction that limit the step, per local cell [m^3/s].
+  virtual void add_limits(const State<D>&, Vectors<2>&) const {}
+  /// Adds the viscous part of a step whose viscous term has the weight `a` at t^{n+1}: the known one to `rate`, and the
+  /// viscosity times a dt that acts at t^{n+1} to `added`, per interior face [m^2].
+  virtual void add_implicit(const State<D>&, const Step<D>&, double /*a*/, Vectors<D>& /*rate*/,
+                            std::vector<double>& /*added*/) {}
+};
+template <int D>
+using MomentumTerms = std::vector<std::unique_ptr<MomentumTerm<D>>>;
+/// Terms of a case: the dilatation of a compressible fluid, the stress of a turbulence model.
+template <int D>
+MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const FluidParameters& parameters);
+
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k] at level n on mesh n, with skew-symmetric mid-point u_f
 /// [trias2014]. `split`: the viscous part goes to Rates::viscous. `correct_oblique`: the mesh is not
-/// orthogonal. The eddy stress nu_t (grad u + grad u^T), zero on walls, is added to the rate unless `split`
-/// is set; add it by add_eddies() then. Collective.
+/// orthogonal. Collective.
 template <int D>
 class RateOperator {
  public:
-  /// `compressible`: phi is not divergence-free. Half of u div u is added back so that convection conserves
-  /// energy.
   RateOperator(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
-               bool compressible = false)
-      : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), compressible_(compressible) {}
+               MomentumTerms<D> terms = {})
+      : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), terms_(std::move(terms)) {}
+  const MomentumTerms<D>& terms() const { return terms_; }
   /// `gradient`: gradient of the state's velocity, if known.
   void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
              const std::vector<Tensor<D>>* gradient = nullptr);
@@ -76,24 +100,15 @@ class RateOperator {
                    Vectors<D>& rate);
   /// nullptr if the order is second everywhere.
   void set_fourth(const FourthOrder<D>* fourth) { fourth_ = fourth; }
-  /// Sets state.eddy from state.u. Collective.
-  void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);
-  /// Computes the eddy viscosity of a velocity field (ghosts current), adds its stress to `rate`. Collective.
-  void add_eddies(const TurbulenceParameters& model, const Placement<D>& at, const Vectors<D>& u,
-                  const Vectors<D>& u_boundary, std::vector<double>& eddy, Vectors<D>& rate);
 
  private:
-  void add_stress(const Placement<D>& at, const std::vector<double>& eddy, const Vectors<D>& u,
-                  const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
   void add_oblique(const Placement<D>& at, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
   void face_loop(const State<D>& state, bool split, Rates<D>& rates) const;
-  void add_dilatation(const State<D>& state, Vectors<D>& rate);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   double nu_;
-  bool compressible_;
+  MomentumTerms<D> terms_;
   const FourthOrder<D>* fourth_ = nullptr;
-  std::vector<double> dilatation_;
   std::vector<Tensor<D>> gradient_;
 };
 
@@ -115,22 +130,24 @@ struct ViscousRows {
   Index size() const { return static_cast<Index>(diagonal.size()); }
 };
 
-/// Contribution of an eddy viscosity to the matrix, theta dt nu_t at interior faces (mean of the cells).
-struct EddyShare {
-  const std::vector<double>* eddy = nullptr;  ///< nu_t per local cell [m^2/s]; nullptr if there is none
-  double factor = 0;                          ///< theta dt [s]
-  double at(Index p, Index n) const { return eddy ? 0.5 * factor * ((*eddy)[p] + (*eddy)[n]) : 0; }
+/// Contribution of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
+template <int D>
+struct ViscousBoundaryRow {
+  Index cell;
+  double both, normal;  // beta g t, beta g (1 - t)
+  Vec<D> n;
+  Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
 };
 
 /// Solves A u = V u + beta sum_f g (u_P - u_f) = b for all components at once. Uses CG on D^(-1/2) A
-/// D^(-1/2), which is Jacobi-preconditioned CG [hestenes1952]. beta = a nu dt [m^2], plus the eddy
-/// viscosity's share at interior faces. The system is well conditioned if convection limits the step.
+/// D^(-1/2), which is Jacobi-preconditioned CG [hestenes1952]. beta = a nu dt [m^2], plus `added` at
+/// interior faces. The system is well conditioned if convection limits the step.
 template <int D>
 class ViscousSolver {
  public:
   ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
   /// Sets up the system for the following solves. Collective.
-  void prepare(std::shared_ptr<const Placement<D>> at, double beta, const EddyShare& eddies = {});
+  void prepare(std::shared_ptr<const Placement<D>> at, double beta, std::span<const double> added = {});
   /// Inverse of the diagonal D, per owned cell.
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
   /// `b`: per local cell (owned ones are read), without boundary parts. `w`: given velocity per boundary
@@ -139,30 +156,23 @@ class ViscousSolver {
   int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
 
  private:
-  /// Contribution of a boundary face to the row of its cell: beta g [t I + (1 - t) n n], see FaceRow.
-  struct BoundaryRow {
-    Index cell;
-    double both, normal;  // beta g t, beta g (1 - t)
-    Vec<D> n;
-    Vec<D> times(const Vec<D>& x) const { return both * x + normal * x.dot(n) * n; }
-  };
-  void set_diagonal(const EddyShare& eddies);
-  void set_entries(const EddyShare& eddies);
+  void set_diagonal(std::span<const double> added);
+  void set_entries(std::span<const double> added);
   double apply(Vectors<D>& x, Vectors<D>& y) const;
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   std::shared_ptr<const Placement<D>> at_;
   double beta_ = 0;
-  bool with_eddies_ = false;
+  bool has_more_ = false;           // than beta_ at interior faces
   std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2) without boundary_rows_
-  std::vector<BoundaryRow> boundary_rows_;
+  std::vector<ViscousBoundaryRow<D>> boundary_rows_;
   std::vector<double> inverse_diagonal_;
   std::vector<double> scale_;      // D^(-1/2), per local cell
   Vectors<D> x_, r_, q_, search_;  // vectors of the scaled system
 };
 
 /// Implicit part of modified Crank-Nicolson, V' u^p - a dt nu L' u^p = right-hand side, in passes on
-/// non-orthogonal meshes. The stress of an eddy viscosity is explicit and damped.
+/// non-orthogonal meshes. The viscous parts of terms are explicit and damped.
 template <int D>
 class ImplicitFriction {
  public:
@@ -183,8 +193,7 @@ class ImplicitFriction {
   double tolerance() const;
   void guess(const State<D>& from, const Rates<D>& rates, double a, const Vectors<D>& side,
              Vectors<D>& u) const;
-  void add_eddies(const State<D>& from, Vectors<D>& side);
-  void damp_eddies(const State<D>& from, const EddyShare& eddies, Vectors<D>& side) const;
+  void damp(const State<D>& from, Vectors<D>& side) const;
   void solve_in_passes(const Vectors<D>& w, double a, const Vectors<D>& side, Vectors<D>& u);
   void accelerate(bool start, Vectors<D>& u);
 
@@ -195,8 +204,9 @@ class ImplicitFriction {
   ViscousSolver<D> solver_;
   int iterations_ = 0;  // total so far
   Vectors<D> oblique_rate_, right_side_, before_, u_boundary_;
-  std::vector<double> eddy_;  // of the velocity between the levels, as are the next vectors
-  Vectors<D> between_, between_boundary_, eddy_rate_;
+  std::vector<double>
+      added_;  // by terms: viscosity times a dt per interior face [m^2]; empty if there is none
+  Vectors<D> added_rate_;
   std::unique_ptr<linalg::Accelerator> accelerator_;  // for meshes that need many passes
 };
 

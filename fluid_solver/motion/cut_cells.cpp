@@ -33,48 +33,6 @@ double way(const LevelCorner& above, const LevelCorner& below, const Level& leve
   return low;
 }
 
-}  // namespace
-
-/// A single positive or non-positive corner gives a simplex there. A tetrahedron with two positive corners a,
-/// b gives a prism of a, b and the points on the four other edges, split into three tetrahedra.
-OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, double round_off) {
-  std::array<std::size_t, 4> order{0, 1, 2, 3};
-  const std::size_t n = corners.size();
-  const auto is_above = [&](std::size_t i) { return corners[i].level > round_off; };
-  const auto above =
-      std::size_t(std::partition(order.begin(), order.begin() + std::ptrdiff_t(n), is_above) - order.begin());
-  if (above == 0) return {};
-  double mean = 0;
-  for (const LevelCorner& c : corners) mean += c.level / double(n);
-  if (above == n) return {1, mean};
-  const auto at = [&](std::size_t i) { return corners[order[i]].level; };
-  const auto between = [&](std::size_t i, std::size_t j) {
-    return way(corners[order[i]], corners[order[j]], level, round_off);
-  };
-  if (above == 1) {
-    double share = 1;
-    for (std::size_t j = 1; j < n; ++j) share *= between(0, j);
-    return {share, share * at(0) / double(n)};
-  }
-  if (above + 1 == n) {
-    OpenPart open;
-    double rest = 1, sum = mean * double(n) - at(above);
-    for (std::size_t k = above; k-- > 0;) {
-      const double along = between(k, above);
-      open.share += along * rest;
-      open.moment += along * rest * sum / double(n);
-      rest *= 1 - along;
-      sum -= at(k);
-    }
-    return open;
-  }
-  const double ac = between(0, 2), ad = between(0, 3), bc = between(1, 2), bd = between(1, 3);
-  const std::array<double, 3> part{ac * ad, ad * bc * (1 - ac), bc * bd * (1 - ad)};
-  return {part[0] + part[1] + part[2], (part[0] * (at(0) + at(1)) + (part[1] + part[2]) * at(1)) / 4};
-}
-
-namespace {
-
 // Shares this close to zero or one are round-off.
 constexpr double smallest_cut = 1e-10;
 // Likewise for levels relative to the cell size: faces along a surface are closed.
@@ -239,6 +197,44 @@ class Cutter {
 };
 
 }  // namespace
+
+/// A single positive or non-positive corner gives a simplex there. A tetrahedron with two positive corners a,
+/// b gives a prism of a, b and the points on the four other edges, split into three tetrahedra.
+OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, double round_off) {
+  std::array<std::size_t, 4> order{0, 1, 2, 3};
+  const std::size_t n = corners.size();
+  const auto is_above = [&](std::size_t i) { return corners[i].level > round_off; };
+  const auto above =
+      std::size_t(std::partition(order.begin(), order.begin() + std::ptrdiff_t(n), is_above) - order.begin());
+  if (above == 0) return {};
+  double mean = 0;
+  for (const LevelCorner& c : corners) mean += c.level / double(n);
+  if (above == n) return {1, mean};
+  const auto at = [&](std::size_t i) { return corners[order[i]].level; };
+  const auto between = [&](std::size_t i, std::size_t j) {
+    return way(corners[order[i]], corners[order[j]], level, round_off);
+  };
+  if (above == 1) {
+    double share = 1;
+    for (std::size_t j = 1; j < n; ++j) share *= between(0, j);
+    return {share, share * at(0) / double(n)};
+  }
+  if (above + 1 == n) {
+    OpenPart open;
+    double rest = 1, sum = mean * double(n) - at(above);
+    for (std::size_t k = above; k-- > 0;) {
+      const double along = between(k, above);
+      open.share += along * rest;
+      open.moment += along * rest * sum / double(n);
+      rest *= 1 - along;
+      sum -= at(k);
+    }
+    return open;
+  }
+  const double ac = between(0, 2), ad = between(0, 3), bc = between(1, 2), bd = between(1, 3);
+  const std::array<double, 3> part{ac * ad, ad * bc * (1 - ac), bc * bd * (1 - ad)};
+  return {part[0] + part[1] + part[2], (part[0] * (at(0) + at(1)) + (part[1] + part[2]) * at(1)) / 4};
+}
 
 template <int D>
 CutCells<D> cut(const mesh::Mesh& mesh, const Placement<D>& at, const Levels& levels) {

@@ -19,6 +19,88 @@ namespace {
 // Allowed net share of the flux through a pocket's inlets, due to their profiles.
 constexpr double inlet_leftover = 1e-6;
 
+constexpr double near_enough = 0.1;  // of the opening
+// Share of the conductance kept by a blocked face. The leak is equally small, and the pressure in the gap
+// follows lubrication theory of a slot between its two ends (linear in a parallel slot).
+constexpr double kept = 1e-6;
+
+Vec3 direction_of(const GapParameters& gap, int dimension) {
+  const std::vector<double>& d = gap.direction;
+  if (d.empty()) return dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+  return Vec3(d[0], d[1], d.size() > 2 ? d[2] : 0).normalized();
+}
+
+/// Distance of x from segments (2-D) or triangles, whose corners are stored consecutively.
+template <int D>
+double distance(const Vec3& x, const std::vector<double>& corners) {
+  double least = base::infinity;
+  const auto corner = [&](std::size_t i) { return Vec3(Eigen::Map<const Vec3>(corners.data() + 3 * i)); };
+  for (std::size_t i = 0; i + D <= corners.size() / 3; i += D)
+    least = std::min(
+        least, D == 2 ? base::nearest_on_segment(corner(i), corner(i + 1), x).distance
+                      : base::nearest_on_triangle(corner(i), corner(i + 1), corner(i + D - 1), x).distance);
+  return least;
+}
+
+/// Checks that the second wall of each gap with a `height` is the seat that the structure lands on. Throws
+/// Error if a point is off by more than a tenth of the opening. Collective.
+void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points) {
+  for (const auto& [name, gap] : parameters.gaps) {
+    const mesh::Patch* seat = gap.height ? mesh.find_patch(gap.between[1]) : nullptr;
+    if (seat == nullptr) continue;
+    const fv::Expression height(*gap.height, "gaps." + name + ".height");
+    const Vec3 direction = direction_of(gap, mesh.dim);
+    std::vector<double> worst{0, 0, 0, 0, 0};  // off by, place, height given there
+    for (Index f = seat->first; f < seat->first + seat->count; ++f)
+      for (const Index p : mesh.face_points[f]) {
+        const Vec3& x = points[p];
+        const double given = height(x, 0), off = x.dot(direction) - given;
+        if (std::abs(off) > std::abs(worst[0])) worst = {off, x.x(), x.y(), x.z(), given};
+      }
+    const std::vector<double> all = parallel::all_gather(mesh.comm, worst);
+    for (std::size_t i = 0; i < all.size(); i += 5)
+      if (std::abs(all[i]) > std::abs(worst[0])) worst.assign(all.begin() + i, all.begin() + i + 5);
+    if (std::abs(worst[0]) <= near_enough * gap.opening) continue;
+    throw Error(
+        "gaps.{0}.height: the seat is stated at {1:.4g} m, but the mesh has its wall '{2}' {3:.3g} m {4} at ({5:.4g}, {6:.4g}, "
+        "{7:.4g}), more than {8:g} % of the opening ({9:g} m). Correct 'height', or the mesh.",
+        name, worst[4], gap.between[1], std::abs(worst[0]), worst[0] > 0 ? "above it" : "below it", worst[1],
+        worst[2], worst[3], 100 * near_enough, gap.opening);
+  }
+}
+
+/// Extends a box by the points of a patch. Collective.
+void extend(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points, Vec3& low,
+            Vec3& high) {
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    for (const Index v : mesh.face_points[f]) low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
+  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
+}
+
+/// Corners of faces on all ranks that intersect a box, as segments (2-D) or triangles. Collective.
+std::vector<double> corners_of(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
+                               const Vec3& low, const Vec3& high) {
+  std::vector<double> mine;
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const auto v = mesh.face_points[f];
+    Vec3 least = points[v[0]], most = least;
+    for (const Index p : v) least = least.cwiseMin(points[p]), most = most.cwiseMax(points[p]);
+    if ((least.array() > high.array()).any() || (most.array() < low.array()).any()) continue;
+    const auto add = [&](std::initializer_list<std::size_t> corner) {
+      for (const std::size_t i : corner)
+        mine.insert(mine.end(), points[v[i]].data(), points[v[i]].data() + 3);
+    };
+    if (mesh.dim == 2) add({0, 1});
+    for (std::size_t i = 2; mesh.dim == 3 && i < v.size(); ++i) add({0, i - 1, i});
+  }
+  return parallel::all_gather(mesh.comm, mine);
+}
+
+bool inside(const Vec3& x, const Vec3& low, const Vec3& high) {
+  return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
+}
+
 }  // namespace
 
 template <int D>
@@ -122,92 +204,6 @@ std::string GapPockets<D>::cause(const Placement<D>& at) const {
 
 template class GapPockets<2>;
 template class GapPockets<3>;
-
-namespace {
-
-constexpr double near_enough = 0.1;  // of the opening
-// Share of the conductance kept by a blocked face. The leak is equally small, and the pressure in the gap
-// follows lubrication theory of a slot between its two ends (linear in a parallel slot).
-constexpr double kept = 1e-6;
-
-Vec3 direction_of(const GapParameters& gap, int dimension) {
-  const std::vector<double>& d = gap.direction;
-  if (d.empty()) return dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
-  return Vec3(d[0], d[1], d.size() > 2 ? d[2] : 0).normalized();
-}
-
-/// Distance of x from segments (2-D) or triangles, whose corners are stored consecutively.
-template <int D>
-double distance(const Vec3& x, const std::vector<double>& corners) {
-  double least = base::infinity;
-  const auto corner = [&](std::size_t i) { return Vec3(Eigen::Map<const Vec3>(corners.data() + 3 * i)); };
-  for (std::size_t i = 0; i + D <= corners.size() / 3; i += D)
-    least = std::min(
-        least, D == 2 ? base::nearest_on_segment(corner(i), corner(i + 1), x).distance
-                      : base::nearest_on_triangle(corner(i), corner(i + 1), corner(i + D - 1), x).distance);
-  return least;
-}
-
-/// Checks that the second wall of each gap with a `height` is the seat that the structure lands on. Throws
-/// Error if a point is off by more than a tenth of the opening. Collective.
-void check_seats(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points) {
-  for (const auto& [name, gap] : parameters.gaps) {
-    const mesh::Patch* seat = gap.height ? mesh.find_patch(gap.between[1]) : nullptr;
-    if (seat == nullptr) continue;
-    const fv::Expression height(*gap.height, "gaps." + name + ".height");
-    const Vec3 direction = direction_of(gap, mesh.dim);
-    std::vector<double> worst{0, 0, 0, 0, 0};  // off by, place, height given there
-    for (Index f = seat->first; f < seat->first + seat->count; ++f)
-      for (const Index p : mesh.face_points[f]) {
-        const Vec3& x = points[p];
-        const double given = height(x, 0), off = x.dot(direction) - given;
-        if (std::abs(off) > std::abs(worst[0])) worst = {off, x.x(), x.y(), x.z(), given};
-      }
-    const std::vector<double> all = parallel::all_gather(mesh.comm, worst);
-    for (std::size_t i = 0; i < all.size(); i += 5)
-      if (std::abs(all[i]) > std::abs(worst[0])) worst.assign(all.begin() + i, all.begin() + i + 5);
-    if (std::abs(worst[0]) <= near_enough * gap.opening) continue;
-    throw Error(
-        "gaps.{0}.height: the seat is stated at {1:.4g} m, but the mesh has its wall '{2}' {3:.3g} m {4} at ({5:.4g}, {6:.4g}, "
-        "{7:.4g}), more than {8:g} % of the opening ({9:g} m). Correct 'height', or the mesh.",
-        name, worst[4], gap.between[1], std::abs(worst[0]), worst[0] > 0 ? "above it" : "below it", worst[1],
-        worst[2], worst[3], 100 * near_enough, gap.opening);
-  }
-}
-
-/// Extends a box by the points of a patch. Collective.
-void extend(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points, Vec3& low,
-            Vec3& high) {
-  for (Index f = patch.first; f < patch.first + patch.count; ++f)
-    for (const Index v : mesh.face_points[f]) low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
-  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
-  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
-}
-
-/// Corners of faces on all ranks that intersect a box, as segments (2-D) or triangles. Collective.
-std::vector<double> corners_of(const mesh::Mesh& mesh, const mesh::Patch& patch, std::span<const Vec3> points,
-                               const Vec3& low, const Vec3& high) {
-  std::vector<double> mine;
-  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-    const auto v = mesh.face_points[f];
-    Vec3 least = points[v[0]], most = least;
-    for (const Index p : v) least = least.cwiseMin(points[p]), most = most.cwiseMax(points[p]);
-    if ((least.array() > high.array()).any() || (most.array() < low.array()).any()) continue;
-    const auto add = [&](std::initializer_list<std::size_t> corner) {
-      for (const std::size_t i : corner)
-        mine.insert(mine.end(), points[v[i]].data(), points[v[i]].data() + 3);
-    };
-    if (mesh.dim == 2) add({0, 1});
-    for (std::size_t i = 2; mesh.dim == 3 && i < v.size(); ++i) add({0, i - 1, i});
-  }
-  return parallel::all_gather(mesh.comm, mine);
-}
-
-bool inside(const Vec3& x, const Vec3& low, const Vec3& high) {
-  return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
-}
-
-}  // namespace
 
 template <int D>
 Gaps<D>::Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::span<const Vec3> points)

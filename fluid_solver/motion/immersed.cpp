@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/error.hpp"
 #include "common/fv/use.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -362,5 +363,29 @@ std::vector<std::pair<Vec<D>, Vec<D>>> ImmersedBodies<D>::forces(const Placement
 
 template class ImmersedBodies<2>;
 template class ImmersedBodies<3>;
+
+FluidParameters with_surfaces(FluidParameters parameters, bool moving) {
+  BodySurface all = BodySurface::automatic;
+  for (const auto& [name, body] : parameters.bodies) {
+    if (body.surface == BodySurface::automatic) continue;
+    if (all != BodySurface::automatic && body.surface != all)
+      throw Error("bodies.{}.surface: all bodies have the same kind of surface; choose steps or cut.", name);
+    all = body.surface;
+  }
+  if (all == BodySurface::automatic) all = moving ? BodySurface::cut : BodySurface::steps;
+  for (auto& [name, body] : parameters.bodies) body.surface = all;
+  return parameters;
+}
+
+template <int D>
+std::unique_ptr<Obstacles<D>> make_obstacles(const mesh::Mesh& mesh, const FluidParameters& parameters,
+                                             std::span<const Vec3> points_at_rest) {
+  if (!parameters.gaps.empty()) return std::make_unique<Gaps<D>>(mesh, parameters, points_at_rest);
+  if (!parameters.bodies.empty()) return std::make_unique<ImmersedBodies<D>>(mesh, parameters);
+  return std::make_unique<Obstacles<D>>(mesh);
+}
+
+template decltype(make_obstacles<2>) make_obstacles<2>;
+template decltype(make_obstacles<3>) make_obstacles<3>;
 
 }  // namespace couplet::fluid

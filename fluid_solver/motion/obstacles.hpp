@@ -224,4 +224,12 @@ class ImmersedBodies final : public Obstacles<D> {
   CutCells<D> shape_;          // `cut` only
 };
 
+/// Creates the obstacles of a case. Collective.
+template <int D>
+std::unique_ptr<Obstacles<D>> make_obstacles(const mesh::Mesh& mesh, const FluidParameters& parameters,
+                                             std::span<const Vec3> points_at_rest);
+
+/// Resolves `surface: auto` of bodies. Throws Error if two bodies differ.
+FluidParameters with_surfaces(FluidParameters parameters, bool moving);
+
 }  // namespace couplet::fluid

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/motion/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/fv/use.hpp"
 #include "common/io/probes/place_search.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/state/state.hpp"
@@ -19,13 +23,13 @@ RotatingFrame<D>::RotatingFrame(const RotationParameters& p)
     : speed_(p.speed, "rotating-frame.speed"),
       centre_(p.centre),
       axis_(D == 2 ? Vec3(Vec3::UnitZ()) : Vec3(p.axis.normalized())) {
+  fv::check_axis(p.axis, D, "rotating-frame.axis");
   if (speed_.uses_space()) throw Error("rotating-frame.speed: it may depend on t only.");
 }
 
 template <int D>
-void RotatingFrame<D>::add_force(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
-                                 const Vectors<D>& u_old, std::array<double, 2> factors,
-                                 Vectors<D>& force) const {
+void RotatingFrame<D>::add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
+                           const Vectors<D>& u_old, std::array<double, 2> factors, Vectors<D>& force) const {
   const Vec3 omega = speed(t + dt / 2) * axis_, change = (speed(t + dt) - speed(t)) / dt * axis_;
   for (std::size_t c = 0; c < places.size(); ++c) {
     Vec3 velocity = Vec3::Zero();
@@ -40,8 +44,162 @@ double RotatingFrame<D>::rate(double t, double dt) const {
   return 2 * std::max(std::abs(speed(t)), std::abs(speed(t + dt)));
 }
 
+template <int D>
+std::function<double(const Vec3&)> RotatingFrame<D>::potential(double t) const {
+  return [omega = Vec3(speed(t) * axis_), centre = centre_](const Vec3& x) {
+    return 0.5 * omega.cross(x - centre).squaredNorm();
+  };
+}
+
+template <int D>
+std::string RotatingFrame<D>::cause(double t, double dt, double volume, double nu) const {
+  // omega h^2/nu above which friction no longer stabilizes the wall layer (docs/theory/fluid-models.md).
+  constexpr double fast = 4;
+  const double beside_friction = 0.5 * rate(t, dt) * std::pow(volume, 2. / D) / nu;
+  if (!(beside_friction > fast)) return {};
+  return fmt::format(
+      "The frame rotates too fast for the friction: omega h^2/nu = {:.3g} in that cell (limit about "
+      "{:g}); the wall layer is not damped. A smaller step does not help; use finer cells, or a mesh that "
+      "rotates in a frame at rest ('motion').",
+      beside_friction, fast);
+}
+
 template class RotatingFrame<2>;
 template class RotatingFrame<3>;
+
+namespace {
+
+/// Force given by expressions. Uniform directions are gradients, and all of them if they depend on the place only and their integral
+/// from the origin to each cell agrees with that from cell to cell.
+template <int D>
+class GivenForce final : public Force<D> {
+ public:
+  /// `balances`: the pressure may balance gradients. It would differ between the two sides of periodic patches.
+  GivenForce(const mesh::Mesh& mesh, const std::vector<config::ExpressionText>& texts, bool balances)
+      : mesh_(mesh), force_(fv::make_expressions(texts, D, "body-force")) {
+    varies_ = balances && !parallel::any(mesh.comm, !mesh.neighbour_shift.empty()) &&
+              std::ranges::any_of(force_, &fv::Expression::uses_space) &&
+              std::ranges::none_of(force_, &fv::Expression::uses_time);
+    for (int c = 0; c < D; ++c) {
+      bool periodic = false;
+      for (const Vec3& shift : mesh.neighbour_shift) periodic |= std::abs(shift[c]) > 1e-12 * shift.norm();
+      periodic = parallel::any(mesh.comm, periodic);
+      const fv::Expression& force = force_[c];
+      balanced_[c] = balances && !periodic && !force.uses_space();
+      if (force.uses_space() || force.uses_time() || force(Vec3::Zero(), 0) == 0) continue;
+      fv::Use& use = fv::uses()["body-force"];  // a fluid that it holds at rest is loaded
+      use.given = "the constant force";
+      use.note(force(Vec3::Zero(), 0));
+    }
+  }
+
+  /// A force that is not finite somewhere between the cells has no potential.
+  void start(const Placement<D>& at) override {
+    Vec<D> moment = Vec<D>::Zero();
+    double volume = 0;
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+      moment += at.volume[c] * at.centre[c], volume += at.volume[c];
+    for (double& sum : moment) sum = parallel::sum(mesh_.comm, sum);
+    origin_.template head<D>() = moment / parallel::sum(mesh_.comm, volume);
+    if (!varies_) return;
+    const auto place = [&](Index c) {
+      Vec3 x = Vec3::Zero();
+      x.template head<D>() = at.centre[c];
+      return x;
+    };
+    double most[2] = {0, 0};  // of the difference, of the potential
+    try {
+      std::vector<double> potential(mesh_.cells.n_local());
+      for (Index c = 0; c < mesh_.cells.n_local(); ++c) {
+        potential[c] = work(origin_, place(c), 8);
+        most[1] = std::max(most[1], std::abs(potential[c]));
+      }
+      for (Index f = 0; f < mesh_.n_interior; ++f) {
+        const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+        most[0] = std::max(most[0], std::abs(potential[n] - potential[p] - work(place(p), place(n), 1)));
+      }
+    } catch (const Error&) {
+      most[0] = std::numeric_limits<double>::infinity();
+    }
+    MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, mesh_.comm);
+    varies_ = most[0] <= 1e-9 * most[1];
+    if (varies_) balanced_.fill(true);
+  }
+
+  bool acts() const override { return !std::ranges::all_of(balanced_, std::identity()); }
+  void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>&, const Vectors<D>&,
+           std::array<double, 2>, Vectors<D>& force) const override {
+    std::vector<double> values(places.size());
+    for (int c = 0; c < D; ++c) {
+      if (balanced_[c]) continue;
+      force_[c].evaluate(places, t + dt / 2, values);
+      for (std::size_t i = 0; i < values.size(); ++i) force[i][c] += values[i];
+    }
+  }
+  std::function<double(const Vec3&)> potential(double t) const override {
+    if (std::ranges::none_of(balanced_, std::identity())) return {};
+    if (varies_) return [this](const Vec3& x) { return work(origin_, x, 8); };
+    Vec3 force = Vec3::Zero();
+    for (int c = 0; c < D; ++c)
+      if (balanced_[c]) force[c] = force_[c](Vec3::Zero(), t);
+    return [force, origin = origin_](const Vec3& x) { return force.dot(x - origin); };
+  }
+
+ private:
+  /// Integral of a force that varies along a line [m^2/s^2], by Lobatto's rule of order 8 on each of its parts.
+  double work(const Vec3& from, const Vec3& to, int parts) const {
+    const Vec3 part = (to - from) / parts;
+    const double off = 0.5 * std::sqrt(3. / 7);
+    double sum = 0;
+    for (int k = 0; k < parts; ++k)
+      for (const auto& [at, weight] : {std::pair{0., 1. / 20},
+                                       {0.5 - off, 49. / 180},
+                                       {0.5, 16. / 45},
+                                       {0.5 + off, 49. / 180},
+                                       {1., 1. / 20}})
+        for (int c = 0; c < D; ++c)
+          if (part[c] != 0) sum += weight * part[c] * force_[c](from + (k + at) * part, 0);
+    return sum;
+  }
+
+  const mesh::Mesh& mesh_;
+  std::vector<fv::Expression> force_;  // by direction [m/s^2]
+  std::array<bool, D> balanced_{};     // directions in which it is a gradient
+  bool varies_ = false;                // it depends on the place and is a gradient
+  Vec3 origin_ = Vec3::Zero();         // where the potential is 0
+};
+
+// Largest relative motion of the sides of periodic patches, over their distance.
+constexpr double most_torn = 1e-8;
+
+/// Rejects inverted cells, whatever moved the points.
+template <int D>
+void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
+  bool inverted = false;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) inverted |= !(at.volume[c] > 0);
+  if (!parallel::any(mesh.comm, inverted)) return;
+  const LargestCell worst = find_largest(mesh, at, [&](Index c) { return -at.volume[c]; });
+  throw SolveFailure(
+      "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
+      time, worst.place.x(), worst.place.y(), worst.place.z(), -worst.value);
+}
+
+}  // namespace
+
+/// Compressed fluid has a density that follows p itself; and blocked cells, cut ones and convective outlets see the pressure as it is.
+template <int D>
+std::vector<std::unique_ptr<Force<D>>> make_forces(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                                                   const FluidParameters& p) {
+  std::vector<std::unique_ptr<Force<D>>> forces;
+  const bool balances =
+      p.bodies.empty() && p.gaps.empty() && !p.is_compressible() && !boundary.has_convective_outlet();
+  if (p.rotating_frame) forces.push_back(std::make_unique<RotatingFrame<D>>(*p.rotating_frame));
+  if (!p.body_force.empty()) forces.push_back(std::make_unique<GivenForce<D>>(mesh, p.body_force, balances));
+  return forces;
+}
+
+template decltype(make_forces<2>) make_forces<2>;
+template decltype(make_forces<3>) make_forces<3>;
 
 /// 2-D: e_z x (u_1 - u_0) for a face of unit depth with edges along z at corner 0 (left) and 1 (right), see
 /// Mesh.
@@ -134,25 +292,6 @@ template void set_face_means<2>(const mesh::Mesh&, const mesh::Patch&, std::span
 template void set_face_means<3>(const mesh::Mesh&, const mesh::Patch&, std::span<const Vec3>, Vectors<3>&);
 template decltype(set_body_start<2>) set_body_start<2>;
 template decltype(set_body_start<3>) set_body_start<3>;
-
-namespace {
-
-// Largest relative motion of the sides of periodic patches, over their distance.
-constexpr double most_torn = 1e-8;
-
-/// Rejects inverted cells, whatever moved the points.
-template <int D>
-void refuse_inverted(const mesh::Mesh& mesh, const Placement<D>& at, double time) {
-  bool inverted = false;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) inverted |= !(at.volume[c] > 0);
-  if (!parallel::any(mesh.comm, inverted)) return;
-  const LargestCell worst = find_largest(mesh, at, [&](Index c) { return -at.volume[c]; });
-  throw SolveFailure(
-      "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
-      time, worst.place.x(), worst.place.y(), worst.place.z(), -worst.value);
-}
-
-}  // namespace
 
 template <int D>
 MeshPath<D>::MeshPath(const mesh::Mesh& mesh, const mesh::Geometry& geometry,

@@ -20,27 +20,52 @@
 
 namespace couplet::fluid {
 
+/// Force on all of the fluid, per mass [m/s^2]. The pressure balances the part of it that is a gradient: the equation solves for
+/// p - rho potential, so that no mesh sets a fluid at rest in motion. Boundaries, walls and files use p.
+template <int D>
+class Force {
+ public:
+  virtual ~Force() = default;
+  /// Called once with the mesh at the start. Collective.
+  virtual void start(const Placement<D>&) {}
+  /// True if a part of it is no gradient.
+  virtual bool acts() const = 0;
+  /// Adds the mean of that part over the step from t to t + dt. `u`, `u_old`: velocity at t and one step before, extrapolated to
+  /// mid-step by the factors (u_old is not read if its factor is 0).
+  virtual void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
+                   const Vectors<D>& u_old, std::array<double, 2> factors, Vectors<D>& force) const = 0;
+  /// Returns the potential at time t, a function of the place [m^2/s^2]; empty if no part is a gradient.
+  virtual std::function<double(const Vec3&)> potential(double t) const = 0;
+  /// Largest rate of the force over the velocity at the two ends of a step [1/s].
+  virtual double rate(double, double) const { return 0; }
+  /// Likely cause of a failed step in a cell of this volume, as a sentence; empty if it is another.
+  virtual std::string cause(double /*t*/, double /*dt*/, double /*volume*/, double /*nu*/) const {
+    return {};
+  }
+};
+
+/// Creates the forces of a case. Throws Error for invalid expressions and axes. Collective.
+template <int D>
+std::vector<std::unique_ptr<Force<D>>> make_forces(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                                                   const FluidParameters& parameters);
+
 /// Frame rotating with omega(t) about an axis through c, in which the mesh and the velocities are described.
 /// Forces per mass in it [m/s^2] (Batchelor 1967, (3.2.10)):
 ///   -2 omega x u  (Coriolis)  - d omega/dt x (x - c)  (Euler)  + grad |omega x (x - c)|^2 / 2  (centrifugal)
-/// The pressure balances the centrifugal force, which is a gradient. The equation solves for p - rho |omega x
-/// (x - c)|^2 / 2, so that no mesh sets a fluid at rest in motion. Boundaries, walls and files use p.
+/// d omega/dt is the change over the step, so a frame that jumps to its speed accelerates the fluid.
 template <int D>
-class RotatingFrame {
+class RotatingFrame final : public Force<D> {
  public:
   /// Throws Error if the speed cannot be parsed or depends on position.
   explicit RotatingFrame(const RotationParameters& parameters);
 
-  /// Adds the mean Coriolis and Euler forces over the step from t to t + dt to `force`. `u`, `u_old`: velocity
-  /// at t and one step before, extrapolated to mid-step by the factors (u_old is not read if its factor is 0). d
-  /// omega/dt is the change over the step, so a frame that jumps to its speed accelerates the fluid.
-  void add_force(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
-                 const Vectors<D>& u_old, std::array<double, 2> factors, Vectors<D>& force) const;
-  /// Returns the vector of the angular velocity at time t [rad/s].
-  Vec3 omega(double t) const { return speed(t) * axis_; }
-  const Vec3& centre() const { return centre_; }
-  /// |2 omega|, the larger rate of the Coriolis force at the two ends of a step [1/s].
-  double rate(double t, double dt) const;
+  bool acts() const override { return true; }
+  void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u, const Vectors<D>& u_old,
+           std::array<double, 2> factors, Vectors<D>& force) const override;
+  std::function<double(const Vec3&)> potential(double t) const override;
+  /// |2 omega|, the rate of the Coriolis force.
+  double rate(double t, double dt) const override;
+  std::string cause(double t, double dt, double volume, double nu) const override;
 
  private:
   double speed(double t) const { return speed_(Vec3::Zero(), t); }
@@ -171,14 +196,8 @@ struct Scene {
   const Boundary<D>& boundary;
   const FluidParameters& parameters;
   Properties fluid;
-  bool oblique = false;                      ///< the non-orthogonal parts are needed
-  std::optional<RotatingFrame<D>> frame{};   ///< empty if there is none
-  std::vector<fv::Expression> body_force{};  ///< by direction [m/s^2]; empty if there is none
-  /// Directions in which the body force is a gradient, which the pressure balances like the centrifugal force of a frame (see
-  /// RotatingFrame): no mesh makes a flow of a fluid at rest. Uniform directions are, and all of them if `varies`.
-  std::array<bool, D> balanced{};
-  bool varies = false;                       ///< the balanced force depends on the place, not on time
-  Vec3 origin = Vec3::Zero();                ///< where the potential of the body force is 0
+  bool oblique = false;  ///< the non-orthogonal parts are needed
+  std::vector<std::unique_ptr<Force<D>>> forces{};
   std::unique_ptr<FourthOrder<D>> fourth{};  ///< nullptr means second order everywhere
   /// Each step marks their cells.
   std::unique_ptr<Obstacles<D>> obstacles = std::make_unique<Obstacles<D>>(mesh);
@@ -195,38 +214,23 @@ struct Scene {
     return fourth ? fourth->flux_velocity(at, u) : u;
   }
   bool is_compressible() const { return fluid.sound > 0; }
-  bool has_potential() const { return frame || std::ranges::any_of(balanced, std::identity()); }
-  /// Returns the potential at time t, a function of the place [m^2/s^2]: all forces per mass that are gradients are its
-  /// gradient. The pressure equation solves for p - rho potential.
-  auto potential(double t) const {
-    Vec3 force = Vec3::Zero();
-    for (int c = 0; c < D; ++c)
-      if (balanced[c]) force[c] = body_force[c](Vec3::Zero(), t);
-    const Vec3 omega = frame ? frame->omega(t) : Vec3(Vec3::Zero()),
-               centre = frame ? frame->centre() : origin;
-    return [this, force, omega, centre](const Vec3& x) {
-      return 0.5 * omega.cross(x - centre).squaredNorm() +
-             (varies ? work(origin, x, 8) : force.dot(x - origin));
+  /// Returns the potential of all forces at time t, a function of the place [m^2/s^2]; empty if there is none. The pressure
+  /// equation solves for p - rho potential.
+  std::function<double(const Vec3&)> potential(double t) const {
+    std::vector<std::function<double(const Vec3&)>> parts;
+    for (const auto& force : forces)
+      if (auto part = force->potential(t)) parts.push_back(std::move(part));
+    if (parts.empty()) return {};
+    return [parts](const Vec3& x) {
+      double sum = 0;
+      for (const auto& part : parts) sum += part(x);
+      return sum;
     };
-  }
-  /// Integral of a balanced force that varies along a line [m^2/s^2], by Lobatto's rule of order 8 on each of its parts.
-  double work(const Vec3& from, const Vec3& to, int parts) const {
-    const Vec3 part = (to - from) / parts;
-    const double off = 0.5 * std::sqrt(3. / 7);
-    double sum = 0;
-    for (int k = 0; k < parts; ++k)
-      for (const auto& [at, weight] : {std::pair{0., 1. / 20},
-                                       {0.5 - off, 49. / 180},
-                                       {0.5, 16. / 45},
-                                       {0.5 + off, 49. / 180},
-                                       {1., 1. / 20}})
-        for (int c = 0; c < D; ++c)
-          if (part[c] != 0) sum += weight * part[c] * body_force[c](from + (k + at) * part, 0);
-    return sum;
   }
   /// Adds `factor` times the potential at the level's time, in the cells and at the boundary.
   void add_potential(const Placement<D>& at, double factor, PressureLevel<D>& level) const {
     const auto psi = potential(level.time);
+    if (!psi) return;
     Vec3 x = Vec3::Zero();
     for (std::size_t c = 0; c < level.p.size(); ++c) {
       x.template head<D>() = at.centre[c];

@@ -143,7 +143,7 @@ const auto& condition_table() {
   const auto without_friction = [](const BoundaryParameters&) { return FaceRow{.slip_length = no_friction}; };
   static const std::array table{
       // Inflow with a prescribed velocity. For a compressible fluid it may let pressure waves out
-      // (pressure/absorbing) or have an upstream volume (pressure/upstream_volume).
+      // or have a volume or line upstream (pressure/compressible_terms).
       Entry{BoundaryType::inlet,
             {.name = "inlet",
              .about = "inlet: prescribed velocity",
@@ -200,7 +200,7 @@ const auto& condition_table() {
              .velocity = GivenBy::nobody,
              .joined = true}},
       // Wall that moves with the structure. If its mass is known, the pressure equation includes its response
-      // as a Robin condition: pressure/yielding_walls.
+      // as a Robin condition: pressure/wall_terms.
       Entry{BoundaryType::interface,
             {.name = "interface",
              .about = "interface: wall that moves with the structure",

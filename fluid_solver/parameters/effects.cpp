@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/parameters/effects.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 
 #include <fmt/format.h>
 
@@ -92,15 +92,14 @@ const std::array cards{
               "a flag per cell and face"},
     FluidCard{"gaps that close", "`gaps`",
               [](const S& s) { return when(!s.parameters.gaps.empty(), "gaps"); },
-              "a flag per cell; the distance of the two walls where they are close",
-              "share of the cells that they block, 0.5", true},
+              "a flag per cell; the distance of the two walls where they are close"},
     FluidCard{"walls that move along themselves", "`type: moving-wall`",
               [](const S& s) {
                 for (const auto& [name, b] : s.parameters.boundaries)
                   if (is_moving_wall(b)) return "boundaries." + name;
                 return std::string();
               },
-              "", "on a mesh at rest: flow through them over speed times area, 0.1", true},
+              ""},
     FluidCard{"body force", "`body-force`",
               [](const S& s) { return when(!s.parameters.body_force.empty(), "body-force"); },
               "a force per cell"},
@@ -135,12 +134,6 @@ const std::array cards{
               "energy.csv, work of the step summed over the faces"},
 };
 
-}  // namespace
-
-std::span<const FluidCard> fluid_effect_cards() { return cards; }
-
-namespace {
-
 constexpr double slow_waves = 0.3;  // of the audit: travel time of sound over 1/omega
 constexpr int most_samples = 2000, places = 4;
 
@@ -159,32 +152,6 @@ double rate_of(const config::ExpressionText& text, const Vec3& at, double end, d
   const double variance = square - sum * sum / (n + 1);
   return variance > 1e-9 * square ? std::sqrt(changes / variance) : 0;
 }
-
-}  // namespace
-
-double prescribed_rate(const FluidParameters& p, const PlacesOfPatch& places_of, double end, double step) {
-  double rate = 0;
-  const auto add = [&](const std::string& patch, const std::vector<config::ExpressionText>& texts) {
-    for (const PlaceOfPatch& place : places_of(patch))
-      for (std::size_t k = 0; k < texts.size(); ++k)
-        if (texts.size() == 1 || std::abs(place.normal[Index(k)]) > 1e-6)
-          rate = std::max(rate, rate_of(texts[k], place.at, end, step));
-  };
-  for (const auto& [name, b] : p.boundaries) {
-    const bool inlet = condition_of(b).passage == Passage::in;
-    if (inlet) add(name, b.velocity);
-    if (inlet && b.mean_speed) add(name, {*b.mean_speed});
-    if (gives_pressure(b)) add(name, {b.pressure});
-  }
-  if (p.motion) {
-    add("", p.motion->translation);
-    add("", p.motion->displacement);
-    add("", {p.motion->angle});
-  }
-  return rate;
-}
-
-namespace {
 
 /// Decides about pressure waves. They are computed if sound takes longer across the mesh than 0.3/omega of
 /// boundaries and motions, if gaps cut off an inlet, or if an interface moves in a fluid without an outlet.
@@ -305,6 +272,30 @@ diagnostics::EffectChoice mesh_motion(const FluidParameters& p, const diagnostic
 }
 
 }  // namespace
+
+std::span<const FluidCard> fluid_effect_cards() { return cards; }
+
+double prescribed_rate(const FluidParameters& p, const PlacesOfPatch& places_of, double end, double step) {
+  double rate = 0;
+  const auto add = [&](const std::string& patch, const std::vector<config::ExpressionText>& texts) {
+    for (const PlaceOfPatch& place : places_of(patch))
+      for (std::size_t k = 0; k < texts.size(); ++k)
+        if (texts.size() == 1 || std::abs(place.normal[Index(k)]) > 1e-6)
+          rate = std::max(rate, rate_of(texts[k], place.at, end, step));
+  };
+  for (const auto& [name, b] : p.boundaries) {
+    const bool inlet = condition_of(b).passage == Passage::in;
+    if (inlet) add(name, b.velocity);
+    if (inlet && b.mean_speed) add(name, {*b.mean_speed});
+    if (gives_pressure(b)) add(name, {b.pressure});
+  }
+  if (p.motion) {
+    add("", p.motion->translation);
+    add("", p.motion->displacement);
+    add("", {p.motion->angle});
+  }
+  return rate;
+}
 
 std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& p, const mesh::MeshFacts& mesh,
                                                       const diagnostics::CaseScene& scene) {

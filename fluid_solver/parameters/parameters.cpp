@@ -27,14 +27,6 @@ constexpr GradientField fields[] = {
      "field of the shear rate (2 S:S)^(1/2), S the strain rate [1/s]: |du/dy| in a shear flow", false,
      [](const Tensor3& g) { return Vec3((g + g.transpose()).norm() / std::sqrt(2.0), 0, 0); }}};
 
-}  // namespace
-
-std::span<const GradientField> gradient_fields() { return fields; }
-
-// Keys of the section `output`.
-
-namespace {
-
 void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   s.value("patches", c.patches).required().doc("walls whose forces are summed");
   s.value("speed", c.speed)
@@ -100,53 +92,6 @@ void declare_sample(config::Section& s, SampleParameters& p) {
   s.variant("type", p.type, {{"line", Type::line, line}, {"plane", Type::plane, plane}},
             "line: points from one end to the other; plane: a grid of points", true);
 }
-
-}  // namespace
-
-void declare_output(config::Section& s, FluidOutputParameters& p) {
-  for (const GradientField& field : gradient_fields())
-    s.value(field.name, p.gradient_fields[field.name]).doc(field.meaning);
-  s.value("walls", p.walls)
-      .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
-  s.value("fluxes", p.fluxes)
-      .doc(
-          "fluxes.csv: volume and momentum that pass through each patch out of the fluid (a load is a flux of momentum), mean "
-          "pressure");
-  s.value("surfaces", p.surfaces)
-      .doc(
-          "patches, or [all]: surface-<patch>.xdmf with pressure, traction, wall shear, y+ at walls, and Cp at walls that "
-          "'coefficients' names, at each output");
-  s.map<CoefficientParameters>(
-      "coefficients", p.coefficients, declare_coefficients, "name",
-      "coefficients.csv: force and moment coefficients of some walls, means over the step");
-  s.map<FlowAreaParameters>(
-      "flow-areas", p.flow_areas,
-      [](config::Section& area, FlowAreaParameters& a) {
-        area.value("from", a.from).required().doc("patch where the flow enters");
-        area.value("to", a.to).required().doc("patch where it leaves");
-        area.check([&a] { return a.from == a.to ? "'from' and 'to' are the same patch" : ""; }, "to");
-      },
-      "name",
-      "flow-areas.csv: effective flow area between two patches, m/sqrt(2 rho (p_from - p_to)) with the mass flow m and mean "
-      "pressures");
-  s.map<SampleParameters>(
-      "samples", p.samples, declare_sample, "name",
-      "sample-<name>.csv: velocity and pressure (with 'statistics' their means and rms) on a line or plane "
-      "at each output; the points move with the mesh, and points outside it are omitted");
-  s.value("energy-budget", p.energy_budget)
-      .doc(
-          "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "
-          "it");
-}
-
-std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
-  std::map<std::string, std::string> partner_of;
-  for (const auto& [name, b] : parameters.boundaries)
-    if (condition_of(b).joined) partner_of[name] = b.partner;
-  return mesh::periodic_pairs(partner_of);
-}
-
-namespace {
 
 void declare_gap(config::Section& s, GapParameters& gap) {
   s.value("between", gap.between).required().doc("the two walls (patches), a valve and its seat");
@@ -432,6 +377,53 @@ void declare_written(config::Section& s, FluidParameters& p) {
 }
 
 }  // namespace
+
+std::span<const GradientField> gradient_fields() { return fields; }
+
+// Keys of the section `output`.
+
+void declare_output(config::Section& s, FluidOutputParameters& p) {
+  for (const GradientField& field : gradient_fields())
+    s.value(field.name, p.gradient_fields[field.name]).doc(field.meaning);
+  s.value("walls", p.walls)
+      .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
+  s.value("fluxes", p.fluxes)
+      .doc(
+          "fluxes.csv: volume and momentum that pass through each patch out of the fluid (a load is a flux of momentum), mean "
+          "pressure");
+  s.value("surfaces", p.surfaces)
+      .doc(
+          "patches, or [all]: surface-<patch>.xdmf with pressure, traction, wall shear, y+ at walls, and Cp at walls that "
+          "'coefficients' names, at each output");
+  s.map<CoefficientParameters>(
+      "coefficients", p.coefficients, declare_coefficients, "name",
+      "coefficients.csv: force and moment coefficients of some walls, means over the step");
+  s.map<FlowAreaParameters>(
+      "flow-areas", p.flow_areas,
+      [](config::Section& area, FlowAreaParameters& a) {
+        area.value("from", a.from).required().doc("patch where the flow enters");
+        area.value("to", a.to).required().doc("patch where it leaves");
+        area.check([&a] { return a.from == a.to ? "'from' and 'to' are the same patch" : ""; }, "to");
+      },
+      "name",
+      "flow-areas.csv: effective flow area between two patches, m/sqrt(2 rho (p_from - p_to)) with the mass flow m and mean "
+      "pressures");
+  s.map<SampleParameters>(
+      "samples", p.samples, declare_sample, "name",
+      "sample-<name>.csv: velocity and pressure (with 'statistics' their means and rms) on a line or plane "
+      "at each output; the points move with the mesh, and points outside it are omitted");
+  s.value("energy-budget", p.energy_budget)
+      .doc(
+          "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "
+          "it");
+}
+
+std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
+  std::map<std::string, std::string> partner_of;
+  for (const auto& [name, b] : parameters.boundaries)
+    if (condition_of(b).joined) partner_of[name] = b.partner;
+  return mesh::periodic_pairs(partner_of);
+}
 
 void declare(config::Section& s, FluidParameters& p) {
   declare_scene(s, p);

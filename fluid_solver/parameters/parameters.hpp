@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -11,8 +12,10 @@
 
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
+#include "common/diagnostics/effects.hpp"
 #include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 
 namespace couplet::fluid {
 
@@ -118,6 +121,14 @@ void declare_rotation(config::Section& section, RotationParameters& rotation);
 /// Time scheme of the pressure waves of a weakly compressible fluid.
 enum class WaveScheme { none, three_level, trapezoidal };
 
+/// Tube behind the inlets that is not meshed.
+struct UpstreamLineParameters {
+  enum class End { closed, open, absorbing };
+  double length = 0, area = 0;  // [m], [m^2]
+  End end = End::closed;
+  double pressure = 0;  // [Pa], at an open end or of the wave that comes from an absorbing one
+};
+
 /// Compressibility of a fluid. With `none`, it is only used to check that neglecting it was justified.
 struct CompressibilityParameters {
   WaveScheme scheme = WaveScheme::three_level;
@@ -128,6 +139,11 @@ struct CompressibilityParameters {
   std::optional<double> pressure;        // [Pa], absolute; with the density: c^2 = gamma p / rho
   std::optional<double> heat_capacity_ratio;
   double upstream_volume = 0;  // [m^3], before the inlets, not in the mesh
+  std::optional<UpstreamLineParameters> upstream_line;
+  /// Volume of the fluid that is not meshed [m^3].
+  double unmeshed() const {
+    return upstream_volume + (upstream_line ? upstream_line->length * upstream_line->area : 0);
+  }
   bool is_solved() const { return scheme != WaveScheme::none; }
 };
 void declare(config::Section& section, CompressibilityParameters& parameters);
@@ -293,5 +309,35 @@ struct GradientField {
 };
 /// All such fields.
 std::span<const GradientField> gradient_fields();
+
+/// Input of the effect cards: the parameters, and the facts about the job around the fluid.
+struct FluidScene {
+  FluidParameters parameters;
+  bool moving_mesh = false;  ///< the job has a mesh mover
+  bool coupled = false;
+};
+
+using FluidCard = diagnostics::EffectEntry<FluidScene>;
+std::span<const FluidCard> fluid_effect_cards();
+
+/// A place of a patch at which its expressions are looked at. Velocities along the face carry no volume through it.
+struct PlaceOfPatch {
+  Vec3 at, normal = Vec3::Ones();
+};
+/// Places of a patch, or of the mesh for an empty name.
+using PlacesOfPatch = std::function<std::vector<PlaceOfPatch>(const std::string&)>;
+/// Largest rate of what boundaries and motions prescribe until the time `end` [1/s].
+double prescribed_rate(const FluidParameters& parameters, const PlacesOfPatch& places_of, double end,
+                       double step);
+
+/// Resolves `effects: auto` of a fluid: its dimension, laminar flow or LES, the viscous scheme, pressure
+/// waves, and mesh motion. The speed is the largest one in boundaries, profiles and the initial state. The
+/// Reynolds number uses the smallest side of the mesh's bounding box.
+std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& parameters,
+                                                      const mesh::MeshFacts& mesh,
+                                                      const diagnostics::CaseScene& scene);
+
+/// Estimates the cost from configs/cavity and taylor-green-3d on one rank.
+diagnostics::ExpectedCost expected_cost(const FluidParameters& parameters, const mesh::MeshFacts& mesh);
 
 }  // namespace couplet::fluid

@@ -71,17 +71,6 @@ Sound of_gas(double density, double pressure, std::optional<double> gamma) {
           fmt::format("a gas of {:.3g} kg/m^3 at {:.4g} kPa", density, 1e-3 * pressure)};
 }
 
-}  // namespace
-
-std::vector<std::string> substances() {
-  std::vector<std::string> names;
-  for (const Gas& gas : gases) names.push_back(gas.name);
-  for (const Liquid& liquid : liquids) names.push_back(liquid.name);
-  return names;
-}
-
-namespace {
-
 /// Requires exactly one of speed, substance and pressure.
 void check_source_of_sound(config::Section& s, const CompressibilityParameters& p) {
   s.check(
@@ -106,6 +95,13 @@ void check_source_of_sound(config::Section& s, const CompressibilityParameters& 
 }
 
 }  // namespace
+
+std::vector<std::string> substances() {
+  std::vector<std::string> names;
+  for (const Gas& gas : gases) names.push_back(gas.name);
+  for (const Liquid& liquid : liquids) names.push_back(liquid.name);
+  return names;
+}
 
 void declare(config::Section& s, CompressibilityParameters& p) {
   s.choice("scheme", p.scheme,
@@ -155,6 +151,41 @@ void declare(config::Section& s, CompressibilityParameters& p) {
           "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder), into which flows what the "
           "inlets prescribe; the pressure at the inlets compresses it. In 2-D per meter of depth; for a symmetric half "
           "the volume behind that half");
+  s.optional_section<UpstreamLineParameters>(
+      "upstream-line", p.upstream_line,
+      [](config::Section& l, UpstreamLineParameters& line) {
+        using End = UpstreamLineParameters::End;
+        l.value("length", line.length)
+            .required()
+            .unit("m")
+            .plausible(1e-6, 1e5)
+            .positive()
+            .doc("length of the tube");
+        l.value("area", line.area)
+            .required()
+            .unit("m^2")
+            .plausible(1e-12, 1e4)
+            .positive()
+            .doc(
+                "cross-section of the tube; in 2-D per meter of depth, for a symmetric half that behind this half. Waves are "
+                "partly reflected at the inlets if these have another area");
+        l.choice("end", line.end,
+                 {{"closed", End::closed}, {"open", End::open}, {"absorbing", End::absorbing}})
+            .doc(
+                "far end of the tube. closed: there flows in what the inlets prescribe. open: a reservoir at 'pressure'; "
+                "what the inlets prescribe is only the start. absorbing: the tube goes on, and a wave of 'pressure' and "
+                "of the flow that the inlets prescribe comes through it");
+        l.value("pressure", line.pressure).unit("Pa").plausible(1e-6, 1e9).doc("pressure at the far end");
+      },
+      "tube upstream of the inlets that is not meshed, without friction, in which waves travel at the speed of "
+      "sound; instead of 'upstream-volume'");
+  s.check(
+      [&p] {
+        return p.upstream_line && p.upstream_volume > 0
+                   ? "give only one of 'upstream-volume' and 'upstream-line'"
+                   : "";
+      },
+      "upstream-line");
   check_source_of_sound(s, p);
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/pressure/pressure.hpp"
+#include "fluid_solver/pressure/upstream_line.hpp"
 
 namespace couplet::fluid {
 
@@ -35,6 +36,7 @@ class Compression final : public Term<D> {
     for (Index c = 0; c < owned; ++c) storage_[c] = factor * step_.to->volume[c];
     scene_.obstacles->clear(storage_);
   }
+  bool keeps_pressure() const override { return true; }
   bool sets_level() const override { return rate_ > 0; }
   double version() const override { return (rate_ > 0 ? rate_ : -1) / step_.dt; }
   void add_to_diagonal(Diagonal& diagonal) override {
@@ -105,36 +107,36 @@ constexpr double response_tolerance = 1e-10;
 constexpr double least_answer = 1e-9;
 
 /// Volume V_0 at rest behind the inlets at one pressure: dp/dt = rho c^2 (q - q_out)/V_0 with prescribed
-/// inflow q and flow q_out into the mesh. Its pressure is that of the inlet faces. It is solved together with
-/// the cells by the same time rule: with A y = G for the conductance G of its faces, A p = b + G p_0 gives
+/// inflow q and flow q_out into the mesh, or an UpstreamLine. Its pressure is that of the inlet faces:
+///   rate p + past = stiffness (q - q_out),   of a line without q
+/// It is solved together with the cells: with A y = G for the conductance G of its faces, A p = b + G p_0 gives
 /// G.p = y.(b + G p_0) before p is known, because A is symmetric.
 template <int D>
-class UpstreamVolume final : public Term<D> {
+class Upstream final : public Term<D> {
  public:
-  UpstreamVolume(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+  Upstream(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
       : Term<D>(scene, step, prediction),
-        trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal),
-        stiffness_(scene.fluid.rho * scene.fluid.sound * scene.fluid.sound /
-                   scene.parameters.compressibility->upstream_volume) {}
+        trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal) {
+    const CompressibilityParameters& p = *scene.parameters.compressibility;
+    if (p.upstream_line) line_.emplace(*p.upstream_line, scene.fluid.rho, scene.fluid.sound);
+    stiffness_ = line_ ? 0 : scene.fluid.rho * scene.fluid.sound * scene.fluid.sound / p.upstream_volume;
+  }
 
   void prepare(const State<D>& from) override {
     rate_ = wave_rate(step_, trapezoidal_);
     past_ = pressure_ = 0;
+    weight_ = middle_weights(step_.dt, step_.by.dt_old);
+    if (line_) stiffness_ = 1;  // without an earlier pressure the flow is the given one
     if (!(rate_ > 0)) return;
     pressure_ = step_.by.pressure[0]->upstream;
+    if (line_) return set_line(from);
     if (!trapezoidal_) {
       const WaveRule rule = wave_rule(step_);
       for (std::size_t k = 0; k < rule.past.size(); ++k)
         if (rule.past[k] != 0) past_ += rule.past[k] * step_.by.pressure[k]->upstream;
       return;
     }
-    double flux = 0;
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      for (Index b = first; b < first + count; ++b) {
-        const Index f = mesh_.n_interior + b;
-        flux += from.phi[f] - from.w[b].dot(from.placement->area[f]);
-      }
-    past_ = -rate_ * begin() - stiffness_ * parallel::sum(mesh_.comm, flux);
+    past_ = -rate_ * begin() - stiffness_ * (given(*from.placement, from.w) - flow(from.phi));
   }
   double version() const override { return 1; }
   /// Solves for y.
@@ -163,11 +165,12 @@ class UpstreamVolume final : public Term<D> {
   void before(Projected<D>& out, RightSide& side) override {
     const Placement<D>& at = *step_.to;
     const double factor = step_.dt / scene_.fluid.rho;
+    const bool relative = !line_ || rate_ == 0;
     double flux = 0;  // into the volume, but for what its pressure drives
     for (const auto& [first, count] : scene_.boundary.upstream_patches())
       for (Index b = first; b < first + count; ++b) {
         const Index f = mesh_.n_interior + b;
-        flux += out.phi[f] - out.w[b].dot(at.area[f]);
+        flux += out.phi[f] - (relative ? out.w[b].dot(at.area[f]) : 0);
       }
     for (std::size_t c = 0; c < side.b.size(); ++c) flux += factor * response_[c] * side.b[c];
     flux = parallel::sum(mesh_.comm, flux);
@@ -190,6 +193,16 @@ class UpstreamVolume final : public Term<D> {
   void complete(PressureLevel<D>& level) const override {
     level.upstream = pressure_;
     if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
+  }
+  /// Continues the past of the line.
+  void commit(const Projected<D>& out, State<D>& s) const override {
+    if (!line_) return;
+    const double last = given(*s.placement, s.w), next = given(*step_.to, out.w), now = flow(out.phi);
+    std::vector<LineRow> past = past_of(s);
+    const double middle = weight_[0] * now + from_past(past);
+    past.push_back({step_.middle(), line_->wave_out(pressure_, middle), 0.5 * (last + next), now});
+    line_->forget(past, step_.middle());
+    s.openings.line = std::move(past);
   }
   /// Uses the pressure of its faces.
   void start(const Placement<D>& at, PressureLevel<D>& level) const override {
@@ -218,35 +231,46 @@ class UpstreamVolume final : public Term<D> {
     const PressureLevel<D>& level = *step_.by.pressure[0];
     return level.end.empty() ? level.upstream : level.upstream_end;
   }
+  /// Flow into the mesh by the fluxes of its faces. Collective.
+  double flow(const std::vector<double>& phi) const {
+    double sum = 0;
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      for (Index f = mesh_.n_interior + first; f < mesh_.n_interior + first + count; ++f) sum -= phi[f];
+    return parallel::sum(mesh_.comm, sum);
+  }
+  /// Flow that the inlets prescribe. Collective.
+  double given(const Placement<D>& at, const Vectors<D>& w) const {
+    double sum = 0;
+    for (const auto& [first, count] : scene_.boundary.upstream_patches())
+      for (Index b = first; b < first + count; ++b) sum -= w[b].dot(at.area[mesh_.n_interior + b]);
+    return parallel::sum(mesh_.comm, sum);
+  }
+  /// Past of the line, of which the first step has only its beginning. Collective.
+  std::vector<LineRow> past_of(const State<D>& s) const {
+    if (!s.openings.line.empty()) return s.openings.line;
+    const double p = step_.by.pressure[0] ? step_.by.pressure[0]->upstream : pressure_, now = flow(s.phi);
+    return {{step_.begin(), line_->wave_out(p, now), given(*s.placement, s.w), now}};
+  }
+  /// Part of t^n and t^{n-1} in the flow at t^{n+1/2}.
+  double from_past(const std::vector<LineRow>& past) const {
+    return weight_[1] * past.back().flow + weight_[2] * past[past.size() > 1 ? past.size() - 2 : 0].flow;
+  }
+  /// p + Z Q = f at t^{n+1/2}, with Q by middle_weights().
+  void set_line(const State<D>& from) {
+    const std::vector<LineRow> past = past_of(from);
+    rate_ = 1;
+    stiffness_ = line_->impedance() * weight_[0];
+    past_ = line_->impedance() * from_past(past) - line_->wave_in(past, step_.middle());
+  }
 
   bool trapezoidal_;
-  double stiffness_;  // rho c^2/V_0 [Pa/m^3]
+  std::optional<UpstreamLine> line_;
+  std::array<double, 3> weight_{1, 0, 0};  // of the line's flow at t^{n+1}, t^n, t^{n-1}
+  double stiffness_ = 0;                   // rho c^2/V_0 [Pa/m^3], or that of the line
   double rate_ = 0, past_ = 0, pressure_ = 0;
   std::vector<double> response_, accepted_;  // y per local cell
   double faces_ = 0, answer_ = 0;            // sum G, y.G [m]
 };
-
-}  // namespace
-
-template <int D>
-std::unique_ptr<Term<D>> make_compression(const Scene<D>& scene, const Step<D>& step,
-                                          const Prediction<D>& prediction) {
-  return std::make_unique<Compression<D>>(scene, step, prediction);
-}
-
-template std::unique_ptr<Term<2>> make_compression<2>(const Scene<2>&, const Step<2>&, const Prediction<2>&);
-template std::unique_ptr<Term<3>> make_compression<3>(const Scene<3>&, const Step<3>&, const Prediction<3>&);
-
-template <int D>
-std::unique_ptr<Term<D>> make_upstream_volume(const Scene<D>& scene, const Step<D>& step,
-                                              const Prediction<D>& prediction) {
-  return std::make_unique<UpstreamVolume<D>>(scene, step, prediction);
-}
-
-template decltype(make_upstream_volume<2>) make_upstream_volume<2>;
-template decltype(make_upstream_volume<3>) make_upstream_volume<3>;
-
-namespace {
 
 // Default averaging time, in travel times of sound across the mesh.
 constexpr double mean_times = 10;
@@ -409,12 +433,15 @@ class AbsorbingBoundaries final : public Term<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Term<D>> make_absorbing_boundaries(const Scene<D>& scene, const Step<D>& step,
-                                                   const Prediction<D>& prediction) {
-  return std::make_unique<AbsorbingBoundaries<D>>(scene, step, prediction);
+void add_compressible_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                            Terms<D>& terms) {
+  add_term<AbsorbingBoundaries<D>>(!scene.boundary.absorbing_patches().empty(), scene, step, prediction,
+                                   terms);
+  add_term<Compression<D>>(scene.is_compressible(), scene, step, prediction, terms);
+  add_term<Upstream<D>>(!scene.boundary.upstream_patches().empty(), scene, step, prediction, terms);
 }
 
-template decltype(make_absorbing_boundaries<2>) make_absorbing_boundaries<2>;
-template decltype(make_absorbing_boundaries<3>) make_absorbing_boundaries<3>;
+template decltype(add_compressible_terms<2>) add_compressible_terms<2>;
+template decltype(add_compressible_terms<3>) add_compressible_terms<3>;
 
 }  // namespace couplet::fluid

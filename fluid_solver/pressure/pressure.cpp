@@ -66,8 +66,8 @@ void PressureEquation<D>::fill(std::span<const double> coefficients) {
 template <int D>
 void PressureEquation<D>::save(io::CheckpointWriter& file) const {
   if (fixed_) return;
-  file.write_scalar("pressure-preconditioner-due", accepted_.memory.is_due);
-  file.write_scalar("pressure-preconditioner-iterations", accepted_.memory.most_iterations);
+  linalg::PreconditionerMemory memory = accepted_.memory;
+  io::Archive(file).common("pressure-preconditioner-memory", memory.is_due, memory.most_iterations);
   const std::span<const double> all = *accepted_.made_from;  // nothing, or the diagonal, then the faces
   const std::size_t owned = all.empty() ? 0 : std::size_t(mesh_.cells.n_owned());
   file.write(mesh::Entries::owned_cells, "pressure-preconditioner", all.first(owned));
@@ -82,8 +82,7 @@ void PressureEquation<D>::load(io::CheckpointReader& file) {
   linalg::PreconditionerMemory memory;
   std::vector<double> saved;
   if (file.on_same_ranks()) {
-    memory.is_due = file.read_scalar("pressure-preconditioner-due") != 0;
-    memory.most_iterations = static_cast<int>(file.read_count("pressure-preconditioner-iterations", 1000000));
+    io::Archive(file).common("pressure-preconditioner-memory", memory.is_due, memory.most_iterations);
     saved = file.read_or_none(mesh::Entries::owned_cells, "pressure-preconditioner", 1);
     const std::vector<double> faces =
         file.read_or_none(mesh::Entries::interior_faces, "pressure-preconditioner-faces", 1);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/io/checkpoint.hpp"
+#include "common/linalg/acceleration.hpp"
 #include "common/linalg/cell_solver.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/motion/scene.hpp"
@@ -147,6 +148,10 @@ class Term {
   /// Called after the prediction from a level. Collective.
   virtual void prepare(const State<D>&) {}
 
+  /// True if the term may change the matrix.
+  virtual bool is_in_matrix() const { return true; }
+  /// True if the pressure is part of the state, not only the impulse of a step.
+  virtual bool keeps_pressure() const { return false; }
   /// True if the term determines the pressure level of a closed domain in this step.
   virtual bool sets_level() const { return false; }
   /// Changes whenever the matrix entries do, on a mesh at rest. 0 stands for a matrix without terms.
@@ -155,6 +160,8 @@ class Term {
   /// Called with a new matrix. Collective.
   virtual void respond(PressureEquation<D>&) {}
 
+  /// Changes given fluxes of the boundary for which the equation has no solution. Collective.
+  virtual void balance(const PressureEquation<D>&, Projected<D>&) {}
   /// Sets pressures, velocities and fluxes of the boundary that are known before p. Collective.
   virtual void foresee(const State<D>&, Projected<D>&) {}
   /// Adds to the right-hand side. Collective.
@@ -181,21 +188,91 @@ class Term {
   const Prediction<D>& prediction_;
 };
 
-// Factories of the terms, each in the file of its name.
+template <int D>
+using Terms = std::vector<std::unique_ptr<Term<D>>>;
+/// Adds the term T if the case has it.
+template <class T, int D>
+void add_term(bool has, const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+              Terms<D>& terms) {
+  if (has) terms.push_back(std::make_unique<T>(scene, step, prediction));
+}
+/// Adds those of a fluid without an outlet, and of walls of known mass (Robin condition).
+template <int D>
+void add_wall_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                    Terms<D>& terms);
+/// Adds those of weak compressibility: of openings that let pressure waves out, of the cells, of a volume or line behind
+/// the inlets.
+template <int D>
+void add_compressible_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                            Terms<D>& terms);
 
+/// Second stage of a step: sum g (p_N - p_P) = (rho/dt) sum phi^p, p = p^{n+1/2}, in passes on non-orthogonal
+/// meshes. Features extend it by a list of terms, which is empty for an incompressible fluid and given walls.
 template <int D>
-using MakeTerm = std::unique_ptr<Term<D>>(const Scene<D>&, const Step<D>&, const Prediction<D>&);
-/// Walls of known mass (Robin condition). Collective.
-template <int D>
-MakeTerm<D> make_yielding_walls;
-/// Openings that let pressure waves out. Collective.
-template <int D>
-MakeTerm<D> make_absorbing_boundaries;
-/// Weak compressibility in the cells.
-template <int D>
-MakeTerm<D> make_compression;
-/// A volume behind the inlets.
-template <int D>
-MakeTerm<D> make_upstream_volume;
+class PressureProjection {
+ public:
+  /// `moving`: the mesh will move. `result`: filled by project(). Collective.
+  PressureProjection(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+                     Projected<D>& result, bool moving);
+
+  /// Prepares the guess p~, the initial non-orthogonal gradient, the terms and the matrix. Collective.
+  void prepare(const State<D>& from);
+  /// Begins the next project() with the pressure of a level, or with the extrapolated one for nullptr.
+  void start_from(const PressureLevel<D>* level);
+  /// Computes p and p_b for given velocities w at t^{n+1} from predicted fluxes, without and then with
+  /// -(dt/rho) grad p~ . k. `answer`: see PressureEquation::solve(). Collective.
+  void project(const State<D>& from, const Vectors<D>& w, const std::vector<double>& phi, double answer);
+
+  /// Sets up the matrix for a state that no step computed. Collective.
+  void start(const Placement<D>& at);
+  /// Sets p to the potential psi that makes phi^p divergence-free for the boundary fluxes of w. Collective.
+  void solve_initial(const Placement<D>& at);
+  /// Sets phi^p at the boundary from w. Collective.
+  void set_boundary_flux(const Vectors<D>& w);
+  /// Returns the last project() as a level of history; `correction`: fluxes computed alongside. Collective.
+  std::shared_ptr<PressureLevel<D>> pressure_level(const FluxCorrection* correction = nullptr) const;
+  /// Fills the data that follow from p and boundary in a level that no step computed. Collective.
+  void start(const Placement<D>& at, PressureLevel<D>& level) const;
+
+  /// Discards the matrix after a change of its entries; it is rebuilt when next needed.
+  void forget_matrix() { assembled_ = nullptr; }
+  PressureEquation<D>& equation() { return equation_; }
+  const Terms<D>& terms() const { return terms_; }
+  int iterations() const { return iterations_; }
+  /// State of the solvers in addition to the level, as of the last accept(). load() is collective.
+  void accept();
+  void save(io::CheckpointWriter& file) const;
+  void load(io::CheckpointReader& file);
+
+ private:
+  void extrapolate_pressure();
+  void assemble();
+  void set_obliqueness(const Placement<D>& at);
+  void add_oblique_pressure(const std::vector<double>& phi);
+  bool mix_gradients(int pass);
+  void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
+  void set_boundary_pressure(const State<D>& from);
+  void set_gradient(const Placement<D>& at, PressureLevel<D>& level, const FluxCorrection* correction) const;
+  void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
+                         const std::vector<double>& boundary, const FluxCorrection* correction,
+                         Vectors<D>& sum) const;
+
+  const Scene<D>& scene_;
+  const mesh::Mesh& mesh_;
+  const Step<D>& step_;
+  const Prediction<D>& prediction_;
+  Projected<D>& out_;
+  Terms<D> terms_;
+  PressureEquation<D> equation_;
+  RightSide side_;
+  std::shared_ptr<const Placement<D>> assembled_;  // placement of the matrix
+  std::vector<double> versions_;                   // versions of the terms in the matrix
+  int iterations_ = 0;                             // total so far
+  // Non-orthogonal meshes only.
+  double degrees_ = 0;         // largest angle between a face normal and the line of its cells
+  Vectors<D> gradient_start_;  // of p, for the first pass
+  Vectors<D> gradient_before_;
+  std::unique_ptr<linalg::Accelerator> accelerator_;
+};
 
 }  // namespace couplet::fluid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/pressure/projection.hpp"
+#include "fluid_solver/pressure/pressure.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,22 +27,11 @@ constexpr linalg::Acceleration gradient_acceleration{linalg::Acceleration::Type:
 // error by that part's share of the operator.
 constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
-// Closed domain: share of the boundary fluxes that a moving wall may leave as a discretization error, and the
-// speed of a fluid at rest [m/s]. Walls that move tangentially leave a share of their speeds as the error.
-constexpr double largest_open_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
-
 template <int D>
-std::vector<std::unique_ptr<Term<D>>> make_terms(const Scene<D>& scene, const Step<D>& step,
-                                                 const Prediction<D>& prediction) {
-  std::vector<std::unique_ptr<Term<D>>> terms;
-  const auto add = [&](bool wanted, const auto& make) {
-    if (wanted) terms.push_back(make(scene, step, prediction));
-  };
-  add(scene.boundary.yields(), make_yielding_walls<D>);
-  const bool compressible = scene.is_compressible();
-  add(compressible && !scene.boundary.absorbing_patches().empty(), make_absorbing_boundaries<D>);
-  add(compressible, make_compression<D>);
-  add(compressible && !scene.boundary.upstream_patches().empty(), make_upstream_volume<D>);
+Terms<D> make_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction) {
+  Terms<D> terms;
+  add_wall_terms(scene, step, prediction, terms);
+  add_compressible_terms(scene, step, prediction, terms);
   return terms;
 }
 
@@ -57,7 +46,9 @@ PressureProjection<D>::PressureProjection(const Scene<D>& scene, const Step<D>& 
       prediction_(prediction),
       out_(result),
       terms_(make_terms(scene, step, prediction)),
-      equation_(scene.mesh, scene.boundary, !moving && scene.parameters.bodies.empty() && terms_.empty()) {}
+      equation_(scene.mesh, scene.boundary,
+                !moving && scene.parameters.bodies.empty() &&
+                    std::ranges::none_of(terms_, [](const auto& term) { return term->is_in_matrix(); })) {}
 
 template <int D>
 void PressureProjection<D>::prepare(const State<D>& from) {
@@ -220,53 +211,7 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
     out_.phi[f] = out_.w[b].dot(step_.to->area[f]);
   }
   scene_.obstacles->block(step_, rows.of_flux, out_.phi);
-  if (equation_.singular()) balance_closed_domain();
-}
-
-// An incompressible fluid without an outlet requires boundary fluxes that sum to zero. The discretization
-// error of moving walls is distributed by area over the interface, or over all moving faces; a convective
-// outlet takes the net inflow.
-template <int D>
-void PressureProjection<D>::balance_closed_domain() {
-  enum { total, size, adjustable_area, other_area, speeds };
-  double sums[5] = {};
-  for (std::size_t b = 0; b < out_.w.size(); ++b) {
-    const Index f = mesh_.n_interior + static_cast<Index>(b);
-    const double area = step_.to->area[f].norm();
-    sums[total] += out_.phi[f];
-    sums[size] += std::abs(out_.phi[f]);
-    sums[speeds] += out_.w[b].norm() * area;
-    sums[scene_.boundary.is_adjustable(b) ? adjustable_area : other_area] += area;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  const bool adjustable = sums[adjustable_area] > 0;
-  // The flux through rotating walls is only round-off of their speeds.
-  if (!adjustable && std::abs(sums[total]) > std::max(1e-6 * sums[size], 1e-12 * sums[speeds]))
-    throw Error(
-        "The fluid domain is closed, but the prescribed velocities give a net outflow of {:.6g} m^3/s. Add "
-        "an outlet or correct the velocities.",
-        sums[total]);
-  // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over. Of walls
-  // without a structure Fluid::keep_volume() has compared the displacements.
-  if (adjustable && !scene_.boundary.has_convective_outlet() &&
-      !(scene_.boundary.sealed() && scene_.boundary.interface_patches().empty()) &&
-      scene_.parameters.volume_level == VolumeLevelBy::nobody && !scene_.boundary.yields() &&
-      std::abs(sums[total]) > largest_open_leftover * sums[size] &&
-      std::abs(sums[total]) > round_speed * sums[speeds] &&
-      sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
-    throw Error(
-        "The fluid domain is closed: at t = {:.6g} s the net outflow is {:.6g} m^3/s, which neither the "
-        "prescribed velocities nor the interface motion balance. The pressure level that would push it "
-        "through the interface is not computed: add an outlet (a small one far from the interface is "
-        "enough).",
-        step_.end(), sums[total]);
-  const double correction = sums[total] / (adjustable ? sums[adjustable_area] : sums[other_area]);
-  for (std::size_t b = 0; b < out_.w.size(); ++b) {
-    const Index f = mesh_.n_interior + static_cast<Index>(b);
-    if (adjustable && !scene_.boundary.is_adjustable(b)) continue;
-    out_.phi[f] -= correction * step_.to->area[f].norm();
-    if (scene_.boundary.is_convective(b)) out_.w[b] -= correction * step_.to->area[f].normalized();
-  }
+  for (const auto& term : terms_) term->balance(equation_, out_);
 }
 
 template <int D>
@@ -277,11 +222,9 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   set_boundary_flux(w);
   out_.boundary.assign(w.size(), 0.0);
   scene_.boundary.pressure_at(step_.middle(), now.boundary_centre, out_.boundary);
-  if (scene_.has_potential()) {
-    const auto potential = scene_.potential(step_.middle());
+  if (const auto potential = scene_.potential(step_.middle()))
     for (const Index b : scene_.boundary.rows().of_pressure)
       out_.boundary[b] -= scene_.fluid.rho * potential(now.boundary_centre[b]);
-  }
   for (const auto& term : terms_) term->foresee(from, out_);
   side_.size = -1;
   side_.b.assign(mesh_.cells.n_local(), 0.0);

@@ -65,49 +65,6 @@ int axis_of(const Vec<D>& area) {
   return -1;
 }
 
-}  // namespace
-
-template <int D>
-Lines<D>::Lines(const mesh::Mesh& mesh, const Placement<D>& at) {
-  const auto sides = sides_of(mesh, at);
-  for (std::size_t c = 0; c < sides.size(); ++c)
-    for (std::size_t i = 0; i < sides[c].size(); ++i)
-      for (std::size_t j = i + 1; j < sides[c].size(); ++j) {
-        Side first = sides[c][i], second = sides[c][j];
-        if (outward(at, first).dot(outward(at, second)) > -parallel_cosine) continue;
-        // S of `face` points from before to after: outward at `second`, or inward at `first`.
-        if (!second.outward && first.outward) std::swap(first, second);
-        const double before = at.conductance[first.face], after = at.conductance[second.face];
-        if (std::max(before, after) > smooth * std::min(before, after)) continue;
-        const Index face = second.outward ? second.face : first.face;
-        links.push_back({first.other, static_cast<Index>(c), second.other, face, axis_of<D>(at.area[face]),
-                         before, after});
-      }
-  const double counts[2] = {double(links.size()), double(D) * mesh.cells.n_owned()};
-  std::array<double, 2> sums{};
-  MPI_Allreduce(counts, sums.data(), 2, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  share = sums[1] > 0 ? sums[0] / sums[1] : 0;
-}
-
-template <int D>
-std::shared_ptr<const Placement<D>> Lines<D>::seen(const mesh::Mesh& mesh, const Placement<D>& at) const {
-  std::vector<Tensor<D>> along(mesh.cells.n_local(), Tensor<D>::Zero());  // sum of n n^T of a cell's links
-  for (const Link& link : links) {
-    const Vec<D> n = at.area[link.face].normalized();
-    along[link.cell] += n * n.transpose();
-  }
-  mesh.cells.update_ghosts({along.empty() ? nullptr : along.front().data(), along.size() * D * D}, D * D);
-  std::vector<char> between(mesh.n_interior, 0);
-  for (Index f = 0; f < mesh.n_interior; ++f) {
-    const Vec<D> n = at.area[f].normalized();
-    const auto has_link = [&](Index c) { return n.dot(along[c] * n) > 0.5; };
-    between[f] = is_straight(at, f) && has_link(mesh.owner[f]) && has_link(mesh.neighbour[f]);
-  }
-  return in_the_middle<D>(mesh, at, between);
-}
-
-namespace {
-
 /// Circulates a flux e through `before`, `after` and back through the middle cell, with the mean velocities
 /// of each two. It conserves momentum and energy. e = -U/6 with U = (u - Du/6).S raises the fluxes to fourth
 /// order. Friction likewise: q = nu (g_1 x - g_2 y)/6 out of the middle, to each side by its conductance.
@@ -158,6 +115,45 @@ COUPLET_PROCESSOR_CLONES void difference_pass(std::span<const Link> links, const
 }
 
 }  // namespace
+
+template <int D>
+Lines<D>::Lines(const mesh::Mesh& mesh, const Placement<D>& at) {
+  const auto sides = sides_of(mesh, at);
+  for (std::size_t c = 0; c < sides.size(); ++c)
+    for (std::size_t i = 0; i < sides[c].size(); ++i)
+      for (std::size_t j = i + 1; j < sides[c].size(); ++j) {
+        Side first = sides[c][i], second = sides[c][j];
+        if (outward(at, first).dot(outward(at, second)) > -parallel_cosine) continue;
+        // S of `face` points from before to after: outward at `second`, or inward at `first`.
+        if (!second.outward && first.outward) std::swap(first, second);
+        const double before = at.conductance[first.face], after = at.conductance[second.face];
+        if (std::max(before, after) > smooth * std::min(before, after)) continue;
+        const Index face = second.outward ? second.face : first.face;
+        links.push_back({first.other, static_cast<Index>(c), second.other, face, axis_of<D>(at.area[face]),
+                         before, after});
+      }
+  const double counts[2] = {double(links.size()), double(D) * mesh.cells.n_owned()};
+  std::array<double, 2> sums{};
+  MPI_Allreduce(counts, sums.data(), 2, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  share = sums[1] > 0 ? sums[0] / sums[1] : 0;
+}
+
+template <int D>
+std::shared_ptr<const Placement<D>> Lines<D>::seen(const mesh::Mesh& mesh, const Placement<D>& at) const {
+  std::vector<Tensor<D>> along(mesh.cells.n_local(), Tensor<D>::Zero());  // sum of n n^T of a cell's links
+  for (const Link& link : links) {
+    const Vec<D> n = at.area[link.face].normalized();
+    along[link.cell] += n * n.transpose();
+  }
+  mesh.cells.update_ghosts({along.empty() ? nullptr : along.front().data(), along.size() * D * D}, D * D);
+  std::vector<char> between(mesh.n_interior, 0);
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const Vec<D> n = at.area[f].normalized();
+    const auto has_link = [&](Index c) { return n.dot(along[c] * n) > 0.5; };
+    between[f] = is_straight(at, f) && has_link(mesh.owner[f]) && has_link(mesh.neighbour[f]);
+  }
+  return in_the_middle<D>(mesh, at, between);
+}
 
 template <int D>
 void FourthOrder<D>::add_rates(const State<D>& s, double nu, Vectors<D>& rate) const {

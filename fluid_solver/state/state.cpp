@@ -114,6 +114,94 @@ void set_cells(const mesh::Mesh& mesh, std::span<const Vec3> points, Placement<2
   }
 }
 
+template <bool Corrects, int D>
+[[gnu::always_inline]] inline void add_pressures(const mesh::Mesh& mesh, const Placement<D>& at,
+                                                 const double* p, const FluxCorrection& correction,
+                                                 Vectors<D>& sum) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  const double* weight = at.weight.data();
+  const Vec<D>* area = at.area.data();
+  Vec<D>* of = sum.data();
+  // Faces are sorted by owner, so that owner data are accessed once.
+  for (Index f = 0; f < mesh.n_interior;) {
+    const Index o = owner[f];
+    const double own = p[o];
+    Vec<D> all = Vec<D>::Zero();
+    do {
+      const Index n = neighbour[f];
+      const double less = own - p[n];
+      if constexpr (Corrects) correction.phi[f] += correction.factor * correction.conductance[f] * less;
+      const Vec<D> part = (p[n] + weight[f] * less) * area[f];
+      all += part;
+      of[n] -= part;
+      ++f;
+    } while (f < mesh.n_interior && owner[f] == o);
+    of[o] += all;
+  }
+}
+
+using mesh::Entries;
+
+template <class T>
+std::span<double> doubles_of(std::vector<T>& values) {
+  if constexpr (std::is_same_v<T, double>)
+    return values;
+  else
+    return {values.empty() ? nullptr : values.front().data(), values.size() * T::SizeAtCompileTime};
+}
+
+/// Archives a number or vector per entry, or none at all.
+template <class T>
+void field(io::Archive& archive, Entries entries, const std::string& name, std::vector<T>& values) {
+  constexpr std::size_t width = sizeof(T) / sizeof(double);
+  const std::span<const double> now = doubles_of(values);
+  std::vector<double> copy(now.begin(), now.end());
+  archive.field(entries, name, copy, width);
+  if (!archive.reads()) return;
+  values.resize(copy.size() / width);
+  std::ranges::copy(copy, doubles_of(values).begin());
+}
+
+/// The placement follows from the points.
+template <int D>
+void visit(State<D>& s, bool moving, io::Archive archive) {
+  std::size_t levels = 0;
+  while (levels < s.pressure.size() && s.pressure[levels]) ++levels;
+  archive.common("state", s.time, s.dt_old, s.implicit, s.start, s.ledger, s.turns, levels, s.openings.mean,
+                 s.openings.line);
+  field(archive, Entries::cells, "velocity", s.u);
+  field(archive, Entries::owned_boundary, "wall-turn", s.turn);
+  field(archive, Entries::owned_boundary, "given-velocity", s.w);
+  field(archive, Entries::owned_boundary, "boundary-velocity", s.u_boundary);
+  field(archive, Entries::flux_faces, "flux", s.phi);
+  field(archive, Entries::interior_faces, "flux-memory", s.memory);
+  for (std::size_t k = 0; k < std::min(levels, s.pressure.size()); ++k) {
+    const auto level = archive.reads() ? std::make_shared<PressureLevel<D>>()
+                                       : std::const_pointer_cast<PressureLevel<D>>(s.pressure[k]);
+    const std::string name = "pressure-" + std::to_string(k);
+    archive.common(name + "-level", level->time, level->upstream, level->upstream_end);
+    field(archive, Entries::cells, name, level->p);
+    field(archive, Entries::owned_boundary, name + "-boundary", level->boundary);
+    field(archive, Entries::cells, name + "-gradient", level->gradient);
+    field(archive, Entries::cells, name + "-end", level->end);
+    s.pressure[k] = level;
+  }
+  if (s.dt_old > 0) {
+    field(archive, Entries::cells, "old-velocity", s.u_old);
+    field(archive, Entries::owned_boundary, "old-boundary-velocity", s.u_boundary_old);
+    field(archive, Entries::cells, "old-rate", s.rates_old.rate);
+    if (s.implicit) field(archive, Entries::cells, "old-viscous-rate", s.rates_old.viscous);
+    field(archive, Entries::owned_boundary, "old-shear", s.shear_old);
+    field(archive, Entries::interior_faces, "old-flux-memory", s.memory_old);
+  }
+  if (moving) {
+    field(archive, Entries::points, "points", s.points);
+    field(archive, Entries::flux_faces, "mesh-flux", s.mesh_flux);
+  }
+  field(archive, Entries::owned_boundary, "openings", s.openings.now);
+  field(archive, Entries::owned_boundary, "openings-old", s.openings.old);
+}
+
 }  // namespace
 
 template <int D>
@@ -214,36 +302,6 @@ void add_outflow(const mesh::Mesh& mesh, std::span<const double> phi, std::span<
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) sum[mesh.owner[f]] += phi[f];
 }
 
-namespace {
-
-template <bool Corrects, int D>
-[[gnu::always_inline]] inline void add_pressures(const mesh::Mesh& mesh, const Placement<D>& at,
-                                                 const double* p, const FluxCorrection& correction,
-                                                 Vectors<D>& sum) {
-  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
-  const double* weight = at.weight.data();
-  const Vec<D>* area = at.area.data();
-  Vec<D>* of = sum.data();
-  // Faces are sorted by owner, so that owner data are accessed once.
-  for (Index f = 0; f < mesh.n_interior;) {
-    const Index o = owner[f];
-    const double own = p[o];
-    Vec<D> all = Vec<D>::Zero();
-    do {
-      const Index n = neighbour[f];
-      const double less = own - p[n];
-      if constexpr (Corrects) correction.phi[f] += correction.factor * correction.conductance[f] * less;
-      const Vec<D> part = (p[n] + weight[f] * less) * area[f];
-      all += part;
-      of[n] -= part;
-      ++f;
-    } while (f < mesh.n_interior && owner[f] == o);
-    of[o] += all;
-  }
-}
-
-}  // namespace
-
 template <int D>
 COUPLET_PROCESSOR_CLONES void add_pressure(const mesh::Mesh& mesh, const Placement<D>& at,
                                            std::span<const double> p, const FluxCorrection* correction,
@@ -256,71 +314,6 @@ COUPLET_PROCESSOR_CLONES void add_pressure(const mesh::Mesh& mesh, const Placeme
 
 template decltype(add_pressure<2>) add_pressure<2>;
 template decltype(add_pressure<3>) add_pressure<3>;
-
-namespace {
-
-using mesh::Entries;
-
-template <class T>
-std::span<double> doubles_of(std::vector<T>& values) {
-  if constexpr (std::is_same_v<T, double>)
-    return values;
-  else
-    return {values.empty() ? nullptr : values.front().data(), values.size() * T::SizeAtCompileTime};
-}
-
-/// Archives a number or vector per entry, or none at all.
-template <class T>
-void field(io::Archive& archive, Entries entries, const std::string& name, std::vector<T>& values) {
-  constexpr std::size_t width = sizeof(T) / sizeof(double);
-  const std::span<const double> now = doubles_of(values);
-  std::vector<double> copy(now.begin(), now.end());
-  archive.field(entries, name, copy, width);
-  if (!archive.reads()) return;
-  values.resize(copy.size() / width);
-  std::ranges::copy(copy, doubles_of(values).begin());
-}
-
-/// The placement follows from the points.
-template <int D>
-void visit(State<D>& s, bool moving, io::Archive archive) {
-  std::size_t levels = 0;
-  while (levels < s.pressure.size() && s.pressure[levels]) ++levels;
-  archive.common("state", s.time, s.dt_old, s.implicit, s.start, s.ledger, s.turns, levels, s.openings.mean);
-  field(archive, Entries::cells, "velocity", s.u);
-  field(archive, Entries::owned_boundary, "wall-turn", s.turn);
-  field(archive, Entries::owned_boundary, "given-velocity", s.w);
-  field(archive, Entries::owned_boundary, "boundary-velocity", s.u_boundary);
-  field(archive, Entries::flux_faces, "flux", s.phi);
-  field(archive, Entries::interior_faces, "flux-memory", s.memory);
-  for (std::size_t k = 0; k < std::min(levels, s.pressure.size()); ++k) {
-    const auto level = archive.reads() ? std::make_shared<PressureLevel<D>>()
-                                       : std::const_pointer_cast<PressureLevel<D>>(s.pressure[k]);
-    const std::string name = "pressure-" + std::to_string(k);
-    archive.common(name + "-level", level->time, level->upstream, level->upstream_end);
-    field(archive, Entries::cells, name, level->p);
-    field(archive, Entries::owned_boundary, name + "-boundary", level->boundary);
-    field(archive, Entries::cells, name + "-gradient", level->gradient);
-    field(archive, Entries::cells, name + "-end", level->end);
-    s.pressure[k] = level;
-  }
-  if (s.dt_old > 0) {
-    field(archive, Entries::cells, "old-velocity", s.u_old);
-    field(archive, Entries::owned_boundary, "old-boundary-velocity", s.u_boundary_old);
-    field(archive, Entries::cells, "old-rate", s.rates_old.rate);
-    if (s.implicit) field(archive, Entries::cells, "old-viscous-rate", s.rates_old.viscous);
-    field(archive, Entries::owned_boundary, "old-shear", s.shear_old);
-    field(archive, Entries::interior_faces, "old-flux-memory", s.memory_old);
-  }
-  if (moving) {
-    field(archive, Entries::points, "points", s.points);
-    field(archive, Entries::flux_faces, "mesh-flux", s.mesh_flux);
-  }
-  field(archive, Entries::owned_boundary, "openings", s.openings.now);
-  field(archive, Entries::owned_boundary, "openings-old", s.openings.old);
-}
-
-}  // namespace
 
 template <int D>
 void write_state(io::CheckpointWriter& file, const State<D>& s) {

@@ -167,11 +167,23 @@ struct PressureLevel {
   /// (1/V) sum p_f S per local cell [Pa/m]; only in the latest level (non-orthogonal meshes: two).
   Vectors<D> gradient;
   // Compressible fluids only.
-  double upstream = 0;      ///< of the volume behind the inlets [Pa]
+  double upstream = 0;      ///< of the volume or line behind the inlets [Pa]
   std::vector<double> end;  ///< trapezoidal rule only: p at the end of the step, per local cell [Pa]
   double upstream_end = 0;  ///< likewise, of the volume [Pa]
   /// Sum of V dp/dt/(rho c^2) over this rank's cells at the end of the step [m^3/s]; not saved.
   double taken_up = 0;
+};
+
+/// Mouth of the line behind the inlets in one step.
+struct LineRow {
+  double time = 0;   ///< t^{n+1/2} [s]
+  double wave = 0;   ///< p - Z Q, which leaves the mesh [Pa]
+  double given = 0;  ///< flow that the inlets prescribe [m^3/s]
+  double flow = 0;   ///< Q into the mesh at t^{n+1} [m^3/s]
+  template <class Numbers>
+  void visit(Numbers& numbers) {
+    numbers(time, wave, given, flow);
+  }
 };
 
 /// Outflow beyond the given one at absorbing boundaries, per boundary face: phi/S of outlets and (w -
@@ -179,6 +191,7 @@ struct PressureLevel {
 /// inlet [Pa].
 struct OpeningsState {
   std::vector<double> now, old, mean;
+  std::vector<LineRow> line;  ///< past of the line behind the inlets
 };
 
 /// Start of a flow. A fluid at rest starts with an impulse, whose pressure does not predict later ones.
@@ -196,7 +209,7 @@ struct History {
   std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;
 };
 
-/// Kinetic energy and the part of it that no work explains, see EnergyGuard.
+/// Kinetic energy and the part of it that no work explains, see EnergyCheck.
 struct EnergyLedger {
   double energy = -1;    ///< at t^n [J]; negative if not known yet
   double largest = 0;    ///< so far [J]
@@ -229,7 +242,7 @@ struct State : History<D> {
   /// delta^n per interior face [m^3/s] (incremental: the rest of delta^0).
   std::vector<double> memory, memory_old;
 
-  OpeningsState openings;  ///< empty without absorbing boundaries
+  OpeningsState openings;  ///< empty without absorbing boundaries and a line
 
   /// Cells in a closed gap, per local cell; nullptr if there are none.
   std::shared_ptr<const std::vector<char>> blocked;

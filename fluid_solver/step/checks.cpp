@@ -86,9 +86,6 @@ void check_order(FluidParameters& parameters, bool moving) {
 }
 
 void check_axes(const FluidParameters& parameters, int dim) {
-  if (parameters.rotating_frame) fv::check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
-  for (const auto& [name, b] : parameters.boundaries)
-    if (b.rotation) fv::check_axis(b.rotation->axis, dim, "boundaries." + name + ".rotation.axis");
   for (const auto& [name, c] : parameters.output.coefficients)
     fv::check_axis(Vec3(c.axis[0], c.axis[1], std::abs(c.axis[2])), dim,  // a moment may be taken about -z
                    "output.coefficients." + name + ".axis");
@@ -132,19 +129,6 @@ void check_parts(const mesh::Mesh& mesh, const Boundary<D>& boundary) {
 
 }  // namespace
 
-FluidParameters with_surfaces(FluidParameters parameters, bool moving) {
-  BodySurface all = BodySurface::automatic;
-  for (const auto& [name, body] : parameters.bodies) {
-    if (body.surface == BodySurface::automatic) continue;
-    if (all != BodySurface::automatic && body.surface != all)
-      throw Error("bodies.{}.surface: all bodies have the same kind of surface; choose steps or cut.", name);
-    all = body.surface;
-  }
-  if (all == BodySurface::automatic) all = moving ? BodySurface::cut : BodySurface::steps;
-  for (auto& [name, body] : parameters.bodies) body.surface = all;
-  return parameters;
-}
-
 template <int D>
 void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
                     bool moving) {
@@ -159,95 +143,5 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
 
 template void check_together<2>(const mesh::Mesh&, const Boundary<2>&, FluidParameters&, bool);
 template void check_together<3>(const mesh::Mesh&, const Boundary<3>&, FluidParameters&, bool);
-
-// Checks of fluids without an outlet and with moving walls.
-
-namespace {
-
-// Largest share of an interface's area that faces one way for it to enclose a body; above, it is a cavity
-// wall.
-constexpr double largest_open_share = 0.3;
-
-/// Share of the interface's area that faces one way, and the area [m^2].
-template <int D>
-std::pair<double, double> open_share(const Fluid<D>& fluid) {
-  double sums[4] = {};  // S, |S|
-  for (const std::string& name : fluid.boundary().interface_patches()) {
-    const mesh::Patch& patch = *fluid.mesh().find_patch(name);
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec<D>& area = fluid.state().placement->area[f];
-      for (int c = 0; c < D; ++c) sums[c] += area[c];
-      sums[3] += area.norm();
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, fluid.mesh().comm);
-  return {Vec3(sums[0], sums[1], sums[2]).norm() / sums[3], sums[3]};
-}
-
-/// Inflow through faces of given velocity except the interface's [m^3/s]; this rank's part.
-template <int D>
-double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
-  const Boundary<D>& boundary = fluid.boundary();
-  Vectors<D> w(boundary.rows().pressure.size(), Vec<D>::Zero());  // stays so at the interface
-  boundary.velocity_at(t, at.boundary_centre, w);
-  double inflow = 0;
-  for (const Index b : boundary.rows().of_velocity) inflow -= w[b].dot(at.area[fluid.mesh().n_interior + b]);
-  return inflow;
-}
-
-}  // namespace
-
-template <int D>
-void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme) {
-  const Boundary<D>& boundary = fluid.boundary();
-  const bool closed = boundary.closed() && !boundary.has_convective_outlet(),
-             alone = scheme == coupling::Scheme::standalone, waves = fluid.parameters().is_compressible(),
-             walled = !boundary.interface_patches().empty();
-  if (fluid.parameters().volume_level == VolumeLevelBy::structure) {
-    const std::pair<bool, const char*> refused[] = {
-        {alone, "this fluid runs alone, without a structure; remove the key."},
-        {waves, "a compressible fluid has a pressure level of its own; remove the key."},
-        {boundary.yields(),
-         "walls with a surface-density get their level from the pressure equation; remove one of the two keys."},
-        {!closed, "this fluid has an outlet, so a structure cannot set its pressure level; remove the key."},
-        {!boundary.body_patches().empty(),
-         "this fluid has bodies that move as prescribed, so a structure cannot set its pressure level; remove the key."},
-        {!walled,
-         "this fluid has no wall of type interface, so a structure cannot set its pressure level; remove the key."}};
-    for (const auto& [applies, message] : refused)
-      if (applies) throw Error("volume-level: structure: {}", message);
-    return;
-  }
-  const bool is_set = alone || !closed || !walled || boundary.yields() || waves;
-  if (is_set) return;
-  const auto [share, area] = open_share(fluid);
-  if (share <= largest_open_share) return;
-  throw Error(
-      "boundaries: this fluid has no outlet, and its interface is a wall of the cavity ({:.3g} of its area "
-      "{:.3g} m^2 faces one way): it could move only by changing the volume of an incompressible fluid. The "
-      "pressure level that conserves the volume is not computed; set 'volume-level: structure', or add an "
-      "outlet (a small one far from the interface is enough).",
-      share, area);
-}
-
-template <int D>
-std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
-                                  double dt) {
-  const Placement<D>& begin = *fluid.state().placement;
-  double sums[3] = {given_inflow(fluid, fluid.end(), time + dt), given_inflow(fluid, begin, time), 0};
-  for (const Index f : faces) sums[2] += begin.area[f].norm();
-  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, fluid.mesh().comm);
-  std::vector<double> shares;
-  for (const Index f : faces) {
-    const double share = begin.area[f].norm() / sums[2];
-    shares.insert(shares.end(), {share * sums[0], share * sums[1]});
-  }
-  return shares;
-}
-
-template void check_cavity(const Fluid<2>&, coupling::Scheme);
-template void check_cavity(const Fluid<3>&, coupling::Scheme);
-template std::vector<double> inflow_shares(const Fluid<2>&, const std::vector<Index>&, double, double);
-template std::vector<double> inflow_shares(const Fluid<3>&, const std::vector<Index>&, double, double);
 
 }  // namespace couplet::fluid

@@ -15,11 +15,6 @@ namespace {
 // An interface diverges above this factor times all previous speeds, or initially this speed [m/s].
 constexpr double most_times_faster = 1e4, most_speed = 1e8;
 
-// Net part of what the walls of a closed fluid displace that may be an error of discretisation, and the change of volume that is
-// round-off. A chord of a twentieth of a turn misses 1.6 % of what lies between it and the centre.
-constexpr double largest_leftover = 0.02, round_off = 1e-12;
-constexpr double allowed = 1e-10;  // change of volume that remains
-
 }  // namespace
 
 template <int D>
@@ -30,7 +25,7 @@ Fluid<D>::Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Fl
       path_(mesh, geometry, parameters_, moving_mesh),
       boundary_(mesh, geometry, parameters_),
       step_(mesh, path_.points_at_rest(), boundary_, parameters_, moving_mesh && !path_.translates()),
-      sizes_(mesh, boundary_, parameters_) {
+      sizes_(mesh, boundary_, parameters_, step_.momentum_terms()) {
   check_together(mesh_, boundary_, parameters_, moving_mesh);
   start(geometry, start_time);
 }
@@ -68,7 +63,7 @@ void Fluid<D>::restore(State<D> state) {
   if (path_.translates()) accepted_.placement = path_.at(accepted_.points);
   split_ = false;
   step_.mark_level(accepted_);
-  step_.set_eddy_viscosity(accepted_);
+  step_.start_momentum(accepted_);
 }
 
 template <int D>
@@ -78,8 +73,9 @@ void Fluid<D>::begin_step(double time, double dt) {
   split_ = false;
   begin_ = accepted_;
   begin_.time = time;
-  const auto& frame = step_.scene().frame;
-  sizes_.begin_step(accepted_, time, dt, frame ? frame->rate(time, dt) : 0, begin_);
+  double rate = 0;
+  for (const auto& force : step_.scene().forces) rate = std::max(rate, force->rate(time, dt));
+  sizes_.begin_step(accepted_, time, dt, rate, begin_);
   statistics_.sub_steps = 0;
 }
 
@@ -134,8 +130,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     SubStep<D> sub_step = path_.sub_step(level(), dt, end / dt_, accepted_.points, points, time_);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
     if (history_.start == Start::after_impulse) {
-      // The pressure of a compressible fluid is part of its state, not an impulse.
-      if (!parameters_.is_compressible()) history_.pressure = {};
+      if (!step_.pressure_is_state()) history_.pressure = {};
       history_.start = Start::flowing;
     }
     const bool needs_pressure =
@@ -174,58 +169,6 @@ void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity, double answer) {
   ++statistics_.pressure_solves;
   add_forces(step_.size() / dt_);
   add_turning();
-}
-
-template <int D>
-void Fluid<D>::keep_volume(std::vector<Vec3>& points, double time) const {
-  if (points.empty() || !boundary_.sealed() || boundary_.yields() || parameters_.is_compressible() ||
-      parameters_.volume_level != VolumeLevelBy::nobody)
-    return;
-  const auto balance = [&](std::span<const Vec3> to) {
-    const std::vector<double> swept = mesh::swept_volumes(mesh_, points_at_rest(), to);
-    std::array<double, 2> sums{};  // net, gross
-    for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
-      sums[0] += swept[f], sums[1] += std::abs(swept[f]);
-    MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    return sums;
-  };
-  double volume = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) volume += accepted_.placement->volume[c];
-  volume = parallel::sum(mesh_.comm, volume);
-  auto [net, gross] = balance(points);
-  if (!(std::abs(net) > round_off * volume)) return;
-  const auto refuse = [&] {
-    throw Error(
-        "The fluid has no outlet, but at t = {:.6g} s its walls have changed its volume by {:.6g} m^3, {:.2g} of what they "
-        "displace (limit {:g}): an incompressible fluid keeps its volume. Correct the motion of the walls, add an outlet (a small "
-        "one is enough), or set 'compressibility'.",
-        time, net, std::abs(net) / gross, largest_leftover);
-  };
-  if (std::abs(net) > largest_leftover * gross && std::abs(net) > allowed * volume) refuse();
-  if (!boundary_.interface_patches().empty()) return;
-  const std::shared_ptr<const Placement<D>> at = path_.at(points);
-  Vectors<D> normal(points.size(), Vec<D>::Zero());
-  double area = 0;
-  for (const mesh::Patch* patch : boundary_.body_patches())
-    for (Index f = patch->first; f < patch->first + patch->count; ++f) {
-      area += at->area[f].norm();
-      for (const Index v : mesh_.face_points[f]) normal[v] += at->area[f];
-    }
-  area = parallel::sum(mesh_.comm, area);
-  mesh_.points.add_to_owners(flat<D>(normal), D);
-  mesh_.points.update_ghosts(flat<D>(normal), D);
-  for (Vec<D>& n : normal) n.stableNormalize();
-  const std::vector<Vec3> given = points;
-  double set_back = 0, slope = area;  // [m], [m^2]
-  for (int pass = 0; pass < 8 && std::abs(net) > round_off * volume && slope > 0; ++pass) {
-    const double before = net, change = -net / slope;
-    set_back += change;
-    for (std::size_t v = 0; v < points.size(); ++v)
-      points[v].template head<D>() = given[v].template head<D>() + set_back * normal[v];
-    net = balance(points)[0];
-    if (std::abs(net) < 0.5 * std::abs(before)) slope = (net - before) / change;
-  }
-  if (std::abs(net) > allowed * volume) refuse();
 }
 
 template <int D>
@@ -286,7 +229,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   const fv::Expression initial_pressure(parameters_.initial_pressure.value_or(config::ExpressionText{}),
                                         "initial-pressure");
   const bool is_state =
-      parameters_.is_compressible() && (parameters_.initial_pressure || s.start == Start::at_rest);
+      step_.pressure_is_state() && (parameters_.initial_pressure || s.start == Start::at_rest);
   if (is_state || !initial_pressure.is_zero()) {
     auto level = std::make_shared<PressureLevel<D>>();
     level->time = time;
@@ -300,7 +243,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   }
   step_.start_terms(s);
   s.implicit = parameters_.viscous == ViscousTreatment::implicit;
-  step_.set_eddy_viscosity(s);
+  step_.start_momentum(s);
   step_.keep();
 }
 
@@ -375,7 +318,7 @@ void Fluid<D>::add_turning() {
 template <int D>
 std::shared_ptr<const PressureLevel<D>> Fluid<D>::pressure() const {
   const auto& latest = accepted_.pressure[0];
-  if (!latest || !step_.scene().has_potential()) return latest;
+  if (!latest || !step_.scene().potential(latest->time)) return latest;
   auto whole = std::make_shared<PressureLevel<D>>(*latest);
   step_.scene().add_potential(*accepted_.placement, parameters_.density, *whole);
   return whole;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
+
 #include <memory>
 #include <span>
 #include <vector>
@@ -9,10 +11,40 @@
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/motion/scene.hpp"
+#include "fluid_solver/state/state.hpp"
 #include "fluid_solver/step/fractional_step.hpp"
 #include "fluid_solver/step/step_size.hpp"
 
 namespace couplet::fluid {
+
+/// Decides when a semi-implicit step repeats its prediction, and with which wall velocity. Friction uses the
+/// guessed wall velocity w*, which acts like an unseen mass E beside the mass M of the loop. Repeated
+/// predictions are a fixed-point iteration g -> w(g) with contraction E/M, relaxed by Aitken's factor from
+/// the second one on. Cases whose passes never converged slowly have heavy structures and need no repetition.
+template <int D>
+class Renewal {
+ public:
+  /// Starts the first pass of a step, whose prediction uses w.
+  void start(const Vectors<D>& w);
+  /// Takes a further pass with w. `unseen`: friction force due to w - guess(), relative to the load. Returns
+  /// true if the prediction must be repeated with guess(). Collective.
+  bool wanted(MPI_Comm comm, const Vectors<D>& w, double unseen);
+  const Vectors<D>& guess() const { return guess_; }
+  int count() const { return count_; }
+  /// Largest contraction from a second to a third pass over the run, for checkpoints.
+  double& slowest() { return slowest_; }
+
+ private:
+  double contraction(MPI_Comm comm, const Vectors<D>& w);
+  bool is_good(MPI_Comm comm, const Vectors<D>& w) const;
+  void move_guess(MPI_Comm comm, const Vectors<D>& w);
+
+  Vectors<D> guess_, gap_;  // gap_: w - guess at the last renewal
+  Vectors<D> last_;         // w of the previous pass
+  double factor_ = 1, slowest_ = 0, last_change_ = 0;
+  int passes_ = 0;  // with the current prediction
+  int count_ = 0;   // renewals in the step
+};
 
 struct FluidStatistics {
   int sub_steps = 0;  ///< of the last step
@@ -40,7 +72,7 @@ class Fluid {
   /// [m/s], read only at interface faces; empty if they are at rest. Collective.
   void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// Sets the pressure that gave the interface its velocity, per boundary face [Pa]. Walls of known mass then
-  /// respond to the change of pressure (see yielding_walls.cpp). Call before prepare() and solve_pressure().
+  /// respond to the change of pressure (see wall_terms.cpp). Call before prepare() and solve_pressure().
   void yield_from(std::vector<double> load) {
     yields_ = boundary_.yields();
     boundary_.set_wall_load(std::move(load));
@@ -57,10 +89,6 @@ class Fluid {
   /// |w - w*| S/dt, relative to the load of the last solve_pressure() less a uniform pressure. Both are root
   /// mean squares over the interface. Collective.
   double unseen_share(const Vectors<D>& w) const;
-  /// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its
-  /// volume, beyond the error of faces that stand for curved walls. Sets the walls back along their normals by that error, unless
-  /// a structure moves them. Collective.
-  void keep_volume(std::vector<Vec3>& points, double time) const;
   /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// Makes the step level n. Cannot fail.
@@ -130,25 +158,10 @@ class Fluid {
   FluidStatistics statistics_;
 };
 
-/// Resolves `surface: auto` of bodies. Throws Error if two bodies differ.
-FluidParameters with_surfaces(FluidParameters parameters, bool moving);
-
 /// Throws Error for incompatible effects. Where one effect leaves a single choice for another, sets it.
 /// `moving`: the mesh will move. Collective.
 template <int D>
 void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters,
                     bool moving);
-
-/// Throws Error for an incompressible fluid with a trapped volume, or with a `volume-level` that it does not
-/// need. Without an outlet, walls may change the volume only if something sets the pressure level.
-/// Collective.
-template <int D>
-void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme);
-
-/// Area shares of the interface faces in the inflow of the given velocities [m^3/s], two values per face: at
-/// t^{n+1} and t^n. They sum to the inflows. Collective.
-template <int D>
-std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index>& faces, double time,
-                                  double dt);
 
 }  // namespace couplet::fluid

@@ -7,7 +7,6 @@
 
 #include "common/base/error.hpp"
 #include "common/base/processor_clones.hpp"
-#include "common/fv/use.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/state/state.hpp"
@@ -25,7 +24,6 @@ void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<
   const Placement<D>& to = *step.to;
   pressure.resize(projected.w.size());
   viscous.resize(projected.w.size());
-  const bool has_potential = scene.has_potential();
   const auto potential = scene.potential(step.middle());
   for (std::size_t b = 0; b < projected.w.size(); ++b) {
     const Index f = scene.mesh.n_interior + static_cast<Index>(b);
@@ -36,7 +34,7 @@ void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<
       flux -= prediction.weight * scene.fluid.mu * to.conductance[f] * (c + 3 * c.dot(n) * n);
     }
     double p = projected.boundary[b];
-    if (has_potential) p += scene.fluid.rho * potential(to.boundary_centre[b]);
+    if (potential) p += scene.fluid.rho * potential(to.boundary_centre[b]);
     const Vec<D> normal = flux.dot(n) * n;
     pressure[b] = 0.5 * p * (from.placement->area[f] + to.area[f]) + normal;
     viscous[b] = flux - normal;
@@ -79,73 +77,11 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
       predictor_(scene_, step_, gradient_, prediction_),
       flux_(scene_, step_, gradient_),
       projection_(scene_, step_, prediction_, projected_, moving),
-      energy_guard_(mesh, boundary, scene_.fluid, parameters.pressure_tolerance) {
-  if (parameters.rotating_frame) scene_.frame.emplace(*parameters.rotating_frame);
-  set_body_force();
-  if (!parameters.bodies.empty()) {
-    auto bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
-    bodies_ = bodies.get();
-    scene_.obstacles = std::move(bodies);
-  }
-  if (!parameters.gaps.empty()) {
-    auto gaps = std::make_unique<Gaps<D>>(mesh, parameters, points_at_rest);
-    gaps_ = gaps.get();
-    scene_.obstacles = std::move(gaps);
-  }
-}
-
-/// The potential would differ between the two sides of periodic patches; compressed fluid has a density that follows p
-/// itself; and blocked cells, cut ones and convective outlets see the pressure as it is.
-template <int D>
-void FractionalStep<D>::set_body_force() {
-  const FluidParameters& p = scene_.parameters;
-  if (p.body_force.empty()) return;
-  scene_.body_force = fv::make_expressions(p.body_force, D, "body-force");
-  const bool balances = p.bodies.empty() && p.gaps.empty() && !scene_.is_compressible() &&
-                        !scene_.boundary.has_convective_outlet();
-  scene_.varies = balances && !parallel::any(mesh_.comm, !mesh_.neighbour_shift.empty()) &&
-                  std::ranges::any_of(scene_.body_force, &fv::Expression::uses_space) &&
-                  std::ranges::none_of(scene_.body_force, &fv::Expression::uses_time);
-  for (int c = 0; c < D; ++c) {
-    bool periodic = false;
-    for (const Vec3& shift : mesh_.neighbour_shift) periodic |= std::abs(shift[c]) > 1e-12 * shift.norm();
-    periodic = parallel::any(mesh_.comm, periodic);
-    const fv::Expression& force = scene_.body_force[c];
-    scene_.balanced[c] = balances && !periodic && !force.uses_space();
-    if (force.uses_space() || force.uses_time() || force(Vec3::Zero(), 0) == 0) continue;
-    fv::Use& use = fv::uses()["body-force"];  // a fluid that it holds at rest is loaded
-    use.given = "the constant force";
-    use.note(force(Vec3::Zero(), 0));
-  }
-}
-
-/// Balances a body force that varies if its integral from the origin to each cell agrees with that from cell to cell. A force that
-/// is not finite somewhere between has no such potential.
-template <int D>
-void FractionalStep<D>::find_potential(const Placement<D>& at) {
-  if (!scene_.varies) return;
-  const auto place = [&](Index c) {
-    Vec3 x = Vec3::Zero();
-    x.template head<D>() = at.centre[c];
-    return x;
-  };
-  double most[2] = {0, 0};  // of the difference, of the potential
-  try {
-    std::vector<double> potential(mesh_.cells.n_local());
-    for (Index c = 0; c < mesh_.cells.n_local(); ++c) {
-      potential[c] = scene_.work(scene_.origin, place(c), 8);
-      most[1] = std::max(most[1], std::abs(potential[c]));
-    }
-    for (Index f = 0; f < mesh_.n_interior; ++f) {
-      const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-      most[0] = std::max(most[0], std::abs(potential[n] - potential[p] - scene_.work(place(p), place(n), 1)));
-    }
-  } catch (const Error&) {
-    most[0] = std::numeric_limits<double>::infinity();
-  }
-  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, mesh_.comm);
-  scene_.varies = most[0] <= 1e-9 * most[1];
-  if (scene_.varies) scene_.balanced.fill(true);
+      energy_check_(mesh, boundary, scene_.fluid, parameters.pressure_tolerance) {
+  scene_.forces = make_forces<D>(mesh, boundary, parameters);
+  scene_.obstacles = make_obstacles<D>(mesh, parameters, points_at_rest);
+  bodies_ = dynamic_cast<const ImmersedBodies<D>*>(scene_.obstacles.get());
+  gaps_ = dynamic_cast<const Gaps<D>*>(scene_.obstacles.get());
 }
 
 template <int D>
@@ -227,13 +163,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   scene_.oblique = parallel::max(mesh_.comm, s.placement->obliqueness) > orthogonal ||
                    (!s.points.empty() && !s.placement->shape);
   const Placement<D>& at = *s.placement;
-  Vec<D> moment = Vec<D>::Zero();
-  double volume = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    moment += at.volume[c] * at.centre[c], volume += at.volume[c];
-  for (double& sum : moment) sum = parallel::sum(mesh_.comm, sum);
-  scene_.origin.template head<D>() = moment / parallel::sum(mesh_.comm, volume);
-  find_potential(at);
+  for (const auto& force : scene_.forces) force->start(at);
   projected_.phi.assign(mesh_.n_flux_faces(), 0.0);
   step_ = {SubStep<D>{scene_.fluid.rho, s.placement, {}, s.points}, s};  // dt/rho = 1
   mark_level(s);
@@ -250,7 +180,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   projected_.p.assign(mesh_.cells.n_local(), 0.0);
   projected_.boundary.assign(s.w.size(), 0.0);
   projection_.start(at);
-  if (scene_.is_compressible() && scene_.parameters.initial_pressure) return keep_initial(s);
+  if (pressure_is_state() && scene_.parameters.initial_pressure) return keep_initial(s);
   const Vectors<D> jump_from = s.u_boundary;
   projection_.set_boundary_flux(s.w);
   projection_.solve_initial(at);
@@ -352,13 +282,7 @@ void FractionalStep<D>::commit(State<D>& s) {
     s.start = Start::after_impulse;
     s.dt_old = 0;
   }
-  set_eddy_viscosity(s);
-}
-
-template <int D>
-void FractionalStep<D>::set_eddy_viscosity(State<D>& state) {
-  if (scene_.parameters.turbulence)
-    predictor_.rate_operator().set_eddy_viscosity(*scene_.parameters.turbulence, state);
+  start_momentum(s);
 }
 
 template <int D>
@@ -368,14 +292,14 @@ EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
 }
 
 template <int D>
-typename FractionalStep<D>::Judgement FractionalStep<D>::judge(const State<D>& from) const {
+typename FractionalStep<D>::Outcome FractionalStep<D>::judge(const State<D>& from) const {
   const double fastest = largest_square<D>({u_.data(), std::size_t(mesh_.cells.n_owned())});
   double given = 0;
   for (const Vec<D>& w : projected_.w) given = std::max(given, w.squaredNorm());
   double largest[2] = {fastest, given};
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, mesh_.comm);
-  Judgement j;
-  j.energy = energy_guard_.judge(energy_step(from));
+  Outcome j;
+  j.energy = energy_check_.judge(energy_step(from));
   j.speed = std::sqrt(largest[0]);
   j.given_speed = std::sqrt(largest[1]);
   return j;
@@ -409,10 +333,14 @@ void FractionalStep<D>::check(const State<D>& from) {
   std::string cause;
   if (worst.here >= 0)
     cause = likely_cause(mesh_, scene_.boundary, energy_step(from), worst.here, scene_.fluid.nu,
-                         step_.by.implicit, scene_.frame ? scene_.frame->rate(step_.begin(), step_.dt) : 0);
+                         step_.by.implicit);
+  for (const auto& force : scene_.forces)
+    if (worst.here >= 0 && cause.empty())
+      cause = force->cause(step_.begin(), step_.dt, step_.to->volume[worst.here], scene_.fluid.nu);
+  if (cause.empty()) cause = "Try a smaller time step.";
   parallel::broadcast(mesh_.comm, cause, worst.rank);
   if (const std::string shut = scene_.obstacles->cause(*step_.to); !shut.empty()) cause = shut;
-  const EnergyJudgement& e = judgement_.energy;
+  const EnergyChange& e = judgement_.energy;
   const std::string what =
       !finite ? "its velocity is not finite"
       : fast  ? fmt::format("its velocity grew to {:.3g} m/s", judgement_.speed)

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/motion/scene.hpp"
-#include "fluid_solver/pressure/projection.hpp"
+#include "fluid_solver/pressure/pressure.hpp"
 #include "fluid_solver/step/stages.hpp"
 
 namespace couplet::fluid {
@@ -62,6 +63,10 @@ class FractionalStep {
   /// Replaces level n by level n+1 by swapping. Computes it first if complete() was not called since the last
   /// project(). Cannot fail. Collective.
   void commit(State<D>& state);
+  /// True if the pressure is part of the state, not only the impulse of a step.
+  bool pressure_is_state() const {
+    return std::ranges::any_of(projection_.terms(), [](const auto& term) { return term->keeps_pressure(); });
+  }
   /// Makes the initial velocity divergence-free. Reads state.u, w and u_boundary (u at the faces), sets phi.
   void project_initial(State<D>& state);
   /// Sets the data of the pressure terms in a state that no step computed. Collective.
@@ -80,8 +85,11 @@ class FractionalStep {
   /// Forces on the surroundings after the last project() [N], see Loads.
   const Vectors<D>& pressure_force() const { return loads_.pressure; }
   const Vectors<D>& viscous_force() const { return loads_.viscous; }
-  /// state.eddy, if there is a turbulence model. Collective.
-  void set_eddy_viscosity(State<D>& state);
+  /// Sets the data of the momentum terms in a new state. Collective.
+  void start_momentum(State<D>& state) {
+    for (const auto& term : momentum_terms()) term->start(state);
+  }
+  const MomentumTerms<D>& momentum_terms() { return predictor_.rate_operator().terms(); }
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
   const Scene<D>& scene() const { return scene_; }
@@ -107,8 +115,8 @@ class FractionalStep {
  private:
   void predict_from_guess(const State<D>& from);
   std::shared_ptr<PressureLevel<D>> correct();
-  struct Judgement {
-    EnergyJudgement energy;
+  struct Outcome {
+    EnergyChange energy;
     double speed = 0;        // largest [m/s]; infinity if one is not finite
     double given_speed = 0;  // largest at the boundaries [m/s]
   };
@@ -117,9 +125,7 @@ class FractionalStep {
   Vectors<D> friction_of(const Vectors<D>& x) const;
   double splitting_error(const PressureLevel<D>& now, double enough);
   EnergyStep<D> energy_step(const State<D>& from) const;
-  Judgement judge(const State<D>& from) const;
-  void set_body_force();
-  void find_potential(const Placement<D>& at);
+  Outcome judge(const State<D>& from) const;
   bool too_fast() const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);
@@ -137,10 +143,10 @@ class FractionalStep {
   FaceFlux<D> flux_;
   PressureProjection<D> projection_;
   Loads<D> loads_;
-  EnergyGuard<D> energy_guard_;
+  EnergyCheck<D> energy_check_;
   Vectors<D> u_;                             // u^{n+1} with level_
   std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; nullptr after project()
-  Judgement judgement_;                      // of level_
+  Outcome judgement_;                        // of level_
   std::uint64_t states_ = 0;                 // number of states so far
   double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
 };

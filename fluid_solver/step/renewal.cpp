@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/step/renewal.hpp"
+#include "fluid_solver/step/fluid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -32,6 +32,52 @@ COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, cons
   }
 }
 
+// Largest decay of the flux memory per step for which AB2 is stable without overshoot.
+constexpr double largest_decay = 2.0 / 3;
+
+/// Weights for add_memory().
+struct MemoryWeights {
+  double dt, now, before;  // a step, and delta at its middle from that of two levels
+};
+
+/// sum nu g + |phi - moved|/2 of each cell. `moved`: flux of the mesh, not read at rest.
+template <bool Moving>
+[[gnu::always_inline]] inline void sum_evening(const mesh::Mesh& mesh, double nu, const double* conductance,
+                                               const double* phi, const double* moved, double* sums) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double rate = nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
+    sums[owner[f]] += rate;
+    sums[neighbour[f]] += rate;
+  }
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    sums[owner[f]] += nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
+}
+COUPLET_PROCESSOR_CLONES void evening_pass(const mesh::Mesh& mesh, double nu, const double* conductance,
+                                           const double* phi, const double* moved, double* sums) {
+  if (moved)
+    sum_evening<true>(mesh, nu, conductance, phi, moved, sums);
+  else
+    sum_evening<false>(mesh, nu, conductance, phi, nullptr, sums);
+}
+
+/// phi += delta - min(decay, largest) delta_mid. Appends faces with a larger decay to `far`, which has room
+/// for all, and returns their number.
+COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryWeights& w, const double* rate,
+                                           const double* memory, const double* old, double* phi, Index* far) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  const double half = 0.5 * w.dt;
+  Index n = 0;
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double decay = half * (rate[owner[f]] + rate[neighbour[f]]);
+    far[n] = f;
+    n += decay > largest_decay;
+    const double mid = old ? w.now * memory[f] + w.before * old[f] : memory[f];
+    phi[f] += memory[f] - std::min(decay, largest_decay) * mid;
+  }
+  return n;
+}
+
 }  // namespace
 
 template <int D>
@@ -42,7 +88,8 @@ Predictor<D>::Predictor(const Scene<D>& scene, const Step<D>& step, const KnownG
       step_(step),
       gradient_(gradient),
       out_(result),
-      rate_operator_(scene.mesh, scene.boundary, scene.fluid.nu, scene.is_compressible()),
+      rate_operator_(scene.mesh, scene.boundary, scene.fluid.nu,
+                     make_momentum_terms<D>(scene.mesh, scene.parameters)),
       friction_(scene, step, rate_operator_) {}
 
 template <int D>
@@ -56,8 +103,7 @@ void Predictor<D>::predict(const State<D>& from) {
   side_.resize(from.u.size());
   out_.u.resize(from.u.size());
   out_.viscous_flux.resize(out_.w.size());
-  const bool forced =
-      scene_.frame || (!scene_.body_force.empty() && !std::ranges::all_of(scene_.balanced, std::identity()));
+  const bool forced = std::ranges::any_of(scene_.forces, [](const auto& force) { return force->acts(); });
   if (!moving && !implicit && !given && !forced) {
     explicit_pass<D>(std::span(from.placement->volume).first(mesh_.cells.n_owned()), from.u, dt * e0,
                      out_.rates.rate.data(), dt * e1, ratio > 0 ? from.rates_old.rate.data() : nullptr,
@@ -69,7 +115,7 @@ void Predictor<D>::predict(const State<D>& from) {
     side_[c] = volume[c] * from.u[c] + (given ? dt * step_.rate[c] : dt * e0 * out_.rates.rate[c]);
   if (ratio > 0 && !given)
     for (Index c = 0; c < mesh_.cells.n_local(); ++c) side_[c] += dt * e1 * from.rates_old.rate[c];
-  if (forced) add_body_force(from, e0, e1);
+  if (forced) add_forces(from, e0, e1);
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   if (implicit) {
@@ -110,15 +156,12 @@ void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
 
 // Volume-integrated at t^{n+1/2}, the time of the pressure that may balance it.
 template <int D>
-void Predictor<D>::add_body_force(const State<D>& from, double e0, double e1) {
+void Predictor<D>::add_forces(const State<D>& from, double e0, double e1) {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
   out_.force.assign(places.size(), Vec<D>::Zero());
-  for (std::size_t c = 0; c < scene_.body_force.size(); ++c)
-    if (!scene_.balanced[c])
-      scene_.body_force[c].evaluate(places, step_.middle(), flat<D>(out_.force), D, int(c));
-  if (scene_.frame)
-    scene_.frame->add_force(step_.begin(), step_.dt, places, from.u, from.u_old, {e0, e1}, out_.force);
+  for (const auto& force : scene_.forces)
+    force->add(step_.begin(), step_.dt, places, from.u, from.u_old, {e0, e1}, out_.force);
   for (std::size_t c = 0; c < places.size(); ++c) side_[c] += step_.dt * step_.to->volume[c] * out_.force[c];
 }
 
@@ -205,58 +248,6 @@ void Predictor<D>::add_back_old_pressure() {
 
 template class Predictor<2>;
 template class Predictor<3>;
-
-// Predicted face fluxes and their memory of the mean velocities.
-
-namespace {
-
-// Largest decay of the flux memory per step for which AB2 is stable without overshoot.
-constexpr double largest_decay = 2.0 / 3;
-
-/// Weights for add_memory().
-struct MemoryWeights {
-  double dt, now, before;  // a step, and delta at its middle from that of two levels
-};
-
-/// sum nu g + |phi - moved|/2 of each cell. `moved`: flux of the mesh, not read at rest.
-template <bool Moving>
-[[gnu::always_inline]] inline void sum_evening(const mesh::Mesh& mesh, double nu, const double* conductance,
-                                               const double* phi, const double* moved, double* sums) {
-  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
-  for (Index f = 0; f < mesh.n_interior; ++f) {
-    const double rate = nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
-    sums[owner[f]] += rate;
-    sums[neighbour[f]] += rate;
-  }
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    sums[owner[f]] += nu * conductance[f] + 0.5 * std::abs(phi[f] - (Moving ? moved[f] : 0.0));
-}
-COUPLET_PROCESSOR_CLONES void evening_pass(const mesh::Mesh& mesh, double nu, const double* conductance,
-                                           const double* phi, const double* moved, double* sums) {
-  if (moved)
-    sum_evening<true>(mesh, nu, conductance, phi, moved, sums);
-  else
-    sum_evening<false>(mesh, nu, conductance, phi, nullptr, sums);
-}
-
-/// phi += delta - min(decay, largest) delta_mid. Appends faces with a larger decay to `far`, which has room
-/// for all, and returns their number.
-COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryWeights& w, const double* rate,
-                                           const double* memory, const double* old, double* phi, Index* far) {
-  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
-  const double half = 0.5 * w.dt;
-  Index n = 0;
-  for (Index f = 0; f < mesh.n_interior; ++f) {
-    const double decay = half * (rate[owner[f]] + rate[neighbour[f]]);
-    far[n] = f;
-    n += decay > largest_decay;
-    const double mid = old ? w.now * memory[f] + w.before * old[f] : memory[f];
-    phi[f] += memory[f] - std::min(decay, largest_decay) * mid;
-  }
-  return n;
-}
-
-}  // namespace
 
 /// phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k, delta' on interior faces only.
 template <int D>

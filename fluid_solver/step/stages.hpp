@@ -44,7 +44,7 @@ class Predictor {
 
  private:
   void set_explicit_friction(const State<D>& from, double e0, double e1);
-  void add_body_force(const State<D>& from, double e0, double e1);
+  void add_forces(const State<D>& from, double e0, double e1);
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
   void solve_viscous(const State<D>& from, double a);
@@ -115,7 +115,7 @@ struct EnergyStep {
 };
 
 /// Change of the kinetic energy in a sub-step.
-struct EnergyJudgement {
+struct EnergyChange {
   EnergyLedger ledger;         ///< after the sub-step
   double gain = 0;             ///< of kinetic energy in this sub-step [J]
   double work = 0;             ///< done by boundaries and forces [J]
@@ -132,10 +132,10 @@ struct EnergyJudgement {
 /// boundary fluxes is subtracted, because their rates have only the accuracy of the scheme. Work that leaves
 /// is not offset against work that enters.
 template <int D>
-class EnergyGuard {
+class EnergyCheck {
  public:
   /// `pressure_tolerance`: relative tolerance of the pressure solver.
-  EnergyGuard(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Properties& fluid,
+  EnergyCheck(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Properties& fluid,
               double pressure_tolerance)
       : mesh_(mesh),
         boundary_(boundary),
@@ -144,7 +144,7 @@ class EnergyGuard {
         pressure_tolerance_(pressure_tolerance),
         bulk_(fluid.rho * fluid.sound * fluid.sound) {}
   /// Collective.
-  EnergyJudgement judge(const EnergyStep<D>& step) const;
+  EnergyChange judge(const EnergyStep<D>& step) const;
   /// Sum of rho V |u|^2 / 2 [J] over the cells of this rank.
   double kinetic(const Placement<D>& at, const Vectors<D>& u) const;
   /// Elastic energy V p^2/(2 rho c^2) [J] at the end of the step of pressure[0], with pressures relative to
@@ -164,10 +164,9 @@ class EnergyGuard {
   double rho_, mu_, pressure_tolerance_, bulk_;
 };
 
-/// Likely cause of a failed step in one cell, as a sentence; local. `cell`: owned. `frame_rate`: |2 omega| of
-/// a rotating frame [1/s], 0 without one.
+/// Likely cause of a failed step in one cell, as a sentence; empty if it is none of those known here. Local. `cell`: owned.
 template <int D>
 std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& step,
-                         Index cell, double kinematic_viscosity, bool implicit, double frame_rate);
+                         Index cell, double kinematic_viscosity, bool implicit);
 
 }  // namespace couplet::fluid

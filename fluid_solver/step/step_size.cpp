@@ -90,6 +90,14 @@ double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) 
   return rk ? 1.73 : 0.25;
 }
 
+constexpr int most_sub_steps = 100000;
+// Relative cost of a sub-step with the implicit viscous term.
+constexpr double implicit_cost = 1.5;
+
+double parts(double dt, double limit) {
+  return std::isfinite(limit) ? std::max(1.0, std::ceil(dt / limit - 1e-9)) : 1.0;
+}
+
 }  // namespace
 
 double implicit_convective_limit(double q) { return implicit_table()(q); }
@@ -105,8 +113,8 @@ double explicit_limit(double angle, ExplicitScheme scheme) {
 
 template <int D>
 StepSize<D>::StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
-                      ExplicitScheme scheme)
-    : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), scheme_(scheme) {
+                      const MomentumTerms<D>& terms, ExplicitScheme scheme)
+    : mesh_(mesh), boundary_(boundary), terms_(terms), nu_(kinematic_viscosity), scheme_(scheme) {
   std::vector<int> faces(std::size_t(mesh.cells.n_local()), 0);
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     ++faces[mesh.owner[f]];
@@ -120,17 +128,6 @@ template <int D>
 double StepSize<D>::friction_limit(Index cell, double angle, double size) const {
   return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle, scheme_) / size
                                       : base::infinity;
-}
-
-/// Adds the stress nu_t (grad u + grad u^T), which has at most twice the rate of nu_t grad u.
-template <int D>
-void StepSize<D>::add_eddies(const State<D>& s) {
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const double rate = 2 * (s.eddy[p] + s.eddy[n]) * s.placement->conductance[f];
-    rates_[p][1] += rate;
-    rates_[n][1] += rate;
-  }
 }
 
 /// sum |phi - dV/dt|/2 and 2 nu sum g of each cell; with `peclet` also the largest |phi - dV/dt|/(nu g) of
@@ -163,7 +160,7 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
     for (Vec<2>& rate : rates_) rate = Vec<2>(fourth_convection * rate[0], fourth_friction * rate[1]);
     for (double& number : peclet_of_) number *= fourth_convection;
   }
-  if (!s.eddy.empty()) add_eddies(s);
+  for (const auto& term : terms_) term->add_limits(s, rates_);
   return largest;
 }
 
@@ -270,22 +267,11 @@ std::string in_words(const StepLimiter& by) {
 template class StepSize<2>;
 template class StepSize<3>;
 
-namespace {
-
-constexpr int most_sub_steps = 100000;
-// Relative cost of a sub-step with the implicit viscous term.
-constexpr double implicit_cost = 1.5;
-
-double parts(double dt, double limit) {
-  return std::isfinite(limit) ? std::max(1.0, std::ceil(dt / limit - 1e-9)) : 1.0;
-}
-
-}  // namespace
-
 template <int D>
 SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
-                            const FluidParameters& parameters)
-    : parameters_(parameters), size_(mesh, boundary, parameters.kinematic_viscosity(), parameters.scheme) {}
+                            const FluidParameters& parameters, const MomentumTerms<D>& terms)
+    : parameters_(parameters),
+      size_(mesh, boundary, parameters.kinematic_viscosity(), terms, parameters.scheme) {}
 
 template <int D>
 void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, double frame_rate,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/state/state.hpp"
 
 namespace couplet::fluid {
@@ -36,8 +37,9 @@ std::string in_words(const StepLimiter& limiter);
 template <int D>
 class StepSize {
  public:
+  /// `terms`: must outlive this.
   StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
-           ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
+           const MomentumTerms<D>& terms, ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
   /// Largest rate of the Coriolis force [1/s]; 0 if there is none.
   void set_frame_rate(double rate) { frame_rate_ = rate; }
   void set_fourth(bool fourth) { fourth_ = fourth; }
@@ -53,13 +55,13 @@ class StepSize {
  private:
   double explicit_viscous_limit(const State<D>& state);
   double add_rates(const State<D>& state, bool peclet);
-  void add_eddies(const State<D>& state);
   template <class Use>
   void for_rates(const State<D>& state, const Use& use) const;
   double frame_limit() const;
   double friction_limit(Index cell, double angle, double size) const;
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
+  const MomentumTerms<D>& terms_;
   double nu_, frame_rate_ = 0;
   ExplicitScheme scheme_;
   bool fourth_ = false;                  // the operators are of fourth order
@@ -80,7 +82,8 @@ double explicit_limit(double angle, ExplicitScheme scheme = ExplicitScheme::adam
 template <int D>
 class SubStepSize {
  public:
-  SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters);
+  SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
+              const MomentumTerms<D>& terms);
 
   /// Sets whether operators are of fourth order.
   void set_fourth(bool fourth) { size_.set_fourth(fourth); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that faces, steps and modes receive the prescribed pressures and resolve them.
+// Checks that faces and modes receive the prescribed pressures and resolve them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,9 +13,6 @@
 
 namespace couplet::plate {
 namespace {
-
-/// Minimum number of load samples for a finding before the end: one jump in few steps is no error.
-constexpr long least_looks = 16;
 
 /// Sixteen points of equal weight: centers of the pieces after two bisections.
 std::vector<Vec3> points_within(const modes::ModalModel& model, std::span<const Index> face) {
@@ -46,36 +43,17 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
  public:
   explicit PrescribedPressures(const PlateView& view) : view_(view) {}
   void observe(diagnostics::Report&) override {
-    has_acted_ = has_acted_ || view_.pressure_acts;
     if (const auto t = time_to_look(view_)) look_at_faces(*t);
-    // A nonuniform load needs an expression per face, so it is not sampled in each step.
-    const GlobalIndex steps = view_.step.number + 1;
-    if (view_.is_dynamic() && view_.pressure->changes_in_time() &&
-        (view_.pressure->is_uniform() || steps <= 16 || steps % 16 == 0))
-      look_within_step(6 + int(steps % 5));
   }
   void look(diagnostics::Report& report) override {
     report_present(report, "load within a face", within_faces(), 0.05,
                    fmt::format("error of the load's effect on the modes with one force per face = {:.2g}",
                                within_faces()),
                    "the pressure varies within a face: refine the mesh there");
-    if (!(size_ > 0) || !(view_.step.is_last || samples_ >= least_looks)) return;
-    const double apart = std::sqrt(apart_ / size_);
-    report_present(
-        report, "step that resolves the load", apart, 0.1,
-        fmt::format("load at mid-step against its mean over the step: difference {:.2g} of the load (rms)",
-                    apart),
-        "the step does not resolve the load: use ten or more steps per load period");
   }
   // A load without effect so far may change, so it is judged at the end.
   void conclude(diagnostics::Report& report) override {
     if (fine_ > 0) report.errors.mesh += within_faces();  // NaN with modes of a file
-    if (!has_acted_ && (view_.pressure->changes_in_time() || !view_.pressure->is_uniform()))
-      report_present(
-          report, "load between the faces or steps", 1, 0.5,
-          "the prescribed pressures were 0 at every face center in every step",
-          "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face "
-          "or a step with the same resultant");
     // Only round-off remains if modes do not move along the forces, or forces cancel.
     const double part = std::sqrt(part_ / most_);
     if (part < 1e-9)
@@ -87,9 +65,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
           "the structure's own normal; equal pressures on both sides cancel; a mode of another symmetry "
           "needs 'modes.number'");
   }
-  void visit(io::Archive& archive) override {
-    archive.common("sums", has_acted_, part_, most_, within_, fine_, apart_, size_, samples_);
-  }
+  void visit(io::Archive& archive) override { archive.common("sums", part_, most_, within_, fine_); }
 
  private:
   double within_faces() const { return fine_ > 0 ? std::sqrt(within_ / fine_) : unknown; }
@@ -129,36 +105,11 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     }
     if (!pressure.is_uniform()) fine_ += std::max(of_fine, of_middle);
   }
-  /// Compares the load at mid-step with its mean over samples of the step.
-  void look_within_step(int samples) {
-    const double start = view_.step.time, dt = view_.step.dt;
-    std::vector<double> middle(view_.surface.omega().size()), mean(middle.size(), 0), one(middle);
-    double squares = 0;
-    ++samples_;
-    try {
-      view_.pressure->at(start + 0.5 * dt, middle);
-      for (int i = 0; i < samples; ++i) {
-        view_.pressure->at(start + (i + 0.5) / samples * dt, one);
-        for (std::size_t m = 0; m < mean.size(); ++m) {
-          mean[m] += one[m] / samples;
-          squares += one[m] * one[m] / samples;
-        }
-      }
-    } catch (const Error&) {
-      return;  // no value there: the scheme need not ask for it
-    }
-    size_ += squares;
-    for (std::size_t m = 0; m < mean.size(); ++m) apart_ += (mean[m] - middle[m]) * (mean[m] - middle[m]);
-  }
 
   PlateView view_;
-  bool has_acted_ = false;
   double part_ = 0, most_ = 0;  // squares over all modes of the loads, and of these along the motion
   // Likewise of the part missed by the faces and of the loads, each over (omega^2 + omega_1^2).
   double within_ = 0, fine_ = 0;
-  // Squared difference of the mid-step load from its mean over the step, summed over modes, and squared load.
-  double apart_ = 0, size_ = 0;
-  long samples_ = 0;
 };
 
 }  // namespace

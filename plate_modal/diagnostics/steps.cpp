@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of the energies, the time step and the impacts on a seat.
+// Checks of the energies, the error of the time step and the impacts on a seat.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,40 +49,6 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
   static constexpr double usual_damping = 0.02;
   double mismatch_ = 0, largest_ = 0, moved_ = 0;  // [J]; moved_: without the seat
   double turns_ = 0;  // integral over time of the angular frequency times twice the kinetic energy [J]
-};
-
-/// With ten steps per period the trapezoidal rule lengthens the period by 3 %, and a mode at a wrong
-/// frequency responds to a load like another structure.
-class StepSize final : public diagnostics::Diagnostic {
- public:
-  StepSize(const PlateView& view, std::shared_ptr<Motion> motion) : view_(view), motion_(std::move(motion)) {}
-  void observe(diagnostics::Report&) override {
-    motion_->accepted(view_.before, view_.state, view_.oscillators.load(), view_.step.dt);
-  }
-  void look(diagnostics::Report& report) override {
-    const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
-    const bool is_coarse = seen.coarse_share > 0;
-    report_present(
-        report, "step that resolves the modes", seen.coarse_share, Motion::coarse_limit,
-        is_coarse ? fmt::format("modes with fewer than ten steps per period (first: mode {}, {:.2g} steps) "
-                                "make up {:.2g} of the displacement (rms)",
-                                seen.coarse_mode, seen.steps_a_period, seen.coarse_share)
-                  : "no oscillating mode has fewer than ten steps per period",
-        is_coarse ? fmt::format("they oscillate at a wrong frequency: use 'simulation.time-step: "
-                                "{:.2g} s'",
-                                seen.recommended_step)
-                  : "");
-    report_present(report, "step near a resonance", seen.resonance_error, 0.1,
-                   fmt::format("mode {} is near resonance (amplification {:.2g}): displacement error by the "
-                               "step's frequency error = {:.2g}",
-                               seen.resonant_mode, seen.amplification, seen.resonance_error),
-                   fmt::format("use 'simulation.time-step: {:.2g} s'", seen.resonant_step));
-  }
-  void visit(io::Archive& archive) override { archive.common("motion", *motion_); }
-
- private:
-  PlateView view_;
-  std::shared_ptr<Motion> motion_;
 };
 
 double norm_of(std::span<const double> amplitudes) {
@@ -180,10 +146,6 @@ class ImpactOnSeat final : public diagnostics::Diagnostic {
 
 diagnostics::Made balance_of_energies(const PlateView& view, const std::shared_ptr<Motion>& motion) {
   return motion ? std::make_shared<BalanceOfEnergies>(view) : nullptr;
-}
-
-diagnostics::Made step_size(const PlateView& view, const std::shared_ptr<Motion>& motion) {
-  return motion ? std::make_shared<StepSize>(view, motion) : nullptr;
 }
 
 diagnostics::Made step_error(const PlateView& view, const std::shared_ptr<Motion>& motion) {

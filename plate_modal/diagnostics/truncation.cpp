@@ -97,13 +97,13 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   // A mode responds to a load of frequency f by 1/(1 - (f/f_mode)^2): at two thirds of its frequency 1.8
   // times the static measure, and near it without bound.
   void look_at_load_frequency(diagnostics::Report& report, double share) const {
-    const Motion::Evidence seen = motion_->evidence(view_.step.is_last);
+    const Motion::LoadFrequency seen = motion_->load_frequency(view_.step.is_last);
     report_neglected(
-        report, "load faster than the modes", seen.load_over_last,
+        report, "load faster than the modes", seen.over_last,
         fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
-                    seen.load_omega / (2 * std::numbers::pi), seen.load_over_last),
+                    seen.omega / (2 * std::numbers::pi), seen.over_last),
         "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')",
-        seen.load_over_last < 1 ? share / (1 / (seen.load_over_last * seen.load_over_last) - 1) : 1, 2. / 3);
+        seen.over_last < 1 ? share / (1 / (seen.over_last * seen.over_last) - 1) : 1, 2. / 3);
   }
   /// Share of the initial kinetic energy that is in no mode.
   void look_at_velocity(diagnostics::Report& report) const {

@@ -12,7 +12,7 @@
 #include "plate_modal/model/build_model.hpp"
 #include "plate_modal/motion/contact.hpp"
 #include "plate_modal/motion/oscillators.hpp"
-#include "plate_modal/motion/pressure_load.hpp"
+#include "plate_modal/motion/surface.hpp"
 
 namespace couplet::plate {
 
@@ -30,7 +30,6 @@ struct PlateView {
   const std::vector<double>& displacement;  ///< of the vertices [m], 3 each
   const std::optional<Deflection>& deflection;
   const std::vector<double>& fluid_force;  ///< on the faces [N], 3 each; may be empty
-  const bool& pressure_acts;               ///< a prescribed pressure was not 0 somewhere in the step
 
   bool is_dynamic() const { return parameters.analysis == Parameters::Analysis::dynamic; }
   const modes::ModalModel& model() const { return surface.model(); }

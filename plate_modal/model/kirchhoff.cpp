@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plate_modal/model/kirchhoff.hpp"
+#include "plate_modal/model/midsurface.hpp"
 
 #include <Eigen/LU>
 

@@ -12,7 +12,7 @@
 #include "common/contact/contact.hpp"
 #include "common/diagnostics/effects.hpp"
 #include "common/time/time_scheme.hpp"
-#include "plate_modal/model/skin.hpp"
+#include "plate_modal/model/plate_model.hpp"
 
 namespace couplet::plate {
 
@@ -86,7 +86,7 @@ struct PlateScene {
   bool coupled = false;
   double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN if unknown
 };
-using PlateCard = diagnostics::EffectCard<PlateScene>;
+using PlateCard = diagnostics::EffectEntry<PlateScene>;
 /// Effects that a modal structure can simulate beyond its modes, for --explain and docs/effects.md.
 std::span<const PlateCard> plate_effect_cards();
 

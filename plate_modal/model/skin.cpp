@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plate_modal/model/skin.hpp"
+#include "plate_modal/model/plate_model.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -13,26 +13,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "client/python")]
 import atlas  # noqa: E402
 
-HEAD = """# Where each scheme is stable
-
-This page shows for which parameters each scheme is stable, so that you can see how far your case is from a limit. `python3 scripts/atlas` writes it
-from runs of the programs; do not edit. Each square shows the number of the map's criterion, and each picture has a table.
-
-| color | meaning |
-|---|---|
-| green | within 5 % |
-| pale | within 20 % |
-| yellow | larger error, and the run warned (`--strict` makes it a failed run) |
-| blue | a guard ended the run: exit code 1 |
-| red | an error above 20 % with exit code 0 and no warning; there must be none |
-
-All runs have default settings except for the parameters of the map. A failed step is halved up to ten times, as in any run. The color shows `error` in
-the table. A run whose estimated error is above 0.15 warns ([findings](findings.md)).
-"""
-
 
 def page(maps, folder):
-    text = HEAD
+    text = (pathlib.Path(__file__).parent / "head.txt").read_text()
     for m in maps.values():
         squares = atlas.read(folder / f"{m.name}.csv")
         counts = collections.Counter(s.outcome for s in squares.values())

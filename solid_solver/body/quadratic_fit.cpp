@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/body/quadratic_fit.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "common/base/processor_clones.hpp"
+#include "common/elasticity/lanes.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -17,23 +18,105 @@ namespace {
 
 // Relative to the sum of the weights; in units of the scale, a good sample contributes about 0.1.
 constexpr double least_curvature = 1e-4, least_slope = 1e-12;
+constexpr double near_weight = 0.05;  // added to the squared relative distance
+constexpr double least_pivot = 1e-9;  // ratio of the pivots of undetermined and determined terms
+// Relative square of a term in the samples, below which they do not span its direction.
+constexpr double not_spanned = 1e-20;
+
+using elastic::Four;
+
+[[gnu::always_inline]] inline Four load(const double* from) { return elastic::lanes::load<3>(from); }
+
+/// Adds a_i a_j of four rows `a`, in blocks of four from the diagonal on.
+[[gnu::always_inline]] inline void add_rows(const double* a, int n, int width, double* products) {
+  const double *b = a + width, *c = b + width, *d = c + width;
+  for (int i = 0; i < n; ++i)
+    for (int j = i / 4 * 4; j < width; j += 4) {
+      double* to = products + i * width + j;
+      elastic::lanes::store<3>(
+          to, load(to) + a[i] * load(a + j) + b[i] * load(b + j) + c[i] * load(c + j) + d[i] * load(d + j));
+    }
+}
+
+/// Cholesky's method on the upper triangle. The columns from n on are right-hand sides and become the solutions.
+[[gnu::always_inline]] inline void eliminate(double* rows, int n, int width) {
+  for (int k = 0; k < n; ++k) {
+    double* pivot = rows + k * width;
+    const double inverse = 1 / std::sqrt(pivot[k]);
+    for (int j = k / 4 * 4; j < width; j += 4) elastic::lanes::store<3>(pivot + j, inverse * load(pivot + j));
+    for (int i = k + 1; i < n; ++i)
+      for (int j = i / 4 * 4; j < width; j += 4) {
+        double* to = rows + i * width + j;
+        elastic::lanes::store<3>(to, load(to) - pivot[i] * load(pivot + j));
+      }
+  }
+  for (int i = n; i-- > 0;)
+    for (int j = width - 4; j >= n / 4 * 4; j -= 4) {  // the block with terms is overwritten last
+      const double* row = rows + i * width;
+      Four value = load(row + j);
+      for (int k = i + 1; k < n; ++k) value -= row[k] * load(rows + k * width + j);
+      elastic::lanes::store<3>(rows + i * width + j, value / row[i]);
+    }
+}
+
+// The loops over the terms of a quadratic in 3-D have constant lengths.
+constexpr int terms_in_space = 10, width_in_space = 16;
+
+COUPLET_PROCESSOR_CLONES void add_products(const double* a, int n, int width, double* products) {
+  if (n == terms_in_space && width == width_in_space)
+    add_rows(a, terms_in_space, width_in_space, products);
+  else
+    add_rows(a, n, width, products);
+}
+
+COUPLET_PROCESSOR_CLONES void solve_rows(double* rows, int n, int width) {
+  if (n == terms_in_space && width == width_in_space)
+    eliminate(rows, terms_in_space, width_in_space);
+  else
+    eliminate(rows, n, width);
+}
 
 }  // namespace
 
-void QuadraticFit::start(int dim, int components, const Vec3& centre, double scale) {
-  dim_ = dim, centre_ = centre, scale_ = scale, weights_ = 0, n_samples_ = n_rows_ = 0;
-  samples_.resize(n_terms() + components, std::max<Eigen::Index>(samples_.cols(), 64));
-  rows_.resize(n_terms() * components + 1, std::max<Eigen::Index>(rows_.cols(), 64));
+void NormalEquations::start(int terms, int values) {
+  terms_ = terms, width_ = (terms + values + 3) / 4 * 4, waiting_ = 0;
+  batch_.assign(std::size_t(4 * width_), 0);
+  products_.assign(std::size_t(terms * width_), 0);
 }
 
-QuadraticFit::Terms QuadraticFit::terms(const Vec3& place, const Tensor3& moment) const {
-  const Vec3 x = (place - centre_) / scale_;
+void NormalEquations::flush() {
+  std::fill(batch_.begin() + waiting_ * width_, batch_.end(), 0);
+  add_products(batch_.data(), terms_, width_, products_.data());
+  waiting_ = 0;
+}
+
+void NormalEquations::solve() { solve_rows(products_.data(), terms_, width_); }
+
+void QuadraticFit::start(int dim, int components, const Vec3& centre, double scale) {
+  dim_ = dim, components_ = components, centre_ = centre, scale_ = scale, weights_ = 0, has_rows_ = false;
+  samples_.start(n_terms(), components);
+}
+
+namespace {
+
+/// Writes `factor` times the terms at x.
+void write_terms(int dim, const Vec3& x, double factor, double* to) {
+  const double a = factor * x[0], b = factor * x[1], c = factor * x[2];
+  if (dim == 2) {
+    const std::array<double, 6> terms{factor, a, b, a * x[0], a * x[1], b * x[1]};
+    std::ranges::copy(terms, to);
+  } else {
+    const std::array<double, 10> terms{factor,   a,        b,        c,        a * x[0],
+                                       a * x[1], a * x[2], b * x[1], b * x[2], c * x[2]};
+    std::ranges::copy(terms, to);
+  }
+}
+
+}  // namespace
+
+QuadraticFit::Terms QuadraticFit::terms(const Vec3& place) const {
   Terms phi(n_terms());
-  int i = 0;
-  phi[i++] = 1;
-  for (int a = 0; a < dim_; ++a) phi[i++] = x[a];
-  for (int a = 0; a < dim_; ++a)
-    for (int b = a; b < dim_; ++b) phi[i++] = x[a] * x[b] + moment(a, b) / (scale_ * scale_);
+  write_terms(dim_, (place - centre_) / scale_, 1, phi.data());
   return phi;
 }
 
@@ -49,38 +132,77 @@ QuadraticFit::Slopes QuadraticFit::slopes(const Vec3& place) const {
 
 void QuadraticFit::add_sample(const Vec3& place, const Tensor3& moment, std::span<const double> values,
                               double weight) {
-  if (n_samples_ == samples_.cols()) samples_.conservativeResize(Eigen::NoChange, 2 * n_samples_);
+  add_values(place, values, weight);
+  double* squares = samples_.last_row() + 1 + dim_;
+  const double factor = std::sqrt(weight) / (scale_ * scale_);
+  for (int a = 0; a < dim_; ++a)
+    for (int b = a; b < dim_; ++b) *squares++ += factor * moment(a, b);
+}
+
+void QuadraticFit::add_values(const Vec3& place, std::span<const double> values, double weight) {
+  const double inverse = 1 / scale_, root = std::sqrt(weight);
   weights_ += weight;
-  const double root = std::sqrt(weight);
-  auto column = samples_.col(n_samples_++);
-  const Terms phi = terms(place, moment);
-  for (Eigen::Index i = 0; i < phi.size(); ++i) column[i] = root * phi[i];
-  for (Eigen::Index k = n_terms(); k < column.size(); ++k)
-    column[k] = root * values[std::size_t(k - n_terms())];
+  double* row = samples_.next_row();
+  write_terms(dim_, inverse * (place - centre_), root, row);
+  row += n_terms();
+  for (int k = 0; k < components_; ++k) row[k] = root * values[std::size_t(k)];
+}
+
+void QuadraticFit::add_near(const Vec3& place, std::span<const double> values) {
+  const double far = (place - centre_).squaredNorm() / (scale_ * scale_);
+  add_values(place, values, 1 / (near_weight + far));
 }
 
 void QuadraticFit::add_row(const Row& row, double value, double weight) {
-  if (n_rows_ == rows_.cols()) rows_.conservativeResize(Eigen::NoChange, 2 * n_rows_);
+  const int n = n_terms() * components_;
+  if (!has_rows_) coupled_.start(n, 1);
+  has_rows_ = true;
   const double root = std::sqrt(weight);
-  rows_.col(n_rows_++) << root * row.reshaped(), root * value;
+  double* to = coupled_.next_row();
+  for (int i = 0; i < n; ++i) to[i] = root * row.data()[i];
+  to[n] = root * value;
 }
 
 void QuadraticFit::solve() {
-  const Eigen::Index n = n_terms(), components = samples_.rows() - n;
-  const auto of = samples_.topLeftCorner(n, n_samples_);
-  of_samples_.setZero(n, n);
-  of_samples_.selfadjointView<Eigen::Lower>().rankUpdate(of);
-  for (Eigen::Index i = 0; i < n; ++i)
-    of_samples_(i, i) += weights_ * (i > dim_ ? least_curvature : i > 0 ? least_slope : 0);
-  coefficients_ = of * samples_.bottomLeftCorner(components, n_samples_).transpose();
-  if (n_rows_ == 0) return of_samples_.llt().solveInPlace(coefficients_);
-  const auto coupled = rows_.topLeftCorner(n * components, n_rows_);
-  of_rows_.setZero(n * components, n * components);
-  for (Eigen::Index k = 0; k < components; ++k) of_rows_.block(k * n, k * n, n, n) = of_samples_;
-  of_rows_.selfadjointView<Eigen::Lower>().rankUpdate(coupled);
-  Eigen::VectorXd right = coefficients_.reshaped();
-  right += coupled * rows_.row(n * components).head(n_rows_).transpose();
-  coefficients_ = of_rows_.llt().solve(right).reshaped(n, components);
+  const int n = n_terms();
+  samples_.flush();
+  for (int i = 0; i < n; ++i)
+    samples_.at(i, i) += weights_ * (i > dim_ ? least_curvature : i > 0 ? least_slope : 0);
+  coefficients_.resize(n, components_);
+  if (!has_rows_) {
+    samples_.solve();
+    for (int k = 0; k < components_; ++k)
+      for (int i = 0; i < n; ++i) coefficients_(i, k) = samples_.at(i, n + k);
+    return;
+  }
+  coupled_.flush();
+  const int all = n * components_;
+  for (int k = 0; k < components_; ++k)
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j) coupled_.at(k * n + i, k * n + j) += samples_.at(i, j);
+      coupled_.at(k * n + i, all) += samples_.at(i, n + k);
+    }
+  coupled_.solve();
+  for (int i = 0; i < all; ++i) coefficients_.data()[i] = coupled_.at(i, all);
+}
+
+void QuadraticFit::solve_near() {
+  samples_.flush();
+  // Thin cells give terms of very different magnitude.
+  const int n = n_terms();
+  std::array<double, most_terms> scale{};
+  for (int i = 0; i < n; ++i)
+    if (samples_.at(i, i) > not_spanned * samples_.at(0, 0))
+      scale[std::size_t(i)] = 1 / std::sqrt(samples_.at(i, i));
+  for (int i = 0; i < n; ++i) {
+    for (int j = i; j < n + components_; ++j)
+      samples_.at(i, j) *= scale[std::size_t(i)] * (j < n ? scale[std::size_t(j)] : 1);
+    samples_.at(i, i) += least_pivot;
+  }
+  samples_.solve();
+  coefficients_.resize(n, components_);
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < components_; ++k) coefficients_(i, k) = scale[std::size_t(i)] * samples_.at(i, n + k);
 }
 
 namespace {

@@ -12,9 +12,31 @@
 
 namespace couplet::solid {
 
+/// Normal equations of a linear least-squares problem with several right-hand sides.
+class NormalEquations {
+ public:
+  void start(int terms, int values);
+  /// Returns a row of the problem to be filled with the terms, then the values.
+  double* next_row() {
+    if (waiting_ == 4) flush();
+    ++waiting_;
+    return last_row();
+  }
+  double* last_row() { return batch_.data() + std::size_t(width_ * (waiting_ - 1)); }
+  /// Adds the rows that wait.
+  void flush();
+  /// Entry of the upper triangle or, from column `terms` on, of a right-hand side; after solve(), a solution there.
+  double& at(int i, int j) { return products_[std::size_t(i * width_ + j)]; }
+  void solve();
+
+ private:
+  int terms_ = 0, width_ = 0, waiting_ = 0;
+  std::vector<double> batch_, products_;  // rows of `width_`, a multiple of four
+};
+
 /// Least-squares fit of `components` quadratics in 2-D or 3-D,
 ///   f_k(x) = sum_i c_ik phi_i(x),   phi = 1, x_a, x_a x_b (a <= b),   x = (place - center) / scale,
-/// to weighted samples and rows that couple the components. Undetermined curvature is minimized.
+/// to weighted samples and rows that couple the components.
 class QuadraticFit {
  public:
   static constexpr int most_terms = 10, most_components = 6;
@@ -26,27 +48,31 @@ class QuadraticFit {
   void start(int dim, int components, const Vec3& centre, double scale);
   /// f(place) = values; `moment` [m^2]: mean of (x - place)(x - place)^T over the cell of a mean value.
   void add_sample(const Vec3& place, const Tensor3& moment, std::span<const double> values, double weight);
+  /// Adds f(place) = values with the weight 1 / (0.05 + x^2).
+  void add_near(const Vec3& place, std::span<const double> values);
   /// Adds the row sum_ik row(i, k) c_ik = value.
   using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_terms, most_components>;
   void add_row(const Row& row, double value, double weight);
+  /// Undetermined curvature is minimized.
   void solve();
+  /// Undetermined terms become small, those of directions without samples zero. Without rows.
+  void solve_near();
 
-  Terms terms(const Vec3& place) const { return terms(place, Tensor3::Zero()); }
+  Terms terms(const Vec3& place) const;
   Slopes slopes(const Vec3& place) const;
   int n_terms() const { return dim_ == 2 ? 6 : 10; }
-  /// Coefficients c(i, k), after solve().
-  const Eigen::MatrixXd& coefficients() const { return coefficients_; }
+  /// Coefficients c(i, k), after the solution.
+  const Row& coefficients() const { return coefficients_; }
 
  private:
-  Terms terms(const Vec3& place, const Tensor3& moment) const;
+  void add_values(const Vec3& place, std::span<const double> values, double weight);
 
-  int dim_ = 3;
+  int dim_ = 3, components_ = 0;
   Vec3 centre_ = Vec3::Zero();
   double scale_ = 1, weights_ = 0;
-  Eigen::Index n_samples_ = 0, n_rows_ = 0;
-  // Columns are samples or rows times the root of their weight; the last entries are the values.
-  Eigen::MatrixXd samples_, rows_;
-  Eigen::MatrixXd of_samples_, of_rows_, coefficients_;  // normal equations, lower half
+  bool has_rows_ = false;
+  NormalEquations samples_, coupled_;
+  Row coefficients_;
 };
 
 /// Plane of symmetry, in which a patch of cells is continued by its mirror image.

@@ -44,6 +44,9 @@ class SolidFields final {
   /// may hold anything. `left`, of a body with recovers_stress(): StressRecovery::left_at_points().
   SidedTensors stress_sides(std::span<const double> points, std::span<const std::uint8_t> wanted = {},
                             std::vector<std::vector<double>>* left = nullptr) const;
+  /// The recovery of a body with recovers_stress(), and what it starts from.
+  const StressRecovery& recovery() const;
+  DiscreteStress discrete_stress(std::span<const double> points) const;
   std::vector<double> point_stress(std::span<const double> points) const {
     return worst_side(stress_sides(points));
   }
@@ -75,7 +78,6 @@ class SolidFields final {
   std::vector<Tensor3> cell_gradient(std::span<const double> points) const;
   const PointTensors& point_tensors() const;
   std::vector<SurfaceTraction> known_tractions() const;
-  DiscreteStress discrete_stress(std::span<const double> points) const;
   std::vector<PatchForce> reactions_by_trial_functions() const;
   Displaced displaced(std::span<const double> points) const;
 

@@ -1,30 +1,126 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
-#include "solid_solver/body/inner_variation.hpp"
+#include "solid_solver/body/recovered_strain.hpp"
+#include "solid_solver/body/solid_body.hpp"
 #include "solid_solver/diagnostics/heat_errors.hpp"
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
-#include "solid_solver/diagnostics/weighted_estimate.hpp"
+#include "solid_solver/equilibrium/equilibrium.hpp"
 #include "solid_solver/output/displacement_error.hpp"
 
 namespace couplet::solid {
 namespace {
 
 constexpr double grown =
-    1.1;  // strain energy over the largest so far with which what the mesh misses of it is looked at again
+    1.5;  // strain energy over the largest so far with which what the mesh misses of it is looked at again
 
 double product(MPI_Comm comm, std::span<const double> a, std::span<const double> b) {
   return parallel::sum(comm, std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
+}
+
+/// Strains of all flux faces: Green's strain of u, and its change by x.
+struct FaceStrains {
+  std::vector<Tensor3> of_u, of_x;
+};
+
+FaceStrains strains_by(const elastic::ElasticKernel& kernel, Index faces, std::span<const double> unknowns,
+                       std::span<const double> known, std::span<const double> x) {
+  FaceStrains found{std::vector<Tensor3>(std::size_t(faces)), std::vector<Tensor3>(std::size_t(faces))};
+  std::vector<Tensor3>& gradient = found.of_x;
+  kernel.face_gradients(
+      unknowns, known, [&](Index f, const Tensor3& h) { gradient[std::size_t(f)] = h; }, 0, faces);
+  const std::vector<double> at_rest(known.size(), 0);
+  kernel.face_gradients(
+      x, at_rest,
+      [&](Index f, const Tensor3& change) {
+        const Tensor3 h = gradient[std::size_t(f)];
+        const Tensor3 turned = change + h.transpose() * change;
+        found.of_u[std::size_t(f)] = 0.5 * (h + h.transpose() + h.transpose() * h);
+        found.of_x[std::size_t(f)] = 0.5 * (turned + turned.transpose());
+      },
+      0, faces);
+  return found;
+}
+
+double size_of(const std::vector<Tensor3>& strains) {
+  double size = 0;
+  for (const Tensor3& e : strains) size += e.squaredNorm();
+  return std::sqrt(size);
+}
+
+/// Product of the variations of the face strains, from two squares.
+double by_inner_variation(const SolidBody& body, const FaceStrains& s) {
+  const mesh::Mesh& mesh = body.mesh();
+  if (!InnerVariation::is_needed(mesh, body.elastic())) return 0;
+  const double of_u = parallel::max(mesh.comm, size_of(s.of_u)),
+               of_x = parallel::max(mesh.comm, size_of(s.of_x));
+  if (!(of_u > 0) || !(of_x > 0)) return 0;
+  const double factor = of_u / of_x;
+  InnerVariation sum(mesh, body.elastic()), difference(mesh, body.elastic());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const Tensor3 x = factor * s.of_x[std::size_t(f)];
+    sum.add(f, s.of_u[std::size_t(f)] + x);
+    difference.add(f, s.of_u[std::size_t(f)] - x);
+  }
+  return (sum.energy() - difference.energy()) / (4 * factor);
+}
+
+/// Half the product of the differences, because each gradient has an error.
+double by_gradients(const SolidBody& body, const FaceStrains& s, const FaceStrains& other) {
+  const mesh::Mesh& mesh = body.mesh();
+  double product = 0;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    if (mesh.owner[f] >= mesh.cells.n_owned()) continue;
+    const auto [here, there] = elastic::pyramids(mesh, body.geometry(), f);
+    const auto i = std::size_t(f);
+    product += (here + there) * body.elastic().lame(mesh.owner[f]).mu *
+               (other.of_u[i] - s.of_u[i]).cwiseProduct(other.of_x[i] - s.of_x[i]).sum();
+  }
+  return parallel::sum(mesh.comm, product);
+}
+
+/// Relative error of a static large-strain displacement along its softest motion x. A mesh that is too stiff
+/// by dK leaves a = x . dK u / x . K x of x in u, with the tangent K. Near the loss of stability this far
+/// exceeds the share of strain energy. dK is the difference of two gradients, or of face strains and their
+/// mean (InnerVariation), in Green's strain of u and of x about it. 0 if no stable motion is known.
+/// `unknowns`, `known`: unknowns and known values of u. Collective.
+double soft_mesh_error(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known,
+                       const SoftMotion& softest) {
+  const std::vector<double>& x = softest.shape;
+  const mesh::Mesh& mesh = body.mesh();
+  if (!parallel::any(mesh.comm, !x.empty()) || !(softest.stiffness > 0)) return 0;
+  const FaceStrains used = strains_by(body.kernel(), mesh.n_flux_faces(), unknowns, known, x);
+  const FaceStrains other =
+      strains_by(elastic::ElasticKernel(mesh, body.elastic(), elastic::FaceGradientScheme::corrected),
+                 mesh.n_flux_faces(), unknowns, known, x);
+  const double missed =
+      std::max(std::abs(by_inner_variation(body, used)), std::abs(by_gradients(body, used, other)));
+  std::vector<double> force(x.size());
+  body.kernel().apply(x, {}, force);
+  std::array<double, 3> sums{};  // x . K x of the body at rest; squares of x and u over the cells
+  for (std::size_t i = 0; i < x.size(); ++i) sums[0] += x[i] * force[i];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    for (auto i = std::size_t(c) * mesh.dim; i < std::size_t(c + 1) * mesh.dim; ++i) {
+      sums[1] += body.geometry().volume[c] * x[i] * x[i];
+      sums[2] += body.geometry().volume[c] * unknowns[i] * unknowns[i];
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  if (!(sums[0] > 0) || !(sums[2] > 0)) return 0;
+  return missed / (softest.stiffness * sums[0]) * std::sqrt(sums[1] / sums[2]);
 }
 
 /// Phase error of a motion by a wrong stiffness. A mesh with a relative stiffness error e oscillates faster

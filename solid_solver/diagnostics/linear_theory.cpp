@@ -128,8 +128,8 @@ constexpr double probe_gradient = 0.01;
 constexpr double steeper = 1.1;
 /// Change of the displacement below which small strain is not in question.
 constexpr double harmless = 0.02;
-/// Relative residual of the solutions of an estimate, which needs three digits.
-constexpr double three_digits = 1e-5;
+/// Relative residual of the solutions of an estimate.
+constexpr double solved_to = 1e-3;
 /// Part of the work from which loads along a component count, and part of the displacement from which the component does.
 constexpr double least_work = 1e-9, least_component = 0.1;
 
@@ -155,11 +155,17 @@ class Forces {
       all.push_back(laws::of(name)->make(lame_constants(body.parameters(), material), {}));
     kernel_ = std::make_unique<elastic::FiniteKernel>(body.mesh(), body.elastic(), std::move(all));
   }
-  /// [F(s u) + sign F(-s u)] / 2.
-  Values part(double s, const Displacement& u, double sign) {
+  struct Parts {
+    Values even, odd;
+  };
+  /// [F(s u) +- F(-s u)] / 2.
+  Parts parts(double s, const Displacement& u) {
     const Values plus = at(combined(s, u, 0, u)), minus = at(combined(-s, u, 0, u));
-    Values result(n_);
-    for (std::size_t i = 0; i < n_; ++i) result[i] = 0.5 * (plus[i] + sign * minus[i]);
+    Parts result{Values(n_), Values(n_)};
+    for (std::size_t i = 0; i < n_; ++i) {
+      result.even[i] = 0.5 * (plus[i] + minus[i]);
+      result.odd[i] = 0.5 * (plus[i] - minus[i]);
+    }
     return result;
   }
 
@@ -247,7 +253,8 @@ std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, 
     for (std::size_t i = 0; i < n; ++i) local += a[i] * b[i];
     return parallel::sum(mesh.comm, local);
   };
-  const Values even = forces.part(s, u1, 1), odd = forces.part(s, u1, -1), odd2 = forces.part(2 * s, u1, -1);
+  const auto [even, odd] = forces.parts(s, u1);
+  const Values odd2 = forces.parts(2 * s, u1).odd;
   Values q(n), c(n);
   for (std::size_t i = 0; i < n; ++i) {
     q[i] = -even[i] / (s * s);
@@ -278,7 +285,7 @@ std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, 
     method.approximate_inverse(x, y);
   };
   linalg::KrylovSolver loosely("displacement by large strain", mesh.comm, n, apply, precondition);
-  const linalg::KrylovOptions options{.relative_tolerance = three_digits,
+  const linalg::KrylovOptions options{.relative_tolerance = solved_to,
                                       .max_iterations = body.parameters().method.max_iterations,
                                       .is_symmetric = true};
   const auto solve = [&](const Values& b) {
@@ -290,8 +297,8 @@ std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, 
   // Scales u2 to the size of u1, so that differences resolve both.
   const double size2 = std::sqrt(dot(u2.unknowns, u2.unknowns));
   const double t = size2 > 0 ? std::sqrt(dot(u1.unknowns, u1.unknowns)) / size2 : 1;
-  const Values with = forces.part(s, combined(1, u1, t, u2), 1),
-               without = forces.part(s, combined(1, u1, -t, u2), 1);
+  const Values with = forces.parts(s, combined(1, u1, t, u2)).even,
+               without = forces.parts(s, combined(1, u1, -t, u2)).even;
   Values r(n);
   for (std::size_t i = 0; i < n; ++i) r[i] = -(with[i] - without[i]) / (2 * s * s * t) - c[i];
   return summed(mesh, body.geometry(), u1.unknowns, u2.unknowns, solve(r));
@@ -305,8 +312,9 @@ constexpr double least_strain = 0.9 * 0.2 / 4 / BucklingEstimate::low;
 // Tolerance of the solution in which a negative curvature of K + low K_sigma would appear.
 constexpr double shown_at = 1e-3;
 constexpr int most_searches = 2000, most_refinements = 40, refinements_compared = 6;
-// Factor over `low` of a load that needs no search, and relative change in the refinements that show it.
-constexpr double far_load = 4, roughly_settled = 0.1;
+// Factor over `low` of a load that needs no search, and changes in the refinements that show it: part of what is missing to
+// such a load, and of the value.
+constexpr double far_load = 4, part_of_missing = 0.1, roughly_settled = 0.5;
 // Increase of compression since the last search that justifies another one.
 constexpr double more_compression = 1.1;
 // Largest relative change in the last refinements for a factor to be reported.
@@ -427,25 +435,29 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
   // Only a solve shows that no motion at all is soft, but refinements that settle tell that none is anywhere near.
   const double near = -1 / (far_load * BucklingEstimate::low);
   const auto told = [&](const std::vector<double>& rho) {
-    return rho.back() < near || has_settled(rho, roughly_settled);
+    if (rho.back() < near) return has_settled(rho, settled_part);
+    const double missing = part_of_missing * (rho.back() - near) / std::abs(rho.back());
+    return has_settled(rho, std::min(missing, roughly_settled));
   };
-  const modes::LowestQuotient first = modes::lowest_quotient(of, of_stress, most_refinements, told);
-  if (first.value > near && first.iterations < most_refinements)
-    return {.factor = 0, .iterations = first.iterations};
-  modes::Curvature found = look(BucklingEstimate::low);
-  if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
-  // Fewer motions are soft under less load, so this one is closer to the softest.
-  if (modes::Curvature closer = look(BucklingEstimate::imperfect); closer.is_negative) {
-    closer.iterations += found.iterations;
-    found = std::move(closer);
-  }
-  const auto enough = [](const std::vector<double>& rho) { return has_settled(rho, settled_part); };
   // -1 / lambda
-  const modes::LowestQuotient least = modes::lowest_quotient(of, found.x, most_refinements, enough);
+  modes::LowestQuotient least = modes::lowest_quotient(of, of_stress, most_refinements, told);
+  if (least.value > near && least.iterations < most_refinements)
+    return {.factor = 0, .iterations = least.iterations};
+  if (least.value > -1 / BucklingEstimate::low || least.iterations == most_refinements) {
+    modes::Curvature found = look(BucklingEstimate::low);
+    if (!found.is_negative) return {.factor = 0, .iterations = found.iterations};
+    // Fewer motions are soft under less load, so this one is closer to the softest.
+    if (modes::Curvature closer = look(BucklingEstimate::imperfect); closer.is_negative) {
+      closer.iterations += found.iterations;
+      found = std::move(closer);
+    }
+    least = modes::lowest_quotient(of, found.x, most_refinements, told);
+    least.iterations += found.iterations;
+  }
   const double factor = -1 / least.value;
   return {.factor = factor,
           .growth = growth_of(body, body.unknowns_of(state.cell_u, state.face_u), least.x, factor),
-          .iterations = found.iterations + least.iterations};
+          .iterations = least.iterations};
 }
 
 }  // namespace couplet::solid

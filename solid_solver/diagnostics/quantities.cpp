@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/output/quantities.hpp"
 
+#include <fmt/format.h>
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/view.hpp"
-#include "solid_solver/output/heat_quantities.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -71,5 +73,52 @@ diagnostics::Made quantities(const HeatView& view) {
   if (view.parameters.quantities.empty()) return nullptr;
   return std::make_shared<QuantitiesOfHeat>(view);
 }
+
+namespace {
+
+// Relative error above which a probed stress is reported as doubtful.
+constexpr double doubtful = 0.3;
+
+/// Stresses at probes and, in static runs, the largest one, with their errors.
+class StressError final : public diagnostics::Diagnostic {
+ public:
+  explicit StressError(const SolidView& view) : view_(view) {}
+  /// Runs after the displacement error, which strains and stresses follow.
+  void conclude(diagnostics::Report& report) override {
+    if (view_.now().steps == 0) return;
+    for (const ReportedStress& s :
+         reported_stresses(view_.body, view_.fields, view_.output.probes(), report.errors.mesh))
+      tell(s);
+  }
+
+ private:
+  /// Most are notes, which diagnostics do not report.
+  void tell(const ReportedStress& s) const {
+    const bool is_doubtful = s.where != "largest" && s.error > doubtful;
+    const std::string error = std::isnan(s.error) ? "unknown"
+                              : s.error < 0.995   ? fmt::format("{:.2g} %", 100 * s.error)
+                                                  : fmt::format("{:.0f} %", 100 * s.error);
+    if (parallel::comm_rank(view_.comm()) == 0)
+      diagnostics::set_result(
+          {"equivalent stress, " + s.where, "Pa", {s.value}, s.error, diagnostics::place_text(s.place)});
+    diagnostics::finding(
+        parallel::comm_rank(view_.comm()),
+        {.id = "stress-error",
+         .severity = is_doubtful ? base::Severity::warning : base::Severity::note,
+         .number = s.error,
+         .limit = doubtful,
+         .sentence =
+             fmt::format("equivalent stress, {}: {:.4g} Pa at ({:g}, {:g}, {:g}) m, estimated error {}{}",
+                         s.where, s.value, s.place[0], s.place[1], s.place[2], error,
+                         is_doubtful ? fmt::format(" (limit {:.2g} %): not reliable", 100 * doubtful) : ""),
+         .advice = is_doubtful ? "refine the mesh there" : ""});
+  }
+
+  SolidView view_;
+};
+
+}  // namespace
+
+diagnostics::Made stress_error(const SolidView& view) { return std::make_shared<StressError>(view); }
 
 }  // namespace couplet::solid

@@ -13,7 +13,6 @@
 #include "common/elasticity/vector_at.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/inner_variation.hpp"
 #include "solid_solver/body/recovered_strain.hpp"
 
 namespace couplet::solid {

@@ -14,12 +14,6 @@ namespace couplet::laws {
 using MakeLaw = elastic::FiniteLaw (*)(const elastic::LameConstants& lame,
                                        std::span<const double> coefficients);
 
-elastic::FiniteLaw saint_venant_kirchhoff(const elastic::LameConstants&, std::span<const double>);
-elastic::FiniteLaw neo_hookean(const elastic::LameConstants&, std::span<const double>);
-elastic::FiniteLaw nearly_incompressible_neo_hookean(const elastic::LameConstants&, std::span<const double>);
-elastic::FiniteLaw mooney_rivlin(const elastic::LameConstants&, std::span<const double>);
-elastic::FiniteLaw yeoh(const elastic::LameConstants&, std::span<const double>);
-
 /// Law with its name in the YAML file.
 struct Entry {
   const char* name;

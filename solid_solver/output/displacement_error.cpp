@@ -11,7 +11,6 @@
 #include "common/elasticity/lanes.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/elasticity/vector_at.hpp"
-#include "common/fv/gradients.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
@@ -23,25 +22,36 @@ namespace {
 
 constexpr int curvatures = 6;  // second derivatives of a component
 
-/// Second derivatives of the three components, each as xx, yy, zz, xy, yz, xz.
-using Curvature = std::array<Tensor3, 3>;
-
 /// Cubic about a cell's center.
 struct Cubic {
   Vec3 value = Vec3::Zero();
   Tensor3 slope = Tensor3::Zero();  // entry (i, j) = d u_j / d x_i
-  Curvature curvature{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero()};
-  std::array<Curvature, 3> change{curvature, curvature, curvature};  // of the curvature along each axis
+  std::array<Tensor3, 3> curvature{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero()};  // per component
+  /// Coefficients of xxx, xxy, xxz, xyy, xyz, xzz, yyy, yyz, yzz and zzz per component.
+  std::array<std::array<double, 10>, 3> cubes{};
 
-  Tensor3 third(int j, const Vec3& x) const {
-    return x[0] * change[0][j] + x[1] * change[1][j] + x[2] * change[2][j];
+  Vec3 cubic_part(const Vec3& at) const {
+    const double x = at[0], y = at[1], z = at[2];
+    Vec3 u;
+    for (int j = 0; j < 3; ++j) {
+      const auto& c = cubes[std::size_t(j)];
+      u[j] = x * (x * (c[0] * x + c[1] * y + c[2] * z) + y * (c[3] * y + c[4] * z) + c[5] * z * z) +
+             y * (y * (c[6] * y + c[7] * z) + c[8] * z * z) + c[9] * z * z * z;
+    }
+    return u;
   }
-  Vec3 cubic_part(const Vec3& x) const {
-    return {x.dot(third(0, x) * x) / 6, x.dot(third(1, x) * x) / 6, x.dot(third(2, x) * x) / 6};
+  /// Gradient of the cubic part of a component from the products of the coordinates.
+  template <class T>
+  std::array<T, 3> slope_of_cubes(std::size_t component, const std::array<std::array<T, 3>, 3>& s) const {
+    const auto& c = cubes[component];
+    const T xx = s[0][0], xy = 2 * s[0][1], xz = 2 * s[0][2], yy = s[1][1], yz = 2 * s[1][2], zz = s[2][2];
+    return {3 * c[0] * xx + c[1] * xy + c[2] * xz + c[3] * yy + 0.5 * c[4] * yz + c[5] * zz,
+            c[1] * xx + c[3] * xy + 0.5 * c[4] * xz + 3 * c[6] * yy + c[7] * yz + c[8] * zz,
+            c[2] * xx + 0.5 * c[4] * xy + c[5] * xz + c[7] * yy + c[8] * yz + 3 * c[9] * zz};
   }
   Vec3 at(const Vec3& x) const {
     Vec3 u = value + slope.transpose() * x + cubic_part(x);
-    for (int j = 0; j < 3; ++j) u[j] += 0.5 * x.dot(curvature[j] * x);
+    for (int j = 0; j < 3; ++j) u[j] += 0.5 * x.dot(curvature[std::size_t(j)] * x);
     return u;
   }
 };
@@ -87,23 +97,179 @@ COUPLET_PROCESSOR_CLONES void measure(Parts& parts, const Cubic& w, int dim) {
     for (std::size_t i = 1; i < 4; ++i) parts.area[i][k] *= sign;
     parts.area[0][k] = -(parts.area[1][k] + parts.area[2][k] + parts.area[3][k]);
   }
-  const double first = 1. / (dim + 1), half_second = 0.5 * first / (dim + 2);
+  const double first = 1. / (dim + 1), second = first / (dim + 2);
   const FourVectors& s = parts.sum;
   std::array<FourVectors, 3> squares;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
-      squares[i][j] = half_second * (s[i] * s[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
-  for (std::size_t j = 0; j < std::size_t(dim); ++j)
-    for (int i = 0; i < 3; ++i) {
-      const Tensor3& h = w.curvature[j];
-      Four g = w.slope(i, Eigen::Index(j)) + first * (h(i, 0) * s[0] + h(i, 1) * s[1] + h(i, 2) * s[2]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Tensor3& t = w.change[k][j];
-        g += t(i, 0) * squares[0][k] + t(i, 1) * squares[1][k] + t(i, 2) * squares[2][k];
-      }
-      parts.gradient[j][std::size_t(i)] = g;
-    }
+      squares[i][j] = second * (s[i] * s[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j]);
+  for (std::size_t j = 0; j < std::size_t(dim); ++j) {
+    const Tensor3& h = w.curvature[j];
+    parts.gradient[j] = w.slope_of_cubes(j, squares);
+    for (int i = 0; i < 3; ++i)
+      parts.gradient[j][std::size_t(i)] +=
+          w.slope(i, Eigen::Index(j)) + first * (h(i, 0) * s[0] + h(i, 1) * s[1] + h(i, 2) * s[2]);
+  }
 }
+
+struct Sample {
+  Vec3 x, u;  // x from the cell's center
+};
+
+/// Thermal pressure of a cell, and its slope by Gauss's theorem.
+struct Pressure {
+  double value = 0, mean = 0;  // mean: lambda times the volume strain, where cells have one
+  Vec3 slope = Vec3::Zero(), mean_slope = Vec3::Zero();
+};
+
+/// Cubics of the cells of this rank.
+class Reconstruction {
+ public:
+  Reconstruction(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const SolidState& state)
+      : mesh_(mesh),
+        rows_(rows),
+        state_(state),
+        cells_of_point_(mesh::transpose(mesh_.cell_points, 0, mesh_.points.n_local())),
+        boundary_faces_(boundary_faces_of_cells(mesh_)),
+        mark_(std::size_t(mesh_.cells.n_local()), -1),
+        curvature_(std::size_t(mesh_.cells.n_local()) * values_of_cell, 0.0) {
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+      gather(c);
+      keep(c, fit(samples_).curvature);
+    }
+    mesh_.cells.update_ghosts(curvature_, values_of_cell);
+    std::ranges::fill(mark_, -1);
+  }
+  /// Cells that share a vertex with the last cell, and it.
+  const std::vector<Index>& patch() const { return patch_; }
+  /// Fit to the samples of an owned cell without their known cubic part.
+  Cubic fitted(Index cell) {
+    gather(cell);
+    Cubic known;
+    known.cubes = cubes_of(cell);
+    for (Sample& s : samples_) s.u -= known.cubic_part(s.x);
+    Cubic cubic = fit(samples_);
+    cubic.cubes = known.cubes;
+    return cubic;
+  }
+
+  /// Quadratic fit to samples, the first of which is the cell's.
+  Cubic fit(const std::vector<Sample>& samples) {
+    Cubic cubic;
+    double reach = 0;
+    for (const Sample& s : samples) reach = std::max(reach, s.x.squaredNorm());
+    cubic.value = samples.front().u;
+    if (!(reach > 0)) return cubic;
+    const int dim = mesh_.dim;
+    const double inverse = 1 / std::sqrt(reach);
+    quadratic_.start(dim, 3, Vec3::Zero(), 1 / inverse);
+    for (const Sample& s : samples) quadratic_.add_near(s.x, {s.u.data(), 3});
+    quadratic_.solve_near();
+    const QuadraticFit::Row& c = quadratic_.coefficients();
+    cubic.value = c.row(0);
+    for (int j = 0; j < dim; ++j)
+      for (int a = 0, i = 1 + dim; a < dim; ++a) {
+        cubic.slope(a, j) = inverse * c(1 + a, j);
+        for (int b = a; b < dim; ++b, ++i) {
+          Tensor3& h = cubic.curvature[std::size_t(j)];
+          h(a, b) = h(b, a) = (a == b ? 2 : 1) * inverse * inverse * c(i, j);
+        }
+      }
+    return cubic;
+  }
+
+ private:
+  static constexpr int values_of_cell = 3 * curvatures + 3;  // second derivatives, and their place
+
+  void keep(Index cell, const std::array<Tensor3, 3>& curvature) {
+    double* to = curvature_.data() + std::size_t(cell) * values_of_cell;
+    for (const Tensor3& h : curvature) {
+      const PackedTensor packed = pack(h);
+      to = std::copy(packed.begin(), packed.end(), to);
+    }
+    Vec3 middle = Vec3::Zero();
+    for (const Sample& s : samples_) middle += s.x / double(samples_.size());
+    const Vec3 place = rows_.geometry().cell_centre[cell] + middle;
+    std::ranges::copy(place, to);
+  }
+
+  void gather(Index cell) {
+    patch_.clear();
+    gather_cells(mesh_, cells_of_point_, cell, mark_, patch_);
+    samples_.clear();
+    const mesh::Geometry& g = rows_.geometry();
+    const Vec3 centre = g.cell_centre[cell];
+    std::vector<MirrorPlane> mirrors;
+    for (const Index f : boundary_faces_[cell])
+      if (rows_.mirrored(f)) add_mirror(g, f, mirrors);
+    const auto add = [&](const Vec3& x, const Vec3& u) {
+      samples_.push_back({x - centre, u});
+      for (const MirrorPlane& m : mirrors) samples_.push_back({m.image(x) - centre, m.reflect(u)});
+    };
+    for (const Index c : patch_) {
+      add(g.cell_centre[c], elastic::vector_at(state_.cell_u, c, mesh_.dim));
+      for (const Index f : boundary_faces_[c])
+        if (!rows_.mirrored(f))
+          add(g.face_centre[f], elastic::vector_at(state_.face_u, f - mesh_.n_interior, mesh_.dim));
+    }
+  }
+
+  /// Third derivatives by the slopes of the neighbors' second ones, which are those at the middle of their samples.
+  std::array<std::array<double, 10>, 3> cubes_of(Index cell) const {
+    using Values = Eigen::Matrix<double, 1, 3 * curvatures>;
+    const auto values = [&](Index c) {
+      return Eigen::Map<const Values>(curvature_.data() + std::size_t(c) * values_of_cell);
+    };
+    const std::vector<Vec3>& centre = rows_.geometry().cell_centre;
+    Eigen::Matrix3d of = Eigen::Matrix3d::Zero();
+    std::array<Values, 3> right{Values::Zero(), Values::Zero(), Values::Zero()};
+    for (const Index c : patch_) {
+      const Vec3 x = place(c) - place(cell);
+      const double far = (centre[c] - centre[cell]).squaredNorm();
+      if (c == cell || !(far > 0)) continue;
+      const Vec3 weighted = x / far;  // the places of two cells across a body coincide
+      of += weighted * x.transpose();
+      const Values change = values(c) - values(cell);
+      for (int i = 0; i < 3; ++i) right[std::size_t(i)] += weighted[i] * change;
+    }
+    of.diagonal().array() += 1e-6 * of.trace() + 1e-300;
+    const Eigen::Matrix3d inverse = of.inverse();
+    std::array<Values, 3> slope;
+    for (int i = 0; i < 3; ++i)
+      slope[std::size_t(i)] = inverse(i, 0) * right[0] + inverse(i, 1) * right[1] + inverse(i, 2) * right[2];
+    std::array<std::array<double, 10>, 3> cubes;
+    for (int j = 0; j < 3; ++j) {
+      enum Packed { xx, yy, zz, xy, yz, xz };
+      const auto along = [&](std::size_t axis, Packed of_what) {
+        return slope[axis][j * curvatures + int(of_what)] / 6;
+      };
+      cubes[std::size_t(j)] = {along(0, xx),
+                               along(1, xx) + 2 * along(0, xy),
+                               along(2, xx) + 2 * along(0, xz),
+                               along(0, yy) + 2 * along(1, xy),
+                               2 * (along(0, yz) + along(1, xz) + along(2, xy)),
+                               along(0, zz) + 2 * along(2, xz),
+                               along(1, yy),
+                               along(2, yy) + 2 * along(1, yz),
+                               along(1, zz) + 2 * along(2, yz),
+                               along(2, zz)};
+    }
+    return cubes;
+  }
+
+  Vec3 place(Index cell) const {
+    return Vec3(curvature_.data() + std::size_t(cell) * values_of_cell + 3 * curvatures);
+  }
+
+  const mesh::Mesh& mesh_;
+  const elastic::ElasticOperator& rows_;
+  const SolidState& state_;
+  mesh::Csr cells_of_point_, boundary_faces_;
+  std::vector<Index> mark_, patch_;
+  std::vector<Sample> samples_;
+  QuadraticFit quadratic_;
+  std::vector<double> curvature_;  // per local cell
+};
 
 class Defect {
  public:
@@ -114,11 +280,7 @@ class Defect {
         rows_(body.elastic()),
         state_(state),
         space_(mesh_, rows_),
-        cells_of_point_(mesh::transpose(mesh_.cell_points, 0, mesh_.points.n_local())),
-        boundary_faces_(boundary_faces_of_cells(mesh_)),
-        mark_(std::size_t(mesh_.cells.n_local()), -1),
-        curvature_(std::size_t(mesh_.cells.n_local()) * 3 * curvatures, 0.0),
-        curvature_place_(std::size_t(mesh_.cells.n_local()) * 3, 0.0) {
+        reconstruction_(mesh_, rows_, state) {
     mesh::Csr cells;
     for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
       const std::array<Index, 2> sides{mesh_.owner[f], f < mesh_.n_interior ? mesh_.neighbour[f] : -1};
@@ -133,13 +295,6 @@ class Defect {
     space_.add_springs(state_.known);
     space_.negate_forces();
     if (rows_.volume_by_cells()) find_volume_strains();
-    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-      gather(c);
-      keep(c, fit(samples_).curvature);
-    }
-    mesh_.cells.update_ghosts(curvature_, 3 * curvatures);
-    mesh_.cells.update_ghosts(curvature_place_, 3);
-    std::ranges::fill(mark_, -1);
     if (!loads.cells.empty()) {
       body_force_ = loads.cells;
       for (std::size_t i = 0; i < body_force_.size(); ++i)
@@ -152,8 +307,7 @@ class Defect {
                                      1e-12 * std::abs(body_force_[i]);
     }
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-      gather(c);
-      const Cubic cubic = fitted(change_of_curvature(c));
+      const Cubic cubic = reconstruction_.fitted(c);
       add_cell(c, cubic, force_near(c), pressure_near(c, loads.pressure));
       compare_points(c, cubic);
     }
@@ -198,80 +352,26 @@ class Defect {
     return pressure;
   }
 
-  void keep(Index cell, const Curvature& curvature) {
-    double* to = curvature_.data() + std::size_t(cell) * 3 * curvatures;
-    for (const Tensor3& h : curvature) {
-      const PackedTensor packed = pack(h);
-      to = std::copy(packed.begin(), packed.end(), to);
-    }
-    Vec3 middle = Vec3::Zero();
-    for (const Sample& s : samples_) middle += s.x / double(samples_.size());
-    const Vec3 place = geometry_.cell_centre[cell] + middle;
-    std::copy_n(place.data(), 3, curvature_place_.data() + std::size_t(cell) * 3);
-  }
-
-  struct Sample {
-    Vec3 x, u;  // x from the cell's center
-  };
-
-  Cubic fit(const std::vector<Sample>& samples) const {
-    Cubic cubic;
-    double reach = 0;
-    for (const Sample& s : samples) reach = std::max(reach, s.x.squaredNorm());
-    cubic.value = samples.front().u;
-    if (!(reach > 0)) return cubic;
-    const int dim = mesh_.dim;
-    const double inverse = 1 / std::sqrt(reach);
-    fv::NearQuadratic quadratic(dim, Vec3::Zero(), 1 / inverse, 3);
-    for (const Sample& s : samples) quadratic.add(s.x, {s.u.data(), 3});
-    const auto c = quadratic.solve();
-    cubic.value = c.row(0);
-    for (int j = 0; j < dim; ++j)
-      for (int a = 0, i = 1 + dim; a < dim; ++a) {
-        cubic.slope(a, j) = inverse * c(1 + a, j);
-        for (int b = a; b < dim; ++b, ++i) {
-          Tensor3& h = cubic.curvature[std::size_t(j)];
-          h(a, b) = h(b, a) = (a == b ? 2 : 1) * inverse * inverse * c(i, j);
-        }
-      }
-    return cubic;
-  }
-
-  /// Fit to the samples of the cell without their known cubic part.
-  Cubic fitted(const std::array<Curvature, 3>& change) {
-    Cubic known;
-    known.change = change;
-    for (Sample& s : samples_) s.u -= known.cubic_part(s.x);
-    Cubic cubic = fit(samples_);
-    cubic.change = change;
-    return cubic;
-  }
-
-  Cubic force_near(Index cell) const {
+  Cubic force_near(Index cell) {
     if (body_force_.empty()) return {};
     Cubic uniform;
     uniform.value = elastic::vector_at(body_force_, cell, mesh_.dim);
     if (force_is_uniform_) return uniform;
     std::vector<Sample> samples;
-    for (const Index c : patch_)
+    for (const Index c : reconstruction_.patch())
       samples.push_back({geometry_.cell_centre[c] - geometry_.cell_centre[cell],
                          elastic::vector_at(body_force_, c, mesh_.dim)});
-    return fit(samples);
+    return reconstruction_.fit(samples);
   }
 
-  /// Thermal pressure of a cell, and its slope by Gauss's theorem.
-  struct Pressure {
-    double value = 0, mean = 0;  // mean: lambda times the volume strain, where cells have one
-    Vec3 slope = Vec3::Zero(), mean_slope = Vec3::Zero();
-  };
-  Pressure pressure_near(Index cell, const std::vector<double>& of_faces) const {
+  Pressure pressure_near(Index cell, const std::vector<double>& of_faces) {
     Pressure p;
     if (!volume_strain_.empty()) {
       std::vector<Sample> samples;
-      for (const Index c : patch_)
+      for (const Index c : reconstruction_.patch())
         samples.push_back({geometry_.cell_centre[c] - geometry_.cell_centre[cell],
                            Vec3(rows_.lame(c).lambda * volume_strain_[std::size_t(c)], 0, 0)});
-      const Cubic mean = fit(samples);
+      const Cubic mean = reconstruction_.fit(samples);
       p.mean = mean.value[0], p.mean_slope = mean.slope.col(0);
     }
     if (of_faces.empty()) return p;
@@ -289,54 +389,6 @@ class Defect {
     p.slope /= geometry_.volume[cell];
     p.value = (p.value - p.slope.dot(middle)) / volume;
     return p;
-  }
-
-  void gather(Index cell) {
-    patch_.clear();
-    gather_cells(mesh_, cells_of_point_, cell, mark_, patch_);
-    samples_.clear();
-    const Vec3 centre = geometry_.cell_centre[cell];
-    std::vector<MirrorPlane> mirrors;
-    for (const Index f : boundary_faces_[cell])
-      if (rows_.mirrored(f)) add_mirror(geometry_, f, mirrors);
-    const auto add = [&](const Vec3& x, const Vec3& u) {
-      samples_.push_back({x - centre, u});
-      for (const MirrorPlane& m : mirrors) samples_.push_back({m.image(x) - centre, m.reflect(u)});
-    };
-    for (const Index c : patch_) {
-      add(geometry_.cell_centre[c], elastic::vector_at(state_.cell_u, c, mesh_.dim));
-      for (const Index f : boundary_faces_[c])
-        if (!rows_.mirrored(f))
-          add(geometry_.face_centre[f], elastic::vector_at(state_.face_u, f - mesh_.n_interior, mesh_.dim));
-    }
-  }
-
-  /// Slopes of the neighbors' second derivatives, which are those at the middle of their samples.
-  std::array<Curvature, 3> change_of_curvature(Index cell) const {
-    Eigen::Matrix3d of = Eigen::Matrix3d::Zero();
-    Eigen::Matrix<double, 3, 3 * curvatures> right;
-    right.setZero();
-    const double* here = curvature_.data() + std::size_t(cell) * 3 * curvatures;
-    for (const Index c : patch_) {
-      const Vec3 x =
-          elastic::vector_at(curvature_place_, c, 3) - elastic::vector_at(curvature_place_, cell, 3);
-      const double far = (geometry_.cell_centre[c] - geometry_.cell_centre[cell]).squaredNorm();
-      if (c == cell || !(far > 0)) continue;
-      const Vec3 weighted = x / far;  // the places of two cells across a body coincide
-      of += weighted * x.transpose();
-      const double* there = curvature_.data() + std::size_t(c) * 3 * curvatures;
-      for (int i = 0; i < 3 * curvatures; ++i) right.col(i) += (there[i] - here[i]) * weighted;
-    }
-    of.diagonal().array() += 1e-6 * of.trace() + 1e-300;
-    const Eigen::Matrix<double, 3, 3 * curvatures> slope = of.llt().solve(right);
-    std::array<Curvature, 3> change;
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < 3; ++j) {
-        PackedTensor packed;
-        for (std::size_t i = 0; i < packed.size(); ++i) packed[i] = slope(k, j * curvatures + int(i));
-        change[std::size_t(k)][std::size_t(j)] = unpack(packed);
-      }
-    return change;
   }
 
   void compare_points(Index c, const Cubic& w) {
@@ -433,7 +485,12 @@ class Defect {
       for (std::size_t i = 0; i < 3; ++i) x += share[i] * at(parts.x[i], part);
       const double radius = geometry_.cell_centre[c][0] + x[0], around = elastic::circumference(radius) / 3;
       Tensor3 gradient = w.slope;
-      for (int j = 0; j < 2; ++j) gradient.col(j) += (w.curvature[std::size_t(j)] + 0.5 * w.third(j, x)) * x;
+      std::array<std::array<double, 3>, 3> squares;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) squares[i][j] = x[Eigen::Index(i)] * x[Eigen::Index(j)];
+      for (int j = 0; j < 2; ++j)
+        gradient.col(j) +=
+            w.curvature[std::size_t(j)] * x + Vec3(w.slope_of_cubes(std::size_t(j), squares).data());
       gradient(2, 2) = w.at(x)[0] / radius;
       const Tensor3 stress = stress_of(c, gradient, heat, x,
                                        around * volume / elastic::circumference(geometry_.cell_centre[c][0]));
@@ -452,10 +509,9 @@ class Defect {
   const elastic::ElasticOperator& rows_;
   const SolidState& state_;
   elastic::SymmetricSpace space_;
-  mesh::Csr cells_of_point_, boundary_faces_, faces_of_cell_;
-  std::vector<Index> mark_, patch_;
-  std::vector<Sample> samples_;
-  std::vector<double> curvature_, curvature_place_, body_force_;  // per local cell
+  Reconstruction reconstruction_;
+  mesh::Csr faces_of_cell_;
+  std::vector<double> body_force_;                     // per local cell
   std::vector<double> volume_strain_, missed_volume_;  // likewise; empty unless cells have one volume strain
   bool force_is_uniform_ = true;                       // on this rank
   double between_ = 0, volume_ = 0;

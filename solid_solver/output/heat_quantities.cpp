@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/output/heat_quantities.hpp"
+#include "solid_solver/output/quantities.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/fv/gradients.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
@@ -83,19 +82,21 @@ LocalHeat fitted_heat(const Conduction& conduction, const CellsAround& around, I
     reach = std::max(reach, (g.cell_centre[c] - centre).norm());
     for (const Index f : around.mirrors[std::size_t(c)]) add_mirror(g, f, planes);
   }
-  fv::NearQuadratic fit(mesh.dim, centre, reach, 1);
+  QuadraticFit fit;
+  fit.start(mesh.dim, 1, centre, reach);
   const double own = field.cells[std::size_t(cell)];  // differences keep the digits
   const auto sample = [&](const Vec3& x, double value) {
     const double above = value - own;
-    fit.add(x, {&above, 1});
-    for (const MirrorPlane& p : planes) fit.add(p.image(x), {&above, 1});
+    fit.add_near(x, {&above, 1});
+    for (const MirrorPlane& p : planes) fit.add_near(p.image(x), {&above, 1});
   };
   for (const Index c : cells) {
     sample(g.cell_centre[c], field.cells[std::size_t(c)]);
     for (const Index f : around.faces[std::size_t(c)])
       sample(g.face_centre[f], field.boundary[std::size_t(f - mesh.n_interior)]);
   }
-  LocalHeat result = local_of(fit.solve(), mesh.dim, reach);
+  fit.solve_near();
+  LocalHeat result = local_of(fit.coefficients(), mesh.dim, reach);
   result.value += own;
   return result;
 }

@@ -17,7 +17,6 @@
 #include "common/mesh/mesh.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/inner_variation.hpp"
 #include "solid_solver/body/recovered_strain.hpp"
 
 namespace couplet::solid {

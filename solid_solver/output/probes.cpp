@@ -185,16 +185,12 @@ double larger_of(double left, double mesh) { return std::isnan(left) ? left : st
 
 /// Points of the cells and boundary faces with at least three quarters of the largest equivalent stress before recovery, because recovery
 /// of the whole field takes longer than the solve. Collective.
-std::vector<std::uint8_t> points_of_large_stress(const SolidBody& body, const SolidFields& fields,
-                                                 std::span<const double> points) {
-  const mesh::Mesh& mesh = body.mesh();
-  const std::vector<Tensor3> cells = fields.cell_stress(points),
-                             faces = fields.face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
+std::vector<std::uint8_t> points_of_large_stress(const mesh::Mesh& mesh, const DiscreteStress& found) {
   std::vector<double> stress(std::size_t(mesh.cells.n_owned()));
-  for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = equivalent_stress(cells[c]);
-  for (std::size_t b = 0; b < faces.size(); ++b) {
+  for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = equivalent_stress(found.cells[c]);
+  for (std::size_t b = 0; b < found.faces.size(); ++b) {
     double& there = stress[std::size_t(mesh.owner[mesh.n_interior + Index(b)])];
-    there = std::max(there, equivalent_stress(faces[b]));
+    there = std::max(there, equivalent_stress(found.faces[b]));
   }
   const double most = parallel::max(mesh.comm, stress.empty() ? 0 : std::ranges::max(stress));
   std::vector<Index> wanted;
@@ -209,8 +205,9 @@ std::vector<std::uint8_t> points_of_large_stress(const SolidBody& body, const So
 ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::span<const double> points,
                        double mesh_part) {
   const mesh::Mesh& mesh = body.mesh();
-  std::vector<std::uint8_t> wanted = points_of_large_stress(body, fields, points);
-  const SidedTensors sides = fields.stress_sides(points, wanted);
+  const DiscreteStress found = fields.discrete_stress(points);
+  std::vector<std::uint8_t> wanted = points_of_large_stress(mesh, found);
+  const SidedTensors sides = fields.recovery().at_points(found, wanted);
   struct Seen {
     double value = -1;
     GlobalIndex point = -1;  // the same one on any number of ranks
@@ -235,8 +232,7 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::sp
   std::ranges::fill(wanted, 0);
   const auto at = std::ranges::find(mesh.point_id, most.point) - mesh.point_id.begin();
   if (at < mesh.points.n_local()) wanted[std::size_t(at)] = 1;
-  std::vector<std::vector<double>> all_left;
-  fields.stress_sides(points, wanted, &all_left);
+  const auto all_left = fields.recovery().left_at_points(found, wanted, sides);
   const double left = parallel::sum(
       mesh.comm, at < mesh.points.n_owned() ? all_left[std::size_t(most.material)][std::size_t(at)] : 0);
   return {"largest", most.place, most.value, larger_of(left, mesh_part)};

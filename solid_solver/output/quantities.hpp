@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/method/solution_method.hpp"
 #include "solid_solver/output/files.hpp"
+#include "solid_solver/thermal/heat.hpp"
 
 namespace couplet::solid {
 
@@ -54,5 +56,40 @@ std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const S
 
 /// Reports findings and writes quantities.csv.
 void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vector<QuantityEstimate>& found);
+
+/// Sensitivity of a functional J(u) = j . u of a linear static body to its mesh error. A symmetric operator
+/// lets K z = j use the matrix, preconditioner and factors of K u = b:
+///   J(u_exact) - J(u) ~ sum_f V_f dE_f(u) : C : dE_f(z)
+/// The strain difference dE of two face gradients replaces the errors of u and z ([becker2001]; with
+/// recovered strains: Zienkiewicz and Zhu, IJNME 24 (1987) 337). Terms keep their sign, so they cancel as in
+/// J. Requires a symmetric kernel.
+class DualProblem {
+ public:
+  /// Keeps references. Compares the gradients of u. Collective.
+  DualProblem(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known);
+
+  /// j of a weighted sum of point displacements. `weights`: `dim` values per local point. Collective.
+  std::vector<double> of_points(std::span<const double> weights) const;
+  /// j of the mean of weights : stress over the owned `cells` of all ranks. Collective.
+  std::vector<double> of_stress(std::span<const Index> cells, const Tensor3& weights) const;
+  /// Evaluates the sum above. Throws SolveFailure. Collective.
+  double missed(std::span<const double> j, SolutionMethod& method) const;
+
+ private:
+  std::vector<Tensor3> gap(std::span<const double> unknowns, std::span<const double> known) const;
+
+  const SolidBody& body_;
+  const elastic::ElasticKernel other_;
+  std::vector<Tensor3> gap_;  // of u, one per flux face
+};
+
+/// Throws Error for a missing place or patch and for varying conductivities. Collective.
+void check_heat_quantities(const Heat& heat, const std::map<std::string, SolidQuantity>& quantities);
+
+/// Temperatures at places and heat flows through patches of a steady field, with their mesh errors
+/// (weighted_defect() in the source). Each needs one solve with the same matrix. A temperature adds the
+/// signed interpolation error at its place. Equal on all ranks. Throws SolveFailure. Collective.
+std::vector<QuantityEstimate> estimate_heat_quantities(
+    const Heat& heat, const std::map<std::string, SolidQuantity>& quantities);
 
 }  // namespace couplet::solid

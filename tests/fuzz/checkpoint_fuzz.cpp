@@ -41,7 +41,7 @@ void write_sets(const fs::path& folder, const std::string& keys, double offset) 
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = offset + 100 * time + 10 * double(p) + 0.01 * double(i);
       file.write("u", values);
-      file.write_scalar("dt", time + double(p));
+      file.write_common("dt", std::array<double, 1>{time + double(p)});
       file.close();
     }
   };
@@ -59,7 +59,7 @@ State read_state(const fs::path& folder) {
   for (const std::string& name : participants) {
     io::CheckpointReader file(MPI_COMM_SELF, set / (name + ".h5"));
     state.values.push_back(file.read("u"));
-    state.values.back().push_back(file.read_scalar("dt"));
+    io::Archive(file).common("dt", state.values.back().emplace_back());
   }
   return state;
 }

@@ -111,11 +111,9 @@ CraftedFile checkpoint_file(const CheckpointStamp& stamp) {
   add_field(file, "iqn.images", 3, {1, 4, 2, 5, 3, 6});
   add_field(file, "iqn.riders", 0, {});
   add_field(file, "iqn.q", 3, {1, 0, 0, 1, 0, 0});
-  add_array(file, "iqn.r", {1, 0, 0.5, 1});
-  add_array(file, "iqn.step-of", {3, 2});
-  for (const auto& [name, value] :
-       {std::pair{"scalars/iqn.columns", 2.}, {"scalars/iqn.step", 3.}, {"scalars/dt", 0.1}})
-    file.push_back(table(name, {1}, {value}));
+  add_array(file, "iqn.r", {4, 1, 0, 0.5, 1});
+  add_array(file, "iqn.step", {3, 2, 3, 2});
+  add_array(file, "dt", {0.1});
   return file;
 }
 
@@ -146,10 +144,12 @@ void read_checkpoint(const fs::path& file) {
   std::vector<double> u(50);
   reader.read("u", u);
   ASSERT_LT(reader.read("u").size(), 51u);
-  reader.read_scalar("dt");
+  double dt = 0;
+  io::Archive archive(reader);
+  archive.common("dt", dt);
   coupler::QuasiNewton newton(coupler::AccelerationParameters{}, MPI_COMM_SELF);
-  newton.load(reader, coupler::IterateOrder::as_they_are(MPI_COMM_SELF,
-                                                         {std::vector<double>(3), std::vector<double>(0)}));
+  newton.visit(archive, coupler::IterateOrder::as_they_are(MPI_COMM_SELF,
+                                                           {std::vector<double>(3), std::vector<double>(0)}));
 }
 
 std::set<std::string> tree(const fs::path& folder) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Broken meshes through the readers and the set-up of a distributed mesh, in one process: see README.md.
-#include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/mutate.hpp"
 

@@ -11,30 +11,6 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Numerical spreading of a front that crosses the bed. First order in time acts like a diffusion v^2 dt/2 at
-/// front speed v, over the height H sqrt(v dt H). Four hundred steps per crossing give 0.05 (within 0.1 % of
-/// Schumann's gas bed, docs/validation/tank-tables.md). Cells add G c dz (1 - Co)/2 of the bed.
-class FirstOrderAdvection final : public TankDiagnostic {
- public:
-  using TankDiagnostic::TankDiagnostic;
-  void look(diagnostics::Report& report) override {
-    if (view_.parameters().bed.advection != Advection::implicit || !(seen_->advance > 0)) return;
-    const double part = seen_->advance / crossing_mass();  // v dt / H
-    constexpr double limit = 0.05;
-    tell(report,
-         {.effect = "implicit advection",
-          .number = std::sqrt(part),
-          .limit = limit,
-          .what = fmt::format("implicit advection with this step smears a front that crosses the bed over "
-                              "{:.2g} of its height (standard deviation)",
-                              std::sqrt(part)),
-          // With a margin of a tenth.
-          .advice = fmt::format("use 'simulation.time-step: {:.2g} s'",
-                                0.9 * limit * limit / part * seen_->advance / seen_->flow),
-          .left_out = false});
-  }
-};
-
 /// Standard deviations from the middle of a diffusive front to where a `share` of its step remains.
 double deviations(double share) {
   double low = 0, high = 10;
@@ -150,10 +126,6 @@ class FrontError final : public TankDiagnostic {
 };
 
 }  // namespace
-
-Made advection(const TankView& view, const Seen& seen) {
-  return std::make_shared<FirstOrderAdvection>(view, seen);
-}
 
 Made front_error(const TankView& view, const Seen& seen) { return std::make_shared<FrontError>(view, seen); }
 

@@ -50,7 +50,7 @@ struct ElementParameters {
 };
 void declare(config::Section& section, ElementParameters& parameters);
 /// Effects that a tank can simulate, for --explain and docs/effects.md.
-std::span<const diagnostics::EffectCard<ElementParameters>> effect_cards();
+std::span<const diagnostics::EffectEntry<ElementParameters>> effect_cards();
 
 /// Adds the rows of flow.file to the parameters. Throws Error with file:line.
 TankParameters with_files(TankParameters parameters, const std::filesystem::path& case_folder);

@@ -4,11 +4,13 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "thermocline/model/parameters.hpp"
 #include "thermocline/wall/layers.hpp"
 #include "thermocline/wall/mechanics.hpp"
+#include "thermocline/weather/weather.hpp"
 
 namespace couplet::thermocline {
 
@@ -28,7 +30,7 @@ struct TankSetup {
 std::vector<ColumnLayer> ground_layers(const GroundParameters& parameters);
 
 /// Heat that crossed the boundaries of the tank since the start [J].
-struct Ledger {
+struct HeatSums {
   double flow = 0, side = 0, roof = 0, ground = 0;  ///< flow: into the bed; the others are losses
   double bed = 0;                                   ///< total into the bed
   double turnover = 0;                              ///< sum of the absolute values
@@ -80,7 +82,7 @@ class TankModel {
   double stable_ground() const;
   const WallStress& stress() const { return wall_->stress; }  ///< only with a shell
   const std::optional<Column>& ground() const { return ground_; }
-  const Ledger& ledger() const { return ledger_; }
+  const HeatSums& ledger() const { return ledger_; }
   /// Heat content of all elements at `t` relative to their initial temperature [J].
   double energy(double t) const;
   /// Errors of the energy balances of the tank and of the bed since the start [J].
@@ -151,8 +153,29 @@ class TankModel {
   std::vector<double> into_blanket_;  // heat flow from each ring [W]
   std::vector<double> owed_;          // heat taken by the shell and not yet given by the bed, per cell [J]
   Ullage::Heat gas_heat_;             // during an exchange step
-  Ledger ledger_;
+  HeatSums ledger_;
   Work work_;
 };
+
+/// Detects initial bed temperatures with a forgotten unit: below the fluid's lowest, but within its limits if
+/// read as degC. Returns a sentence or nothing.
+std::string forgotten_unit_of_bed(const TankParameters& parameters);
+/// Checks the temperatures of the flow likewise.
+std::string forgotten_unit_of_flow(const TankParameters& parameters);
+
+/// Sentences for the log about a tank in its initial state: missing air and sun, a restart beyond the
+/// cut-off, a flow that never starts.
+std::vector<std::string> questions(const TankParameters& parameters, const TankModel& model);
+
+/// Prices without a matching quantity, as sentences.
+std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, const Inventory& inventory,
+                                            bool has_pump);
+
+/// Why the seasons of the plant's calendar have no dates; empty if they have. Constant weather has none.
+std::string season_without_dates(const TankParameters& parameters);
+
+/// Throws Error if the cover absorbs sunlight (`absorptance` > 0) but the sun's position is unknown. `key`:
+/// full name of the key.
+void require_sun(double absorptance, const Weather& weather, const std::string& key);
 
 }  // namespace couplet::thermocline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/model/output.hpp"
+#include "thermocline/model/tank.hpp"
 
 #include <cmath>
 #include <limits>

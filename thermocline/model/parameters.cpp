@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "common/base/text.hpp"
-#include "thermocline/model/questions.hpp"
+#include "thermocline/model/model.hpp"
 
 namespace couplet::thermocline {
 namespace {

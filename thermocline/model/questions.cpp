@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/model/questions.hpp"
+#include "thermocline/model/model.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -12,7 +12,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "thermocline/model/questions.hpp"
+#include "thermocline/model/model.hpp"
 
 namespace couplet::thermocline {
 
@@ -198,7 +198,7 @@ TankRecord Tank::record() const {
     r.equivalent_stress = m.stress().equivalent;
     r.yield_strength = m.stress().yield;
   }
-  const Ledger &now = m.ledger(), &before = next_.ledger();
+  const HeatSums &now = m.ledger(), &before = next_.ledger();
   r.stored = now.bed - before.bed;
   r.losses = now.losses() - before.losses();
   const PlantParameters& plant = m.setup().parameters.flow.plant;
@@ -214,17 +214,19 @@ void Tank::save(io::CheckpointWriter& file) const {
 }
 
 void Tank::load(io::CheckpointReader& file) {
-  const std::size_t n = file.read_common("tank").size(), needed = base::to_numbers(accepted_).size();
-  if (n != needed)
-    throw Error(
-        "The checkpoint's 'tank' has {} values, this tank needs {}; run with the same elements and cells.", n,
-        needed);
   io::Archive archive(file);
   visit(archive);
   accepted_.resume();
 }
 
 void Tank::visit(io::Archive& archive) {
+  const std::size_t needed = base::to_numbers(accepted_).size();
+  std::size_t n = needed;
+  archive.common("tank-size", n);
+  if (n != needed)
+    throw Error(
+        "The checkpoint's 'tank' has {} values, this tank needs {}; run with the same elements and cells.", n,
+        needed);
   archive.common("tank", accepted_);
   archive.common("flow-control", memory_);
   if (report_) archive.common("report", *report_);

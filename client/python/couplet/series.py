@@ -195,3 +195,11 @@ def extrema(t, y, window=0.15):
                 if not found or kind != found[-1][2] or t[i] - found[-1][0] > window:
                     found.append((t[i] + shift, sign * (c + b * shift + a * shift * shift), kind))
     return sorted(found)
+
+
+def extremum(place, values, sign):
+    """Extremum along a line of the quartic through the five points around the largest sign * value."""
+    from scipy.interpolate import barycentric_interpolate
+    i = int(np.clip(np.argmax(sign * values), 2, len(values) - 3))
+    near = slice(i - 2, i + 3)
+    return sign * float(np.max(sign * barycentric_interpolate(place[near], values[near], np.linspace(place[i - 1], place[i + 1], 401))))

@@ -9,7 +9,7 @@
 
 #include "common/app/case/command_line.hpp"
 #include "common/app/case/roll_call.hpp"
-#include "common/app/loop/simulation.hpp"
+#include "common/app/loop/step_loop.hpp"
 #include "common/app/program.hpp"
 #include "common/config/load.hpp"
 #include "common/diagnostics/effects.hpp"

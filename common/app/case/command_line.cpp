@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "common/base/text.hpp"
-#include "common/config/description.hpp"
+#include "common/config/values.hpp"
 #include "common/diagnostics/finding.hpp"
 
 namespace couplet::app {

@@ -16,7 +16,6 @@
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/io/cut_mesh.hpp"
-#include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/readers/read_msh.hpp"

@@ -232,14 +232,15 @@ std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
   return attendants;
 }
 
-Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected, bool coupled) {
+Attendance attendance_of(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected,
+                         bool coupled) {
   const Attendant& first = attendants.front();
   const auto cannot_start = [&](const std::string& why, bool with_launch_line) {
-    Verdict verdict;
-    verdict.problem = "The job cannot start:" + why;
+    Attendance found;
+    found.problem = "The job cannot start:" + why;
     if (with_launch_line && !expected.empty())
-      verdict.problem += fmt::format("\n  Start it with: {}", launch_line(attendants, expected));
-    return verdict;
+      found.problem += fmt::format("\n  Start it with: {}", launch_line(attendants, expected));
+    return found;
   };
   const std::string errors = configuration_errors(attendants);
   const bool all_placed = std::none_of(attendants.begin(), attendants.end(),

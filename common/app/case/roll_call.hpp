@@ -38,7 +38,7 @@ struct Member {
   int first_rank = 0, ranks = 0;  ///< in MPI_COMM_WORLD
 };
 
-struct Verdict {
+struct Attendance {
   std::string problem;  ///< empty if the job can start
   bool alone = false;   ///< only one participant is present and runs without the others
 };
@@ -70,7 +70,8 @@ std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self);
 
 /// Compares the processes with the expected participants. `coupled` means that the YAML has a `coupling`
 /// section; the coupler is then part of `expected`. The result is the same on every process.
-Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected, bool coupled);
+Attendance attendance_of(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected,
+                         bool coupled);
 
 /// Returns true if no process has a problem, so that the job starts. Collective over `world`.
 bool all_agree_to_start(MPI_Comm world, bool problem);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/loop/simulation.hpp"
+#include "common/app/loop/step_loop.hpp"
 
 #include <fmt/format.h>
 

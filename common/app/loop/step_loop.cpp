@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "common/app/watch/watch.hpp"
+#include "common/app/supervision/supervisor.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/io/checkpoint.hpp"
@@ -85,14 +85,16 @@ void on_first_rank(MPI_Comm comm, const std::function<void()>& action) {
   if (!problem.empty()) throw Error("{}", problem);
 }
 
+void visit(io::Archive archive, RunState& state) {
+  archive.common("run", state.time, state.outputs, state.plan);
+}
+
 }  // namespace
 
-void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& state) {
+void write_run_state(MPI_Comm comm, const fs::path& folder, RunState state) {
   if (parallel::comm_rank(comm) == 0) {
     io::CheckpointWriter file(MPI_COMM_SELF, folder / run_file);
-    file.write_scalar("time", state.time);
-    file.write_scalar("outputs", state.outputs);
-    file.write_common("plan", state.plan);
+    visit(io::Archive(file), state);
     file.close();
   }
   MPI_Barrier(comm);
@@ -101,9 +103,7 @@ void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& stat
 RunState read_run_state(const fs::path& folder) {
   io::CheckpointReader file(MPI_COMM_SELF, folder / run_file);
   RunState state;
-  state.time = file.read_scalar("time");
-  state.outputs = int(file.read_count("outputs", std::numeric_limits<int>::max()));
-  file.read_common("plan", state.plan);
+  visit(io::Archive(file), state);
   return state;
 }
 
@@ -194,7 +194,7 @@ std::string StepLoop::stop(const StepActions& actions) {
   if (!is_written_) actions.write_stop(plan_.time() * later_than_saved, outputs_);
   if (folder.empty())
     return fmt::format("Stopped at t = {:g} s by a signal.{}", plan_.time(), what_is_kept(actions));
-  Watch::stopped();
+  Supervisor::stopped();
   if (parallel::comm_rank(comm_) == 0)
     log::info("stopped at t = {:g} s by a signal; the state is saved: continue with --restart {}",
               plan_.time(), folder.string());
@@ -238,7 +238,7 @@ std::string StepLoop::run(const StepActions& actions) {
   });
   if (!restarted_) actions.write_start(outputs_++), is_written_ = true;
   while (!plan_.finished()) {
-    if (parallel::any(comm_, Watch::stop_requested())) return stop(actions);
+    if (parallel::any(comm_, Supervisor::stop_requested())) return stop(actions);
     plan_.limit(actions.advised_dt());
     const coupling::Step step{.time = plan_.time(),
                               .dt = plan_.dt(),

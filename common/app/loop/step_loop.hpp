@@ -11,13 +11,35 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "common/app/loop/simulation.hpp"
+#include "common/config/section.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/coupling/step_plan.hpp"
 #include "common/io/checkpoint_set.hpp"
+#include "common/io/fields/mesh_part.hpp"
 
 namespace couplet::app {
+
+/// Parameters of `simulation:` in the YAML for every program.
+struct SimulationParameters {
+  std::string name = "case";
+  double end_time = 0, time_step = 0;  // [s]
+  int max_step_halvings = 6;           // halvings of a failed step
+  std::vector<std::string> accept;     // ids of findings that do not cause exit code 4
+  double neglected_share = 0.05;       // of the result, from which a neglected effect matters
+  std::string output_folder = "out";   // relative to the YAML's folder unless absolute
+  double output_interval = 0;          // [s]; 0 means only at the start and at the end
+  bool output_steps = true;            // steps.csv
+  io::FieldChoice fields;              // volume fields
+  double checkpoint_interval = 0;      // [s]; 0 for only at the end
+  int checkpoints_kept = 2;
+  double hang_timeout = 600;    // [s]; 0 for never
+  bool error_estimate = true;   // at the end of the run
+  bool choose_effects = false;  // estimates of the scene decide what the case leaves open
+  std::string keys;             // case as text, stored with every checkpoint (see case_keys)
+};
+void declare(config::Section& section, SimulationParameters& parameters);
 
 /// Counts the causes of step halvings. Shorter steps cannot cure a recurring cause; they only prolong a run
 /// whose result is lost.
@@ -51,7 +73,7 @@ struct RunState {
 };
 inline constexpr const char* run_file = "run.h5";  ///< in a checkpoint
 /// Rank 0 writes the state (collective). Each rank reads it by itself.
-void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, const RunState& state);
+void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, RunState state);
 RunState read_run_state(const std::filesystem::path& folder);
 
 /// Returns `folder` if it is a complete checkpoint, else the one in it with the latest time, regardless of
@@ -95,7 +117,7 @@ class StepLoop {
   /// Continues from this state. `from` is its checkpoint. Earlier checkpoints of that run in the same folder
   /// then belong to this run and are removed like its own.
   void restart(const RunState& state, const std::filesystem::path& from = {});
-  /// Runs to the end, or after a stop request (Watch::stop_requested) to the next accepted step, which is
+  /// Runs to the end, or after a stop request (Supervisor::stop_requested) to the next accepted step, which is
   /// saved and written. Returns an empty text on success. Otherwise it states when and why no step was found;
   /// the state before was saved unless the job is stateless.
   std::string run(const StepActions& actions);

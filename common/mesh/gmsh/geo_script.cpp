@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,6 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
-#include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/gmsh/sandbox.hpp"
 #include "common/mesh/load.hpp"

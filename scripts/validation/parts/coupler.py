@@ -72,8 +72,8 @@ def exchanged(job, kind, times):
         dummies = job.beside("benchmarks/exchange/exchange.py")
         return [dummies.measure(100000, job.build / "bin") for _ in range(3)]
     runs = job.once("exchange", make)
-    passes, ms = min((found[kind] for found, _ in runs), key=lambda f: f[1])
-    plain = min(p for _, p in runs)
+    passes, ms = min((found[kind] for found, *_ in runs), key=lambda f: f[1])
+    plain = min(p for _, p, _ in runs)
     return f"{ms:.2f} ms per pass, {passes:.1f} passes per step; MPI alone {plain:.2f} ms there and back: {ms / plain:.1f} times", ms <= times * plain
 
 

@@ -15,22 +15,10 @@ import yaml
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[3] / "benchmarks"))
 import ablation  # noqa: E402
 
-FOAM = "solidDisplacementFoam"
-# Part of a study that is run (--only: the sizes that a busy machine allows), its quantity, and the largest error of each program's best run.
-PEERS = {
-    "plate B": ("elliptic-plate/case.yaml", "4-corrected-1e-8,8-corrected-1e-8,12-corrected-1e-8,16-corrected-1e-8", "displacement",
-                {"CalculiX C3D8I": 0.02, "CalculiX C3D20R": 0.01, FOAM: 0.1}),
-    "LE1": ("le1/case.yaml", "*", "stress at D", {"CalculiX CPS4": 0.03, "CalculiX C3D8I": 0.01, "CalculiX CPS8R": 0.001, FOAM: 0.01}),
-    "Cook": ("cook/case.yaml", "4-*,8-*,16-*,32-*", "displacement of the corner",
-             {"CalculiX CPE4": 0.05, "CalculiX C3D8I": 0.02, "CalculiX CPE8R": 0.005, FOAM: 0.1}),
-    "cavity, Re 1000": ("cavity/study.yaml", "16-even,24-even,32-even", "u minimum", {"icoFoam": 0.3, "pimpleFoam": 0.3}),
-    "2D-1": ("cylinder/study-2d-1.yaml", "8,12,16", "cd", {"icoFoam": 0.02, "pimpleFoam": 0.02}),
-}
 
-
-def beside(job, name):
-    """One command on the case as it is; what was run before with the same programs and input is not run again."""
-    file, only, quantity, wanted = PEERS[name]
+def beside(job, file, only, quantity, wanted):
+    """One command on the case as it is, or on a part of its runs (the sizes that a busy machine allows); what was run before with the same programs and input is not
+    run again. `wanted`: the largest error of each program's best run."""
     case = job.root / "configs" / file
     done = job.run([job.root / "scripts/couplet", "study", case, "--peers", f"--only={only}", f"--build={job.build}"], timeout=7200)
     folder = case.parent / "out" / "study"
@@ -76,17 +64,10 @@ def street(job):
             len(found) == 3 and all(word == "ok" for word, *_ in found))
 
 
-# Study, program of keys, {quantity: truth; a number or the same by extrapolation of finer runs}.
-INTEREST = {
-    "cook": {"displacement of the corner": 0.0323007},                          # [m], quadratic elements refined to convergence
-    "le1": {"stress at D": 92.66e6, "displacement of D": -1.02207e-4},           # NAFEMS; extrapolated from nr = 32, 64, 128
-    "cantilever": {"tip": 0.10008},                                             # [m], three-dimensional finite elements
-}
-
-
-def interest(job):
+def interest(job, **truths_of):
+    """`truths_of`: {study: {quantity: truth}}"""
     parts, met = [], True
-    for case, truths in INTEREST.items():
+    for case, truths in truths_of.items():
         out = job.scratch / f"quantities-{case}"
         done = job.run([sys.executable, job.root / "scripts/couplet", "study", job.root / f"configs/{case}/case.yaml", "--quantities", f"--build={job.build}", f"--out={out}"])
         file = out / "quantities/quantities.json"
@@ -100,21 +81,10 @@ def interest(job):
     return "; ".join(parts), met
 
 
-# Case, meshes, quantities of one run with their truths (as above; Kirsch: three times the pull at the rim of the hole).
-CORNER = {"tip": ("{point: [48 mm, 60 mm], component: y}", 0.0323007)}
-PULLED = {"pull": ("{point: [0, 0.5], field: stress, component: xx}", 3e6)}
-DUAL = [
-    ("cook", [f"{{n: {n}, shape: {shape}}}" for shape in (0, 1) for n in (8, 16)], CORNER),
-    ("le1", [f"{{nr: {n}, nt: {3 * n // 2}}}" for n in (8, 16)], {"D": ("{point: [2, 0], component: x}", -1.02207e-4),
-                                                                 "pull": ("{point: [2, 0], field: stress, component: yy}", 92.66e6)}),
-    ("cantilever", [f"{{n_length: {10 * n}, n_side: {n}}}" for n in (2, 4)], {"tip": ("{point: [20, 1, 1], component: y}", 0.10008)}),
-    ("kirsch-hole", [f"{{n: {n}, nr: {4 * n // 3}, growth: 10, shape: {shape}}}" for shape in (0, 1) for n in (6, 12)], PULLED),
-]
-
-
-def dual_weighted(job):
+def dual_weighted(job, *cases):
+    """`cases`: each a case, its meshes, and its quantities of one run with their truths."""
     parts, ratios = [], []
-    for case, meshes, quantities in DUAL:
+    for case, meshes, quantities in cases:
         for mesh in meshes:
             out = job.scratch / f"dual-{len(ratios)}"
             asked = ", ".join(f"{name}: {given}" for name, (given, _) in quantities.items())
@@ -138,26 +108,19 @@ def heat_weighted(job):
     return "{:.0f} of {:.0f} within a factor of 2".format(*counts), counts[0] == counts[1]
 
 
-STUDIES = {  # folder in docs/validation/studies: file in configs
-    "elliptic-plate": "elliptic-plate/case", "le1": "le1/case", "le11": "le11/case", "cantilever": "cantilever/case",
-    "vibrating-cantilever": "vibrating-cantilever/case", "heated-cylinder": "heated-cylinder/case", "taylor-green-2d": "taylor-green-2d/case",
-    "cylinder-2d-1": "cylinder/study-2d-1", "cylinder-2d-2": "cylinder/study-2d-2", "cavity": "cavity/study",
-    "perpendicular-flap": "perpendicular-flap/study", "schumann": "schumann/case", "thermocline-andasol": "thermocline-andasol/study",
-    "bent-beam": "bent-beam/study",
-    **{f"{case}-gradients": f"{case}/study-gradients" for case in ("elliptic-plate", "le1", "le10", "le11", "cantilever")}}
 # Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, flux-memory, implicit coupling,
 # a tank's upwind scheme. Series of the first name of the study alone ("thesis-gradient") begin with theirs.
 OTHERS = ("thesis", "corrected", "block-coupled", "segregated", "aitken", "anderson", "newton-krylov", "bathe", "euler", "three-point", "loose-pressure",
           "viscous-implicit", "incremental", "explicit", "semi-implicit", "tvd", "implicit-60s")
 
 
-def all_studies(job):
-    """Runs of the default schemes in the committed studies; a run whose reference is too coarse to judge it counts by the reference that it has."""
+def all_studies(job, studies):
+    """`studies`: {folder in docs/validation/studies: file in configs}. Runs of the default schemes in the committed studies; a run whose reference is too coarse to judge it counts by the reference that it has."""
     from couplet.runs import Case
     from couplet.study import estimates, table
     from couplet.study.study import Study
     judged, coarse, lines = [], [], []
-    for name, case in STUDIES.items():
+    for name, case in studies.items():
         study = Study(Case(job.root / "configs" / f"{case}.yaml", job.build), job.scratch / "estimates")
         rows = table.read(job.root / "docs/validation/studies" / name / "runs.csv", study.axes, study.quantities)
         # A tank's implicit scheme is not its default, a coupled case's is.
@@ -226,18 +189,11 @@ def fresh(job, least=(0.75, 0.92), only=""):
             near[0] >= least[0] and near[1] >= least[1] and min(ratios) >= 0.2)
 
 
-TARGETS = {  # case of estimates/cases.yaml: two targets of its first number
-    "sheet of triangles that is sheared at its end": ("1%", "0.3%"), "beam under its weight, held at both ends": ("2%", "0.5%"),
-    "thick pipe as a body of revolution": ("0.5%", "0.1%"), "cube that is sheared": ("3%", "1.5%"), "strip that heat bends": ("2%", "0.5%"),
-    "bar that swings along itself": ("2%", "0.5%"), "curved bar that is pulled at its end": ("2%", "0.5%"), "lid over a layer that starts": ("2%", "1%"),
-    "pressure drop of a channel": ("2%", "1%"), "curved rubber that bends far": ("2%", "0.5%")}
-
-
 def fresh_targets(job):
     """Targets of --for-error on the cases of estimates: met where the true error is at most 1.1 times the target."""
     good, lines = 0, []
     for name, one in yaml.safe_load((FRESH / "cases.yaml").read_text()).items():
-        for target in TARGETS.get(name, ()):
+        for target in one.get("targets", ()):
             folder, settings = job.scratch / f"target-{name.replace(' ', '-').replace(',', '')}-{target[:-1]}", {}
 
             def filled(node, path=(), one=one, settings=settings):
@@ -268,14 +224,6 @@ def fresh_targets(job):
 
 
 # -- positions on the atlas --------------------------------------------------------------------------------------------
-# Each map has its panels, places between its squares, and the quantity whose number is the map's own axis (by a factor).
-BETWEEN = [
-    ("fluid-diffusion", ["explicit, Adams-Bashforth", "explicit, Runge-Kutta"], [0.07, 0.11, 0.13, 0.2, 0.35], [0.25, 0.75]),
-    ("fluid-convection", ["explicit, Adams-Bashforth", "implicit viscous term", "explicit, Runge-Kutta"], [0.3, 0.7, 1.2, 1.7], [0.25, 0.75]),
-    ("coupling-mass", ["explicit, predictor 1", "explicit, predictor 2"], [0.5, 0.8, 1.5, 5], [0.05]),
-]
-
-
 def placed(folder):
     """Largest share of the way to a limit in any run.json of the folder; None without one."""
     found = [c for file in pathlib.Path(folder).glob("out/*/run.json") for c in json.loads(file.read_text()).get("atlas", []) if c["map"] != "strong-robin"]
@@ -292,11 +240,12 @@ def halved(folder):
     return False
 
 
-def positions(job):
+def positions(job, *between):
+    """`between`: each a map, its panels, and places between its squares on both axes."""
     maps = atlas.maps()
     right, early, saved, wrong = 0, 0, 0, []
     with tempfile.TemporaryDirectory(prefix="couplet-atlas-") as scratch:
-        for name, panels, xs, ys in BETWEEN:
+        for name, panels, xs, ys in between:
             for panel, x, y in ((p, x, y) for p in panels for x in xs for y in ys):
                 runner = atlas.Runner(job.build, pathlib.Path(scratch) / f"{name}-{panels.index(panel)}-{x}-{y}".replace(" ", ""))
                 square = atlas.judged(maps[name], *maps[name].run(panel, x, y, runner))

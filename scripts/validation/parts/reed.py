@@ -7,34 +7,11 @@ import numpy as np
 import couplet
 
 # -- motion of the mesh -----------------------------------------------------------------------------------------------
-CYCLE = '"(0.001932*(1-cos(2*pi*t+acos(1-264/1932)))-0.000264)*(x/0.06)^2*(3-x/0.06)/2"'  # of the gap of 0.3 mm: from 0.039 to 3.9 mm
-LIFT = '"0.0039*t*(x/0.06)^2*(3-x/0.06)/2"'  # a cantilever's, 3.9 mm at the tip
-MOVER, FRAME = "tests/verification/mover", "slip: xmin xmax ymin ymax"
-CHANNEL = "fixed: inlet outlet walls seat"
-
-# Mesh, dimension, its parameters, end [s], steps, still boundaries, {moving one: its motion}.
-SCENES = {
-    "block in a frame closed to 5 %, triangles": (f"{MOVER}/frame.geo", 2, "{kind: 0, n: 6}", 1, 20, FRAME, {"block": 'translation: ["0.475*t", "0.475*t"]'}),
-    "block in a frame closed to 5 %, quadrilaterals": (f"{MOVER}/frame.geo", 2, "{kind: 1, n: 6}", 1, 20, FRAME, {"block": 'translation: ["0.475*t", "0.475*t"]'}),
-    "block in a frame closed to 5 %, tetrahedra": (f"{MOVER}/frame.geo", 3, "{kind: 2, n: 3}", 1, 20, f"{FRAME} zmin zmax", {"block": 'translation: ["0.475*t", "0.475*t", "0"]'}),
-    "plate turned by 180 degrees": ("configs/moving-mesh/square.geo", 2, "{n: 50}", 1, 50, "slip: floor right lid left", {"plate": "angle: pi*t"}),
-    "reed's tip lifted to 3.9 mm, slice one cell deep": (f"{MOVER}/reed_slice.geo", 3, "{}", 1, 20, f"{CHANNEL}, slip: sides", {"plate": f'displacement: ["0", "0", {LIFT}]'}),
-    "reed's tip lifted to 3.9 mm, slice in two dimensions": (f"{MOVER}/reed_plane.geo", 2, "{}", 1, 20, CHANNEL, {"plate": f'displacement: ["0", {LIFT}]'}),
-    "reed's tip lifted to 3.9 mm, tetrahedra": (
-        f"{MOVER}/reed.geo", 3, "{}", 1, 20, "fixed: far lid seat, slip: side clamp middle", {"plate": f'displacement: ["0", "0", {LIFT}]'}),
-    "reed's slice opened to 3.9 mm and closed to 1 % of it, 100 times": (f"{MOVER}/reed_plane.geo", 2, "{}", 100, 4000, CHANNEL, {"plate": f'displacement: ["0", {CYCLE}]'}),
-    "two cylinders past each other at a gap of 10 %": (
-        "configs/passing-cylinders/pair.geo", 2, "{gap: 0.1}", 8, 160, "slip: ends sides",
-        {"upper": 'translation: ["sin(pi*t/4)^3", 0]', "lower": 'translation: ["-sin(pi*t/4)^3", 0]'}),
-}
-
-
-def moved(job, scene, method):
+def moved(job, scene, method, mesh, dimension, parameters, end, steps, still, moving):
     """(least scaled Jacobian of the mesh, where it was refused and why; None where it came to the end)"""
-    mesh, dimension, parameters, end, steps, still, moving = SCENES[scene]
     sides = [f"{name}: {{type: {kind}}}" for kind, names in re.findall(r"(\w+):([^,]*)", still) for name in names.split()]
     sides += [f"{name}: {{type: moving, motion: {{{motion}}}}}" for name, motion in moving.items()]
-    folder = job.scratch / f"reed-{list(SCENES).index(scene)}-{method}"
+    folder = job.scratch / re.sub(r"\W+", "-", f"reed {scene} {method}")
     folder.mkdir(exist_ok=True)
     (folder / "case.yaml").write_text(f"""simulation: {{end-time: {end}, time-step: {end / steps}, max-step-halvings: 0, output: {{folder: out, interval: {end}}}, checkpoint: {{interval: 0}}}}
 participants:
@@ -49,8 +26,9 @@ participants:
     return min(rows["least scaled Jacobian [1]"]), refused if done.returncode else None
 
 
-def reaches(job, scene):
-    (least, refused), *others = (moved(job, scene, method) for method in ("barrier", "laplacian", "pseudo-solid"))
+def reaches(job, *scene):
+    """`scene`: its name, mesh, dimension and mesh-parameters, end [s], steps, still boundaries, {moving one: its motion}."""
+    (least, refused), *others = (moved(job, scene[0], method, *scene[1:]) for method in ("barrier", "laplacian", "pseudo-solid"))
     beside = ", ".join(f"{method} {where or 'comes through too'}" for method, (_, where) in zip(("laplacian", "pseudo-solid"), others))
     return f"{refused or f'all cells valid, least scaled Jacobian {least:.4f}'}; {beside}", not refused and least > 0
 

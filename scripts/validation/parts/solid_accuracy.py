@@ -174,30 +174,6 @@ def seconds(job, case):
 
 
 # -- estimates --------------------------------------------------------------------------------------------------------
-def beam(length, shape):
-    meshes = [f"n: {n}, nl: {nl}, L: {length}, shape: {shape}" for n, nl in ((1, 10), (2, 20), (2, 40), (3, 30), (4, 40))]
-    places = ((length / 2, 1, 0.5), (length / 5, 1, 0.5))
-    return "slender-beam", "tip y", meshes, f"n: 6, nl: 80, L: {length}, shape: 0", places, (f".probes.tip.point=[{length}, 0.5, 0.5]",)
-
-
-def body(case, column, text, sizes, finest, places, keys=()):
-    """Returns the arguments of a comparison on meshes of `sizes` and `finest`. `text`: mesh key; {r}, {t} and {z} become r, 3 r / 2 and 3 r / 4 cells."""
-    *meshes, fine = (text.format(r=r, t=3 * r // 2, z=3 * r // 4) for r in (*sizes, finest))
-    return case, column, meshes, fine.replace("shape: 1", "shape: 0"), places, keys
-
-
-# (case, displacement, meshes, the fine one, where the stress is read: surfaces, none where it is singular; further keys)
-BODIES = (
-    *(body("cook", "corner y", f"n: {{r}}, shape: {shape}", (4, 8, 16, 32), 128, ((0.024, 0.022), (0.024, 0.052))) for shape in (0, 1)),
-    body("le1", "D x", "nr: {r}, nt: {t}", (4, 8, 16, 32), 128, ((2, 0),)),
-    *(body("lame-cylinder", "inside x", f"nr: {{r}}, nt: {{t}}, shape: {shape}", (4, 8, 16), 96, ((7, 0),)) for shape in (0, 1)),
-    *(body("off-axis-bar", "tip y", f"n: {{r}}, shape: {shape}", (4, 8, 16), 64, ((0.1, 0.01),)) for shape in (0, 1)),
-    *(beam(length, shape) for length in (10, 40) for shape in (0, 1)),
-    body(BRACKET, "tip y", "h: {r}", (0.01, 0.006, 0.004), 0.002, ((0.0229289322, 0.0229289322, 0.015),)),
-    *(body("elliptic-plate", "hole-top z", f"nr: {{r}}, nt: {{t}}, nz: {{z}}, shape: {shape}", (4, 8, 12), 32, ((2, 0, 0.6),)) for shape in (0, 1)),
-)
-
-
 def moved(job, case, column, mesh, keys):
     """Returns (displacement at the probe, estimate of its error: what mesh, steps and solvers leave, without what neglected effects change)"""
     run = job.case(case, (f".mesh-parameters={{{mesh}}}", *keys))
@@ -213,11 +189,12 @@ def stress(job, case, mesh, keys, place):
     return [value * (1 if name[0] == name[1] else math.sqrt(2)) for name, value in parts.items()], told
 
 
-def ratios(job, what):
-    """Returns [(estimated over true error, case and mesh)] of the displacements or the stresses."""
+def ratios(job, what, bodies):
+    """Returns [(estimated over true error, case and mesh)] of the displacements or the stresses. `bodies`: [(case, displacement, meshes, the fine one, where the stress is
+    read: surfaces, none where it is singular; further keys)]"""
     def make():
         found = []
-        for case, column, meshes, fine, places, keys in BODIES:
+        for case, column, meshes, fine, places, keys in bodies:
             for place in places if what == "stress" else (None,):
                 look = (lambda mesh: stress(job, case, mesh, keys, place)) if place else (lambda mesh: moved(job, case, column, mesh, keys))
                 right = look(fine)[0]
@@ -229,13 +206,14 @@ def ratios(job, what):
     return job.once(("estimates beside errors", what), make)
 
 
-def within(job, what, factor, wanted=0.8):
-    found = ratios(job, what)
+def within(job, what, factor, bodies, wanted=0.8):
+    found = ratios(job, what, bodies)
     inside = sum(1 / factor <= r <= factor for r, _ in found)
     (small, where), large = min(found), max(found)[0]
     return f"{inside} of {len(found)}, {100 * inside / len(found):.0f} %; least {small:.2f} ({where}), largest {large:.0f}", inside >= wanted * len(found)
 
 
-def least(job, what):
-    ratio, where = min(ratios(job, what))
-    return f"least {ratio:.2f} ({where}), largest {max(ratios(job, what))[0]:.0f}", ratio >= 1 / 3
+def least(job, what, bodies):
+    found = ratios(job, what, bodies)
+    (ratio, where), large = min(found), max(found)[0]
+    return f"least {ratio:.2f} ({where}), largest {large:.0f}", ratio >= 1 / 3

@@ -5,8 +5,6 @@ import math
 from couplet.study.quantities import top
 
 # -- D: thick plate -----------------------------------------------------------------------------------------------------
-
-
 def thick_peak(job, damping, gradient, mesh, step, wanted, limit):
     """First maxima of the deflection and of the stress at the bottom. `wanted`: deflection [mm], its time [s] (none: not compared), stress [MPa]."""
     keys = (".damping=" + ("{%s}" % damping if damping else "~"), ".mesh-parameters={n: %d, nz: %d}" % tuple(mesh), "simulation.end-time=0.0116", f"simulation.time-step={step}",
@@ -122,29 +120,20 @@ def table_3_1(job):
     return reproduced(found)
 
 
-# Thesis's table 3.4: S, SA and SA with the predictor of Euler over C, by the step.
-TABLE_3_4 = {0.01: (10, 7.9, 2.7), 0.1: (12, 5.9, 3.7), 1: (20, 5.9, 4.9), 2: (32, 7.5, 6.8)}
-
-
-def table_3_4(job, step, steps):
-    """Case C: processor seconds per step over C's, and iterations per step."""
+def table_3_4(job, step, steps, published):
+    """Case C: processor seconds per step over C's, and iterations per step. `published`: S, SA and SA with the predictor of Euler over C."""
     methods = {"C": ("C", "none"), "S": ("S", "none"), "SA": ("SA", "none"), "SA-E": ("SA", "euler"), "newton-krylov": ("newton-krylov", "euler")}
     beams = {name: race(job).beam(job, f"{race(job).METHODS[method]}, predictor: {predictor}", step=step, steps=steps, times=1)
              for name, (method, predictor) in methods.items()}
     text, met = reproduced({f"{step} s": {name: (beams[name][0] / beams["C"][0], wanted)
-                                          for name, wanted in zip(("S", "SA", "SA-E", "newton-krylov"), (*TABLE_3_4[step], None))}})
+                                          for name, wanted in zip(("S", "SA", "SA-E", "newton-krylov"), (*published, None))}})
     return f"{text}; iterations per step {', '.join(f'{name} {n:.0f}' for name, (_, n) in beams.items())}", met
 
 
-# Seconds of the thesis's table 3.3: whole runs of case C by the block-coupled method.
-TABLE_3_3 = {0.1: {"euler": 580, "three-point": 404, "trapezoidal": 313, "bathe": 363}, 1: {"euler": 266, "three-point": 251, "trapezoidal": 233, "bathe": 324},
-             2: {"euler": 145, "three-point": 140, "trapezoidal": 137, "bathe": 234}}
-
-
-def table_3_3(job):
-    """Processor seconds per step by scheme, over those of the trapezoidal rule."""
+def table_3_3(job, *published):
+    """Processor seconds per step by scheme, over those of the trapezoidal rule. `published`: each a step and the seconds of whole runs of case C by the block-coupled method."""
     found = {}
-    for step, thesis in TABLE_3_3.items():
+    for step, thesis in published:
         seconds = {scheme: race(job).beam(job, race(job).METHODS["C"], step=step, steps=18, times=1, extra=(f"participants.solid.time-scheme={{type: {scheme}}}",))[0]
                    for scheme in thesis}
         found[f"{step} s"] = {s: (seconds[s] / seconds["trapezoidal"], round(thesis[s] / thesis["trapezoidal"], 2)) for s in thesis if s != "trapezoidal"}

@@ -84,9 +84,11 @@ def judging(job, most):
 
 
 def judging_words(job):
-    """Words that names of files and classes must not contain."""
-    text = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items()).lower()
-    found = [word for word in JUDGING_WORDS if word in text]
+    """Words that names of files and classes must not contain. The words of snake case and of camel case count, in the singular and in the plural, and not parts of them:
+    `lookup` is no `look`, and `discard` no `card`."""
+    names = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items())
+    there = {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", names)}
+    found = [word for word in JUDGING_WORDS if {word, f"{word}s"} & there]
     return f"{len(found)} beside diagnostic and finding: {', '.join(found) or 'none'}", not found
 
 
@@ -138,7 +140,7 @@ def data_members(body):
         body = body[:match.start()] + "struct X " + body[end + 1:]
         at = match.start() + 9
     while True:  # bodies of functions, initializers, arguments of templates
-        shorter = re.sub(r"<[^<>;{}()]*>", "", re.sub(r"\{[^{}]*\}", "{}", body.replace("->", "").replace("operator<", "operator")))
+        shorter = re.sub(r"<[^<>;{}()]*>", "", re.sub(r"\{(?:[^{}]|\{\})*\}", "{}", body.replace("->", "").replace("operator<", "operator")))
         shorter = re.sub(r"\{\}(?=\s*[,;])", "", re.sub(r"=[^,;{}()]*(?=[,;])", "", shorter))
         if shorter == body:
             break
@@ -153,9 +155,9 @@ def data_members(body):
 
 
 def largest_class(job, most):
+    """Classes and structs but those in files of parameters, which list the keys of a case."""
     found = {}
-    for f, text in texts(job).items():
-        text = plain(text)
+    for f, text in ((f, plain(text)) for f, text in texts(job).items() if "parameters" not in f):
         at = 0
         while match := CLASS.search(text, at):
             at = closing(text, match.end())

@@ -7,13 +7,6 @@ import atlas
 import couplet
 
 
-# -- limits -----------------------------------------------------------------------------------------------------------
-# -- effects ----------------------------------------------------------------------------------------------------------
-
-
-# -- two dimensions against one cell of three --------------------------------------------------------------------------
-
-
 # -- limits, by runs of the atlas's maps -------------------------------------------------------------------------------
 def structure(job, name, scheme, gradient, courant, steps, most=None):
     """Growth of the energy of the oscillating beam."""

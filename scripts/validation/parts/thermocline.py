@@ -6,8 +6,6 @@ import re
 
 import yaml
 
-from couplet import tank
-
 CASES = {"A": ("thermocline-andasol", "table5_5.csv"), "G": ("thermocline-gemasolar", "table5_6.csv")}
 VARIANTS = ("B", "AR1", "AR2", "CO1", "CO2", "S1", "L1", "L2", "T1")
 # Row of the published table: (our name of it, limits in points and per cent as first asked).
@@ -116,7 +114,8 @@ def diameters(job, case, chosen, values):
     variant = yaml.safe_load((job.root / "configs" / folder / "case.yaml").read_text())["study"]["variants"][f"{SMOOTH}B"]
     for ratio in values:
         keys = (f".diameter={ratio * {'A': 38, 'G': 23}[case]} m", *(f".{key}={json.dumps(value)}" for key, value in variant.items()))
-        found[ratio] = tank.summary(job.case(folder, keys).folder)
+        summary = job.case(folder, keys).table("tank", "summary.csv")
+        found[ratio] = dict(zip(summary["quantity"], map(float, summary["value"])))
     text = "; ".join(f"{r:g}: {v['Q_C/Q_excess']:.1f} %, {v['eta_th']:.1f} %, {v['FoS_static']:.2f}" for r, v in found.items())
     least = min((r for r, v in found.items() if v["Q_C/Q_excess"] >= 90), default=None)
     return f"stored share of the excess, efficiency, static factor of safety at {text}; least that stores 90 %: {least}", least == chosen

@@ -97,7 +97,6 @@ with tempfile.TemporaryDirectory() as top:
     for how, name, n, words in (("attribute", "version", 6, "contains 6 values (float64); expected one number"),
                                 ("attribute", "set", 500, "one fixed-length text"),
                                 ("table", "arrays/state", 900, "values"),
-                                ("table", "scalars/dt", 900, "900 rows"),
                                 ("table", "layout/state", 900, "the layout of 'state' is for 900 ranks"),
                                 ("external", "arrays/state", 1, "a link to another file")):
         folder = top / f"restart-{how}-{name.replace('/', '-')}"

@@ -57,12 +57,13 @@ class Tank final : public Participant {
     return {.dt = step_.dt};
   }
   void save(io::CheckpointWriter& file) const override {
-    file.write_scalar("level", level_);
-    file.write_scalar("before", before_);
+    file.write_common("level", std::array<double, 1>{level_});
+    file.write_common("before", std::array<double, 1>{before_});
   }
   void load(io::CheckpointReader& file) override {
-    level_ = file.read_scalar("level");
-    before_ = file.read_scalar("before");
+    io::Archive archive(file);
+    archive.common("level", level_);
+    archive.common("before", before_);
   }
   void write_output(double, int) override {}
   void write_monitors(double) override {}

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "common/coupling/channel.hpp"
-#include "common/coupling/serve.hpp"
 #include "common/coupling/step_plan.hpp"
 #include "coupler/coupler.hpp"
 

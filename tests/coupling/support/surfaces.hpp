@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/coupling/participant.hpp"
-#include "coupler/mapping/mapping.hpp"
+#include "coupler/mapping/links.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::tests {

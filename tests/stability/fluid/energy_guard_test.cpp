@@ -64,7 +64,7 @@ TEST(EnergyGuard, the_step_that_it_names_counts_the_friction_at_walls) {
     double limit = 0;
     for (Index k = 0; k < c.mesh().cells.n_owned(); ++k) {
       if ((s.placement->centre[k] - Vec<2>(3.5, row + 0.5) / 8).norm() > 1e-9) continue;
-      const std::string text = likely_cause<2>(c.mesh(), c.fluid().boundary(), step, k, 0.01, false, 0);
+      const std::string text = likely_cause<2>(c.mesh(), c.fluid().boundary(), step, k, 0.01, false);
       const std::string before = "stable there up to a step of ";
       EXPECT_THAT(text, HasSubstr(before));
       limit = std::stod(text.substr(text.find(before) + before.size()));

@@ -2,7 +2,7 @@
 // A light wall on a viscous fluid in the semi-implicit loop, one mode of it, so that every pass is solved
 // exactly: what is left is the scheme.
 #include "../../verification/fluid/fluid_case.hpp"
-#include "fluid_solver/step/renewal.hpp"
+#include "fluid_solver/step/fluid.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::fluid::test::light_wall_test {

@@ -99,7 +99,8 @@ double growth_of_noise(double share_of_limit, ExplicitScheme scheme = ExplicitSc
   p.initial_velocity = {{"1e-3*sin(300*x+170*y)*cos(430*y)"}, {"1e-3*cos(290*x-410*y)"}};
   all_sides(p, 2, boundary(BoundaryType::periodic));
   FluidCase<2> c(MPI_COMM_WORLD, raw, p);
-  StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density, scheme);
+  const MomentumTerms<2> none;
+  StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density, none, scheme);
   const double dt = share_of_limit * sizes.limits(c.state()).explicit_viscous;
   try {
     for (int i = 0; i < 400; ++i) c.step(dt);
@@ -130,11 +131,14 @@ TEST(StepLimit, of_eddy_viscosity_is_that_of_a_more_viscous_fluid) {
   all_sides(p, 2, boundary(BoundaryType::periodic));
   const FluidCase<2> c(MPI_COMM_WORLD, raw, p);
   FluidCase<2> thick(MPI_COMM_WORLD, raw, p);
-  StepSize<2> sizes(c.mesh(), thick.fluid().boundary(), 0.1),
-      of_thick(c.mesh(), thick.fluid().boundary(), 0.7);
+  p.turbulence.emplace();
+  const MomentumTerms<2> none, eddies = make_momentum_terms<2>(c.mesh(), p);
+  StepSize<2> sizes(c.mesh(), thick.fluid().boundary(), 0.1, none),
+      of_eddies(c.mesh(), thick.fluid().boundary(), 0.1, eddies),
+      of_thick(c.mesh(), thick.fluid().boundary(), 0.7, none);
   State<2> eddying = c.state();
   eddying.eddy.assign(std::size_t(c.mesh().cells.n_local()), 0.3);
-  const double limit = sizes.limits(eddying).explicit_viscous;
+  const double limit = of_eddies.limits(eddying).explicit_viscous;
   EXPECT_NEAR(limit, of_thick.limits(c.state()).explicit_viscous, 1e-5 * limit);
   EXPECT_LT(limit, 0.5 * sizes.limits(c.state()).explicit_viscous);
 }
@@ -188,7 +192,8 @@ TEST(StepLimit, the_cell_that_limits_the_step_is_named_with_its_place_and_the_re
     p.boundaries["xmax"] = boundary(BoundaryType::outlet);
     p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::slip);
     FluidCase<2> c(MPI_COMM_WORLD, raw, p);
-    StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density);
+    const MomentumTerms<2> none;
+    StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density, none);
     const double limit = sizes.limits(c.state()).explicit_viscous;
     const StepLimiter found = sizes.limiter(c.state(), false);
     EXPECT_NEAR(found.limit, limit, 1e-5 * limit);  // that is rounded down to six digits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `effects: auto` chooses, scene by scene, beside what somebody who knows the field would.
-#include "fluid_solver/parameters/effects.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
 #include "solid_solver/effects.hpp"
 #include "tests/support/test.hpp"
 

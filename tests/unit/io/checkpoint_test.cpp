@@ -30,7 +30,7 @@ std::vector<double> awkward_values() {
 void write_one(const std::filesystem::path& file, const std::vector<double>& values, double time = 1.25) {
   CheckpointWriter writer(world, file);
   writer.write("solid/displacement", values);
-  writer.write_scalar("time", time);
+  writer.write_common("time", std::array<double, 1>{time});
   writer.close();
 }
 
@@ -58,7 +58,7 @@ TEST(Checkpoint, comes_back_bit_for_bit) {
   std::vector<double> filled(values.size());
   reader.read("solid/displacement", filled);
   EXPECT_TRUE(same_bits(filled, values));
-  EXPECT_EQ(reader.read_scalar("time"), 0.1 + 0.2);
+  EXPECT_EQ(reader.read_common("time").front(), 0.1 + 0.2);
 }
 
 TEST(Checkpoint, an_array_that_is_empty_everywhere_comes_back_empty) {
@@ -74,13 +74,13 @@ TEST(Checkpoint, the_last_good_file_stays_until_the_new_one_is_closed) {
   write_one(file, {1.0}, 1);
   {
     CheckpointWriter abandoned(world, file);
-    abandoned.write_scalar("time", 2);
-    EXPECT_EQ(CheckpointReader(world, file).read_scalar("time"), 1);
+    abandoned.write_common("time", std::array<double, 1>{2});
+    EXPECT_EQ(CheckpointReader(world, file).read_common("time").front(), 1);
   }
-  EXPECT_EQ(CheckpointReader(world, file).read_scalar("time"), 1);
+  EXPECT_EQ(CheckpointReader(world, file).read_common("time").front(), 1);
   EXPECT_FALSE(std::filesystem::exists(file.string() + ".part"));
   write_one(file, {1.0}, 3);
-  EXPECT_EQ(CheckpointReader(world, file).read_scalar("time"), 3);
+  EXPECT_EQ(CheckpointReader(world, file).read_common("time").front(), 3);
 }
 
 TEST(Checkpoint, a_missing_file_is_named_on_every_rank) {
@@ -123,7 +123,7 @@ TEST(Checkpoint, an_earlier_version_is_refused_with_file_and_both_versions) {
     ASSERT_GE(H5Awrite(version, H5T_NATIVE_DOUBLE, &before), 0);
   });
   EXPECT_THAT(support::error_of([&] { CheckpointReader(world, scratch / "old.h5"); }),
-              ::testing::AllOf(HasSubstr("old.h5' has format version 4; this program reads version 9"),
+              ::testing::AllOf(HasSubstr("old.h5' has format version 4; this program reads version 10"),
                                HasSubstr("with the release that wrote it")));
   EXPECT_THAT(problem_of_checkpoint(scratch / "old.h5"), HasSubstr("format version 4"));
 }
@@ -135,7 +135,7 @@ TEST(Checkpoint, values_that_are_each_ranks_own_are_refused_on_another_number_of
   const int size = parallel::comm_size(world);
   if (parallel::comm_rank(world) == 0 && size > 1) {
     CheckpointReader reader(MPI_COMM_SELF, file);
-    EXPECT_EQ(reader.read_scalar("time"), 1.25);
+    EXPECT_EQ(reader.read_common("time").front(), 1.25);
     EXPECT_THAT(support::error_of([&] { reader.read("solid/displacement"); }),
                 HasSubstr(fmt::format("was written on {} ranks, this run has 1", size)));
   }
@@ -148,12 +148,12 @@ TEST(Checkpoint, a_missing_name_or_another_size_is_told_on_every_rank) {
   CheckpointReader reader(world, scratch / "a.h5");
   EXPECT_THAT(support::error_of([&] { reader.read("fluid/velocity"); }),
               HasSubstr("has no array 'fluid/velocity'"));
-  EXPECT_THAT(support::error_of([&] { reader.read_scalar("dt"); }), HasSubstr("has no value 'dt'"));
+  EXPECT_THAT(support::error_of([&] { reader.read_common("dt"); }), HasSubstr("has no array 'dt'"));
   // Only rank 0 asks for a wrong size: all must hear of it.
   std::vector<double> values(awkward_values().size() + (parallel::comm_rank(world) == 0 ? 1 : 0));
   EXPECT_THAT(support::error_of([&] { reader.read("solid/displacement", values); }),
               HasSubstr("has 1000 values of 'solid/displacement' on rank 0, but 1001 are expected"));
-  EXPECT_EQ(reader.read_scalar("time"), 1.25);
+  EXPECT_EQ(reader.read_common("time").front(), 1.25);
 }
 
 TEST(Checkpoint, a_folder_that_cannot_be_made_is_named) {

@@ -38,18 +38,16 @@ TEST(RotatingFrame, forces_on_a_fluid_at_rest_outside_of_it) {
              r = x - p.centre;
   const Vectors<3> u{-omega.cross(r)}, none;
   Vectors<3> force{Vec3::Zero()};
-  frame.add_force(t, dt, std::vector<Vec3>{x}, u, none, {1, 0}, force);
+  frame.add(t, dt, std::vector<Vec3>{x}, u, none, {1, 0}, force);
   Vec3 all = force[0];
-  const auto potential = [&](const Vec3& place) {
-    return 0.5 * frame.omega(t + dt / 2).cross(place - frame.centre()).squaredNorm();
-  };
+  const auto potential = frame.potential(t + dt / 2);
   for (int c = 0; c < 3; ++c)  // the slope of the potential, which is quadratic
     all[c] += (potential(x + Vec3::Unit(c)) - potential(x - Vec3::Unit(c))) / 2;
   EXPECT_LT((all - omega.cross(omega.cross(r)) + 2 * axis.cross(r)).norm(), 1e-13);
   // 1.5 and -0.5 times the levels make the same of them
   const Vectors<3> later{Vec3(2 * u[0])}, before{Vec3(4 * u[0])};
   Vectors<3> again{Vec3::Zero()};
-  frame.add_force(t, dt, std::vector<Vec3>{x}, later, before, {1.5, -0.5}, again);
+  frame.add(t, dt, std::vector<Vec3>{x}, later, before, {1.5, -0.5}, again);
   EXPECT_LT((again[0] - force[0]).norm(), 1e-13);
   EXPECT_DOUBLE_EQ(frame.rate(t, dt), 2 * 1.3);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weak compressibility: pulses, standing waves, openings, closed cylinders and the way back to the incompressible fluid.
 #include "fluid_case.hpp"
-#include "fluid_solver/diagnostics/effects.hpp"
+#include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/output/output.hpp"
 #include "fluid_solver/state/state.hpp"
 
@@ -295,22 +295,28 @@ TEST_P(Pulse, keeps_the_mass_in_each_row_of_its_balance) {
   EXPECT_LT(defect, 1e-7 * net);
 }
 
+UpstreamLineParameters line(double area, UpstreamLineParameters::End end) {
+  return {.length = 0.5, .area = area, .end = end};
+}
+
 /// Pressures and velocities of all cells in a row.
 std::vector<double> numbers(const State<2>& s) {
   std::vector<double> all(s.pressure[0]->p);
   all.insert(all.end(), s.phi.begin(), s.phi.end());
   for (const auto& u : s.u) all.insert(all.end(), u.data(), u.data() + 2);
   all.insert(all.end(), s.openings.mean.begin(), s.openings.mean.end());
+  for (const LineRow& row : s.openings.line) all.insert(all.end(), {row.time, row.wave, row.given, row.flow});
   all.push_back(s.pressure[0]->upstream);
   return all;
 }
 
 TEST_P(Pulse, goes_on_bit_for_bit_from_a_checkpoint) {
-  for (const bool volume : {false, true}) {
+  for (const std::string behind : {"nothing", "volume", "line"}) {
     FluidParameters p = pulse(GetParam());
     p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*sin(3000*t)", "0"});
-    p.boundaries["xmin"].absorbing = !volume;
-    if (volume) p.compressibility->upstream_volume = 0.003;
+    p.boundaries["xmin"].absorbing = behind == "nothing";
+    if (behind == "volume") p.compressibility->upstream_volume = 0.003;
+    if (behind == "line") p.compressibility->upstream_line = {0.08, 0.01, UpstreamLineParameters::End::open};
     FluidCase<2> d(MPI_COMM_WORLD, duct(50), p);
     d.run(6e-4, 30);
     io::StateInMemory memory;
@@ -330,22 +336,93 @@ TEST_P(Pulse, goes_on_bit_for_bit_from_a_checkpoint) {
         fluid->solve({}, {});
         fluid->accept();
       }
-    EXPECT_EQ(numbers(d.state()), numbers(other.state())) << volume;
+    EXPECT_EQ(numbers(d.state()), numbers(other.state())) << behind;
   }
 }
 
 TEST_P(Pulse, is_the_same_on_any_number_of_ranks) {
-  FluidParameters p = pulse(GetParam());
-  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*sin(3000*t)", "0"});
-  p.compressibility->upstream_volume = 0.003;
-  FluidCase<2> all(MPI_COMM_WORLD, duct(50), p), alone(MPI_COMM_SELF, duct(50), p);
-  all.run(6e-4, 20);
-  alone.run(6e-4, 20);
-  EXPECT_NEAR(pressures(all).centre, pressures(alone).centre, 1e-8);
-  EXPECT_NEAR(pressures(all).largest, pressures(alone).largest, 1e-8);
-  EXPECT_NEAR(all.state().pressure[0]->upstream, alone.state().pressure[0]->upstream, 1e-8);
-  EXPECT_NEAR(all.state().openings.mean[0], alone.state().openings.mean[0], 1e-11);
-  EXPECT_NEAR(all.state().ledger.energy / alone.state().ledger.energy, 1, 1e-8);
+  for (const bool is_line : {false, true}) {
+    FluidParameters p = pulse(GetParam());
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*sin(3000*t)", "0"});
+    if (is_line)
+      p.compressibility->upstream_line = {0.08, 0.01, UpstreamLineParameters::End::closed};
+    else
+      p.compressibility->upstream_volume = 0.003;
+    FluidCase<2> all(MPI_COMM_WORLD, duct(50), p), alone(MPI_COMM_SELF, duct(50), p);
+    all.run(6e-4, 20);
+    alone.run(6e-4, 20);
+    EXPECT_NEAR(pressures(all).centre, pressures(alone).centre, 1e-8);
+    EXPECT_NEAR(pressures(all).largest, pressures(alone).largest, 1e-8);
+    EXPECT_NEAR(all.state().pressure[0]->upstream, alone.state().pressure[0]->upstream, 1e-8);
+    EXPECT_NEAR(all.state().openings.mean[0], alone.state().openings.mean[0], 1e-11);
+    EXPECT_NEAR(all.state().ledger.energy / alone.state().ledger.energy, 1, 1e-8);
+  }
+}
+
+/// Share of `shape`, a function of x, in the pressure of the cells, and the size of what is left over, in sizes of it.
+struct Echo {
+  double share = 0, rest = 0;
+};
+Echo echo(const FluidCase<2>& d, const std::function<double(double)>& shape) {
+  double sums[3] = {};
+  for (Index i = 0; i < d.mesh().cells.n_owned(); ++i) {
+    const double p = d.state().pressure[0]->p[i], s = shape(d.state().placement->centre[i][0]);
+    sums[0] += p * s, sums[1] += s * s, sums[2] += p * p;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, d.mesh().comm);
+  const double share = sums[0] / sums[1];
+  return {share, std::sqrt(std::max(0., sums[2] / sums[1] - share * share))};
+}
+
+/// A pulse of 1 Pa goes to the left through the inlet into a line of 0.5 m and comes back from its end, or from the
+/// mouth of a line of half the area, Z' = 2 Z: (Z' - Z)/(Z' + Z) = 1/3.
+TEST_P(Pulse, comes_back_from_the_far_end_of_a_line) {
+  using End = UpstreamLineParameters::End;
+  struct Wanted {
+    End end;
+    double area, way, share;
+  };
+  constexpr double wide = 2 * c * width;
+  for (const auto& [end, area, way, share] :
+       {Wanted{End::closed, 0.02, 1, 1}, Wanted{End::open, 0.02, 1, -1}, Wanted{End::absorbing, 0.02, 1, 0},
+        Wanted{End::absorbing, 0.01, 0, 1 / 3.}}) {
+    FluidParameters p = pulse(GetParam());
+    const std::string shape = fmt::format("exp(-((x - 0.5)/{})^2)", wide);
+    p.initial_pressure = config::ExpressionText{shape};
+    p.initial_velocity = {{fmt::format("-{}/{}", shape, rho * c)}, {"0"}};
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0", "0"});
+    p.compressibility->upstream_line = line(area, end);
+    FluidCase<2> d(MPI_COMM_WORLD, duct(200), p);
+    d.run((way + 1) / c, int(std::lround((way + 1) / c / 5e-6)));
+    const double at = c * d.state().pressure[0]->time - 0.5 - way;
+    const Echo got = echo(d, [&](double x) { return std::exp(-std::pow((x - at) / wide, 2)); });
+    const std::string name =
+        std::array{"closed", "open", "absorbing"}[int(end)] + std::string(way > 0 ? "" : "_narrow");
+    RecordProperty(name, fmt::format("{}", std::abs(got.share - share)));
+    RecordProperty(name + "_rest", fmt::format("{}", got.rest));
+    EXPECT_NEAR(got.share, share, 0.01) << name;
+    EXPECT_LT(got.rest, 0.02) << name;
+  }
+}
+
+/// A pulse of the flow that the inlet prescribes comes out of the line after L/c: from a piston with rho c u, and from a
+/// tube that goes on with half of it.
+TEST_P(Pulse, comes_out_of_a_line_after_the_travel_time_of_sound) {
+  using End = UpstreamLineParameters::End;
+  for (const auto& [end, share] : {std::pair(End::closed, 1.), std::pair(End::absorbing, 0.5)}) {
+    FluidParameters p = pulse(GetParam());
+    p.initial_pressure = config::ExpressionText{"0"};
+    p.initial_velocity = {{"0"}, {"0"}};
+    p.boundaries["xmin"] =
+        boundary(BoundaryType::inlet, {fmt::format("exp(-((t - 1e-3)/{})^2)/{}", width, rho * c), "0"});
+    p.compressibility->upstream_line = line(0.02, end);
+    FluidCase<2> d(MPI_COMM_WORLD, duct(400), p);
+    d.run(1e-3 + 1 / c, 788);
+    const double at = c * (d.state().pressure[0]->time - 1e-3) - 0.5;
+    const Echo got = echo(d, [&](double x) { return std::exp(-std::pow((x - at) / (c * width), 2)); });
+    EXPECT_NEAR(got.share, share, 0.01) << share;
+    EXPECT_LT(got.rest, 0.02) << share;
+  }
 }
 
 /// A Helmholtz resonator, a volume and a duct that is open at the other end: k tan k V_0/S = 1.
@@ -456,6 +533,9 @@ TEST(Sound, what_does_not_go_with_it_is_refused) {
   EXPECT_THAT(told(p), ::testing::HasSubstr("this fluid has no inlet"));
   p.boundaries["xmin"] = absorbing(boundary(BoundaryType::inlet, {"1", "0"}));
   EXPECT_THAT(told(p), ::testing::HasSubstr("remove one of the two"));
+  p.compressibility->upstream_volume = 0;
+  p.compressibility->upstream_line = line(1, UpstreamLineParameters::End::closed);
+  EXPECT_THAT(told(p), ::testing::HasSubstr("the 'upstream-line' behind this inlet"));
   p = air();
   p.scheme = ExplicitScheme::runge_kutta;
   EXPECT_THAT(told(p), ::testing::HasSubstr("runge-kutta"));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quantities of interest of steady heat: what the dual problem says of their errors, beside the true ones.
+#include "solid_solver/output/quantities.hpp"
 #include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
 #include "solid_solver/diagnostics/heat_errors.hpp"
-#include "solid_solver/output/heat_quantities.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::quantities_test {

@@ -215,7 +215,7 @@ TEST(Guard, measures_of_a_sheared_and_stretched_cell) {
   const auto [mesh, geometry] =
       distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {2, 1, 1}, Vec3::Zero(), Vec3(2, 1, 1)));
   Parameters p = all_patches(mesh, BoundaryMotion::fixed);
-  const Guard guard(mesh, geometry, p);
+  const CellMeasures guard(mesh, geometry, p);
   std::vector<Vec3> points = geometry.points;
   for (Vec3& x : points)
     if (x.x() < 0.5) x.x() -= 3;  // the left cell: 4 x 1
@@ -239,7 +239,7 @@ TEST(Guard, ideal_cells_have_a_scaled_jacobian_of_one_and_turned_over_ones_below
                                BoxCells::triangles, BoxCells::quadrilaterals}) {
     const auto [mesh, geometry] =
         distribute(MPI_COMM_SELF, make_box(cells, {2, 2, 2}, Vec3::Zero(), Vec3::Ones()));
-    const Guard guard(mesh, geometry, all_patches(mesh, BoundaryMotion::fixed));
+    const CellMeasures guard(mesh, geometry, all_patches(mesh, BoundaryMotion::fixed));
     const MeshState s = guard.measure(geometry);
     EXPECT_GT(s.worst[MeshState::scaled_jacobian].value, 0.3) << int(cells);
     EXPECT_LE(s.worst[MeshState::scaled_jacobian].value, 1 + 1e-12);

@@ -96,10 +96,6 @@ TEST(PlateGuards, limits_are_those_of_the_documents) {
   }
   for (const auto& [id, limit] : {std::pair{"balance-of-the-energies", 0.01},
                                   {"load-within-a-face", 0.05},
-                                  {"mesh-that-resolves-the-modes", 0.1},
-                                  {"step-that-resolves-the-modes", 0.1},
-                                  {"step-near-a-resonance", 0.1},
-                                  {"step-that-resolves-the-load", 0.1},
                                   {"step-that-resolves-the-contact", 0.1}}) {
     EXPECT_EQ(run.finding(id).limit, limit) << id;
     EXPECT_FALSE(run.finding(id).effect.ends_with("neglected")) << id;
@@ -215,12 +211,13 @@ TEST(PlateGuards, a_mesh_of_one_cell_across_is_no_mesh) {
   p.analysis = Parameters::Analysis::static_;
   p.load.emplace().upper.emplace().text = "100";
   const auto gap = [&](int nx, int ny) {
-    return find("mesh-that-resolves-the-modes", p, 1, 1,
-                make_box(BoxCells::triangles, {nx, ny, 1}, Vec3::Zero(), Vec3(1, 1, 0)));
+    const RawMesh raw = make_box(BoxCells::triangles, {nx, ny, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+    Structure plate(p, PlateContext{}, &raw);
+    return support::observe(plate, 1, 1.).diagnostics().errors().mesh;
   };
-  EXPECT_FALSE(gap(40, 1).sound());
-  EXPECT_FALSE(gap(40, 2).sound());
-  EXPECT_TRUE(gap(10, 10).sound());
+  EXPECT_GT(gap(40, 1), 0.15);
+  EXPECT_GT(gap(40, 2), 0.15);
+  EXPECT_LT(gap(10, 10), 0.1);
 }
 
 TEST(PlateGuards, edges_that_hold_nothing_or_twice_are_refused) {
@@ -301,16 +298,6 @@ TEST(PlateGuards, a_pressure_without_a_sound_value_names_its_key_time_and_place)
   }
 }
 
-TEST(PlateGuards, a_modal_analysis_has_no_load_that_could_be_lost) {
-  const RawMesh raw = square(4);
-  Parameters p = plate_held({{"xmin", Support::clamped}});
-  p.load.emplace().upper.emplace().text = "100*t";
-  p.analysis = Parameters::Analysis::modal;
-  Structure plate(p, PlateContext{}, &raw);
-  EXPECT_THAT(support::observe(plate, 1, 1).doubts(),
-              testing::Not(testing::Contains("load-between-the-faces-or-steps")));
-}
-
 /// Doubts about the loads of ten steps of 0.01 s, after `told_at` of them or (-1) at the end of the run.
 std::vector<std::string> doubts(const Parameters& p, int told_at, const std::filesystem::path& folder = {}) {
   const RawMesh raw = square(4);
@@ -320,23 +307,8 @@ std::vector<std::string> doubts(const Parameters& p, int told_at, const std::fil
   support::ObservedRun run(plate);
   run.advance(told_at < 0 ? 10 : told_at, 0.01, told_at < 0);
   std::vector<std::string> ids = run.doubts();
-  std::erase_if(ids, [](const std::string& id) {
-    return id != "load-between-the-faces-or-steps" && id != "load-that-moves-no-mode";
-  });
+  std::erase_if(ids, [](const std::string& id) { return id != "load-that-moves-no-mode"; });
   return ids;
-}
-
-TEST(PlateGuards, a_load_is_lost_if_it_is_0_in_no_step_and_not_before_the_end) {
-  for (const auto analysis : {Parameters::Analysis::dynamic, Parameters::Analysis::static_}) {
-    Parameters p = plate_held({{"xmin", Support::clamped}});
-    p.analysis = analysis;
-    p.load.emplace().lower.emplace().text = "t > 0.06 ? 1 : 0";
-    EXPECT_EQ(doubts(p, 1), std::vector<std::string>{});
-    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{});
-    p.load->lower->text = "t > 1 ? 1 : 0";
-    EXPECT_EQ(doubts(p, 1), std::vector<std::string>{});
-    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{"load-between-the-faces-or-steps"});
-  }
 }
 
 TEST(PlateGuards, a_load_without_a_part_in_any_mode_is_told) {

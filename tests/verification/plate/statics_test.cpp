@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Static deflections against closed forms, and by modes against the direct ones.
 #include "plate_modal/model/midsurface.hpp"
-#include "plate_modal/model/skin.hpp"
+#include "plate_modal/model/plate_model.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 

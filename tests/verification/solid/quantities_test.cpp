@@ -2,7 +2,7 @@
 // Quantities of interest of linear static bodies: their errors by the dual problem beside the true ones.
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/body/stress.hpp"
-#include "solid_solver/output/dual_problem.hpp"
+#include "solid_solver/output/quantities.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/verification/solid/support.hpp"
 

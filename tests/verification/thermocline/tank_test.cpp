@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tank as a whole: books, subsets of elements, the participant's contract.
+#include "thermocline/model/tank.hpp"
 #include "common/io/checkpoint.hpp"
 #include "tests/support/own_folder.hpp"
 #include "tests/verification/thermocline/support.hpp"
-#include "thermocline/model/output.hpp"
 
 namespace couplet::thermocline::tank_test {
 using namespace coupling;
@@ -273,7 +273,7 @@ TEST_F(Participation, the_records_of_the_steps_add_up_to_the_ledger) {
     const TankRecord r = tank->record();
     all.stored += r.stored, all.losses += r.losses;
   }
-  const Ledger& whole = tank->model().ledger();
+  const HeatSums& whole = tank->model().ledger();
   EXPECT_GT(std::abs(whole.ground), 1);
   EXPECT_NEAR(all.stored, whole.bed - start, 1e-9 * std::abs(whole.bed - start));
   EXPECT_NEAR(all.losses, whole.losses(), 1e-9 * std::abs(whole.losses()));

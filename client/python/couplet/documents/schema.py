@@ -47,7 +47,6 @@ def with_reference(node, reference, bare_zero):
 CHANGES = {"type": ["object", "null"], "description": "keys and their values; they start at the participant unless they begin with a section"}
 
 
-
 def named(schema):
     return {"type": "object", "minProperties": 1, "additionalProperties": schema}
 

@@ -27,29 +27,7 @@ GENERATED = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/stabi
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
 MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_CHTML-full.js", "jax/output/CommonHTML", "jax/element/mml/optable", "fonts/HTML-CSS/TeX/woff", "extensions")
 LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
-CONFIG = """site_name: Couplet
-docs_dir: {docs}
-site_dir: {site}
-use_directory_urls: false
-theme:
-  name: material
-  font: false
-  palette: {{primary: indigo}}
-  features: [navigation.indexes, navigation.top, search.highlight, toc.follow]
-plugins: [search]
-markdown_extensions: [tables, fenced_code, attr_list, md_in_html, {{toc: {{permalink: true}}}}, {{pymdownx.arithmatex: {{generic: true}}}}]
-extra: {{generator: false}}
-extra_css: [site.css]
-nav:
-{nav}
-"""
-STYLE = """.md-grid { max-width: 76rem; }
-.md-typeset table:not([class]) { font-size: .68rem; }
-.gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(15rem, 1fr)); gap: 1rem; }
-.gallery > div { border: 1px solid #8884; border-radius: .3rem; padding: .6rem; }
-.gallery img { max-height: 9rem; display: block; margin: auto; }
-.gallery p { margin: .3rem 0; font-size: .7rem; }
-"""
+HERE = pathlib.Path(__file__).parent
 
 
 def pages():
@@ -201,7 +179,7 @@ def stage(folder):
         to = folder / file
         to.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / file, to if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else to.with_name(to.name + ".txt"))
-    (folder / "site.css").write_text(STYLE)
+    shutil.copy(HERE / "site.css", folder)
     copy_mathjax(folder / "mathjax")
     return nav_of(there)
 
@@ -215,7 +193,10 @@ def build(site):
         docs.mkdir()
         nav = stage(docs)
         config = pathlib.Path(scratch) / "mkdocs.yml"
-        config.write_text(CONFIG.format(docs=docs, site=site, nav=nav))
+        text = (HERE / "mkdocs.yml").read_text()
+        for name, value in (("docs", docs), ("site", site), ("nav", nav)):
+            text = text.replace(f"{{{name}}}", str(value))
+        config.write_text(text)
         done = subprocess.run(["mkdocs", "build", "--clean", "-f", config], capture_output=True, text=True)
         expect(done.returncode == 0, f"mkdocs failed: {(done.stderr or done.stdout).strip()[-2000:]}")
         leave_out(site, [page for group in for_developers(pages()).values() for page in group])

@@ -138,10 +138,10 @@ def copy(source, target, values):
     files = {(source.parent / name).resolve() for name in moved.values()} | {f.resolve() for f in case.named([case.data])}
     files |= {extra.resolve() for file in list(files) for extra in included(file)}
     guests = {g for p in case.participants if (words := case.guest(p)) for g in map(pathlib.Path, map(str, words)) if g.parent == source.parent}
-    files |= {extra.resolve() for extra in (*source.parent.glob("*.py"), source.parent / "README.md") if extra.is_file() and not extra.is_symlink()}
+    files |= {extra for extra in (*source.parent.glob("*.py"), source.parent / "README.md") if extra.is_file()}
     text = with_values(text, {**{key: pathlib.Path(name).name for key, name in moved.items() if "/" in name}, **values})
     target.mkdir(parents=True, exist_ok=True)
-    for file in (*files, *guests):  # a guest may be a link: copied under its own name
+    for file in (*files, *guests):  # Python and guests may be links: copied under their own names
         shutil.copy(file, target / file.name)
     (target / "case.yaml").write_text(text)
     return target / "case.yaml"

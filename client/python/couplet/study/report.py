@@ -5,13 +5,7 @@ import html
 import pathlib
 import re
 
-STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1c2430;background:#fff}
-h1{font-size:1.5rem;margin-bottom:.2rem}h2{font-size:1.15rem;margin-top:2rem;border-bottom:1px solid #d8dee6;padding-bottom:.2rem}
-table{border-collapse:collapse;font-size:.82rem;display:block;overflow-x:auto}th,td{padding:.25rem .6rem;border-bottom:1px solid #e6eaef;text-align:right;white-space:nowrap}
-th{background:#f3f5f8;text-align:right}td:first-child,th:first-child{text-align:left}tr:hover td{background:#f8fafc}
-img{max-width:100%;height:auto;border:1px solid #e6eaef;border-radius:4px}code{background:#f3f5f8;padding:0 .25rem;border-radius:3px}
-figure{margin:1rem 0}figcaption{font-size:.85rem;color:#566}p.failed{color:#a3341f}
-@media(prefers-color-scheme:dark){body{background:#14181d;color:#dde3ea}th,code{background:#20262e}td,th,h2{border-color:#2d3540}tr:hover td{background:#1b2128}img{background:#fff}}"""
+STYLE = (pathlib.Path(__file__).parent / "report.css").read_text().strip()
 
 
 def number(value):

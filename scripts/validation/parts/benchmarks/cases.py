@@ -42,10 +42,6 @@ def at_four(job):
             abs(amplitude / AHN - 1) <= 0.1)
 
 
-def over_range(job):
-    return "; ".join("{:g}: {:.3f} D, {:.2f}".format(u, *response(job, u)[:2]) for u in (3, 4, 5, 7, 8)), None
-
-
 def bracket(job, locked, free):
     """Locked at one velocity: it oscillates near its own frequency, by more than a quarter of D; at the other it follows the vortices, at a frequency that is not its own."""
     at = {u: response(job, u)[:2] for u in (locked, free)}

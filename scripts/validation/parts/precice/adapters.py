@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Adapters of preCICE in solvers of others, unchanged, beside programs of this project. COUPLET_PRECICE_CALCULIX names ccx_preCICE, which was built
 from the adapter and CalculiX against build/precice; COUPLET_PRECICE_OPENFOAM libpreciceAdapterFunctionObject.so, which was built from the adapter and OpenFOAM's headers
-against build/precice and the installed libraries; COUPLET_PRECICE_TUTORIALS the tutorials; COUPLET_PRECICE_NUTILS
-the folders of nutils 7, treelog and stringly for PYTHONPATH. Without them the rows report that."""
+against build/precice and the installed libraries; COUPLET_PRECICE_TUTORIALS the tutorials.
+Without them the rows report that."""
 import os
 import pathlib
 import re
 import shutil
 
-import numpy as np
-
-from validation.parts.precice.programs import NOTE, commit_of, coupled, folder, passes
+from validation.parts.precice.programs import NOTE, commit_of, folder, passes
 
 PUBLISHED = {"first": (0.198, 0.74), "second": (0.184, 2.36)}  # OpenFOAM and CalculiX: tip of the flap [m] at [s], read off the tutorial's plot to 0.002 m
 TIP = 489  # the node at (0, 1) in solid-calculix/all.msh
@@ -23,18 +21,6 @@ COUPLING = """coupling:
   mapping: {type: rbf}
   convergence: {relative: 1e-4, max-iterations: 30}
 """
-
-
-def flap_case(text):
-    """configs/perpendicular-flap with the tutorial's solid in place of ours, to 2.5 s."""
-    for what, by in ((r"  solid:\n(    .*\n)+", "  Solid: {program: precice}\n"), (r"coupling:\n(  .*\n)+", COUPLING), (r"\nplot:(.*\n)+", "\n"),
-                     (r"checkpoint: .*", "checkpoint: {interval: 0}"), (r"interval: 0.05 s", "interval: 1 s"), (r"end-time: 5 s", "end-time: 2.5 s")):
-        text, found = re.subn(what, by, text)
-        if found != 1:
-            raise RuntimeError(f"the case of the flap has {found} places like {what}")
-    return text
-
-
 UNDER_OPENFOAM = """coupling:
   scheme: implicit
   fluid: {participant: Fluid, displacement: Displacement, load: Force}
@@ -44,10 +30,10 @@ UNDER_OPENFOAM = """coupling:
 """
 
 
-def flap_under_openfoam(text):
-    """configs/perpendicular-flap with the tutorial's fluid in place of ours, to 2.5 s."""
-    for what, by in ((r"  fluid:\n(    .*\n)+\n", "  Fluid: {program: precice}\n"), (r"  mover:\n(    .*\n)+", ""), (r"coupling:\n(  .*\n)+", UNDER_OPENFOAM), (r"\nplot:(.*\n)+", "\n"),
-                     (r"checkpoint: .*", "checkpoint: {interval: 0}"), (r"interval: 0.05 s", "interval: 1 s"), (r"end-time: 5 s", "end-time: 2.5 s")):
+def flap_case(text, *others):
+    """configs/perpendicular-flap to 2.5 s with the tutorial's participant in place of one of ours; `others`: (pattern, replacement) of the participants and the coupling."""
+    for what, by in (*others, (r"\nplot:(.*\n)+", "\n"), (r"checkpoint: .*", "checkpoint: {interval: 0}"), (r"interval: 0.05 s", "interval: 1 s"),
+                     (r"end-time: 5 s", "end-time: 2.5 s")):
         text, found = re.subn(what, by, text)
         if found != 1:
             raise RuntimeError(f"the case of the flap has {found} places like {what}")
@@ -84,7 +70,7 @@ def calculix(job):
     ours = job.root / "configs/perpendicular-flap"
     shutil.copy(ours / "fluid.geo", where)
     case = where / "case.yaml"
-    case.write_text(flap_case((ours / "case.yaml").read_text()))
+    case.write_text(flap_case((ours / "case.yaml").read_text(), (r"  solid:\n(    .*\n)+", "  Solid: {program: precice}\n"), (r"coupling:\n(  .*\n)+", COUPLING)))
     line = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else [])]
     for i, name in enumerate(("coupler", "fluid_solver", "mesh_mover")):
         line += [":"] * (i > 0) + ["-n", "1", job.build / "bin" / name, case]
@@ -125,7 +111,8 @@ def openfoam(job, solid):
     else:
         ours = job.root / "configs/perpendicular-flap"
         shutil.copy(ours / "solid.geo", where)
-        (where / "case.yaml").write_text(flap_under_openfoam((ours / "case.yaml").read_text()))
+        (where / "case.yaml").write_text(flap_case(
+            (ours / "case.yaml").read_text(), (r"  fluid:\n(    .*\n)+\n", "  Fluid: {program: precice}\n"), (r"  mover:\n(    .*\n)+", ""), (r"coupling:\n(  .*\n)+", UNDER_OPENFOAM)))
         line += [":", "-n", "1", job.build / "bin/solid_solver", where / "case.yaml"]
     done = job.run([*line, ":", "-n", "1", "sh", "-c", fluid], cwd=where)
     said = done.stdout + done.stderr
@@ -137,27 +124,3 @@ def openfoam(job, solid):
         head, *rows = (line.strip().split(",") for line in table)
     x = next(i for i, name in enumerate(head) if name.strip() == "tip x [m]")
     return bent(job, source, [(float(row[0]), float(row[x])) for row in rows if float(row[0]) > 0], said)
-
-
-def values(vtk, name):
-    """A scalar field of a binary VTK file."""
-    data = vtk.read_bytes()
-    count = int(re.search(rb"POINT_DATA (\d+)", data)[1])
-    kind = re.search(rb"SCALARS " + name + rb" (\w+) 1\nLOOKUP_TABLE default\n", data)
-    return np.frombuffer(data, {b"double": ">f8", b"float": ">f4"}[kind[1]], count, kind.end())
-
-
-def heat(job):
-    source, libraries = folder("COUPLET_PRECICE_TUTORIALS"), os.environ.get("COUPLET_PRECICE_NUTILS")
-    if source is None or not libraries:
-        return NOTE.format("COUPLET_PRECICE_TUTORIALS" if source is None else "COUPLET_PRECICE_NUTILS"), None
-    where = job.scratch / "heat"
-    shutil.copytree(source / "partitioned-heat-conduction", where)
-    sides = "Dirichlet", "Neumann"
-    words = [f"cd {where}/{side.lower()}-nutils && PYTHONPATH=$PYTHONPATH:{libraries} NUTILS_RICHOUTPUT=no exec /usr/bin/python3 heat.py > {where}/{side}.txt" for side in sides]
-    said = coupled(job, where, where / "precice-config.xml", words)
-    errors = []
-    for side in sides:
-        last = max((where / f"{side.lower()}-nutils").glob(f"{side}-*.vtk"), key=lambda f: f.stat().st_mtime_ns)
-        errors.append(float(np.abs(values(last, b"Temperature") - values(last, b"reference")).max()))
-    return f"largest errors {errors[0]:.2e} and {errors[1]:.2e} of 2.2 to 9.2, {passes(said):.1f} passes per step (nutils 7; the tutorial's FEniCS 2019 is not in Debian, DOLFINx 0.5 is)", None

@@ -143,33 +143,14 @@ def dummies(job):
 
 
 # -- against the client -------------------------------------------------------------------------------------------------
-VERTICES, WINDOWS = 100000, 22
-TWO = """<precice-configuration>
-  <data:vector name="Data-One" /> <data:vector name="Data-Two" />
-  <mesh name="One-Mesh" dimensions="3"><use-data name="Data-One" /><use-data name="Data-Two" /></mesh>
-  <mesh name="Two-Mesh" dimensions="3"><use-data name="Data-One" /><use-data name="Data-Two" /></mesh>
-  <participant name="One">
-    <provide-mesh name="One-Mesh" /> <receive-mesh name="Two-Mesh" from="Two" /> <write-data name="Data-One" mesh="One-Mesh" /> <read-data name="Data-Two" mesh="One-Mesh" />
-    <mapping:nearest-neighbor direction="read" from="Two-Mesh" to="One-Mesh" constraint="consistent" />
-  </participant>
-  <participant name="Two">
-    <provide-mesh name="Two-Mesh" /> <receive-mesh name="One-Mesh" from="One" /> <write-data name="Data-Two" mesh="Two-Mesh" /> <read-data name="Data-One" mesh="Two-Mesh" />
-    <mapping:nearest-neighbor direction="read" from="One-Mesh" to="Two-Mesh" constraint="consistent" />
-  </participant>
-  <m2n:sockets acceptor="One" connector="Two" />
-  <coupling-scheme:serial-explicit>
-    <participants first="One" second="Two" /> <max-time-windows value="%d" /> <time-window-size value="1" />
-    <exchange data="Data-One" mesh="One-Mesh" from="One" to="Two" /> <exchange data="Data-Two" mesh="Two-Mesh" from="Two" to="One" />
-  </coupling-scheme:serial-explicit>
-</precice-configuration>
-""" % WINDOWS
+VERTICES, TWO = 100000, pathlib.Path(__file__).with_name("two.xml")
 
 
 def cost(job):
     """The least of three runs each, in turn: others use the machine, too."""
     where, seconds, sums = job.scratch / "cost", {"precice": [], "native": []}, set()
     where.mkdir(exist_ok=True)
-    (where / "two.xml").write_text(TWO)
+    shutil.copy(TWO, where)
     for kind in ("native", "precice") * 3:
         said = coupled(job, where, where / "two.xml", [f"exec {job.build}/bin/tests/precice_cost {kind} {name} two.xml {VERTICES}" for name in ("One", "Two")])
         found = re.findall(r"([\d.]+) s a window, sum (\S+)", said)
@@ -184,7 +165,7 @@ def cost_of_sockets(job):
     """Measures the same window with the client itself. Both participants are launched separately and joined over sockets."""
     where = job.scratch / "cost-sockets"
     where.mkdir(exist_ok=True)
-    (where / "two.xml").write_text(TWO)
+    shutil.copy(TWO, where)
     program, ratios, sums = f"{job.build}/bin/tests/precice_cost native", {}, set()
     for kind in ("native", "unix", "tcp:lo") * 3:
         words = [f"exec {program} {name} two.xml {VERTICES}" for name in ("One", "Two")]

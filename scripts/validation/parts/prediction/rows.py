@@ -12,28 +12,14 @@ import numpy as np
 
 # -- rows -------------------------------------------------------------------------------------------------------------
 HERE = pathlib.Path(__file__).resolve().parent
-# File: quantity, three targets, truth: a number, or the series whose finest run of the ladder is the truth, or whose finest runs' fit is its limit.
-CASES = {
-    "tank": ("thickness", ("6%", "2%", "1%"), ("finest", "tvd")),
-    "tank-other-flow": ("thickness", ("6%", "2%", "1%"), ("finest", "tvd")),
-    "cantilever": ("tip", ("5%", "2%", "1%"), 0.10008),          # [m], converged three-dimensional finite elements
-    "plate": ("deflection", ("5%", "2%", "1%"), ("limit", "corrected")),
-    "beam-with-hole": ("tip", ("0.5%", "0.2%", "0.1%"), ("limit", "corrected")),
-    "le11": ("stress at A", ("8%", "4%", "2%"), -105.67e6),      # [Pa], NAFEMS LE11 with converged p-FEM
-    "square": ("drag", ("4%", "3%", "2%"), ("limit", "default")),
-    "cylinder": ("drag", ("1.5%", "0.8%", "0.5%"), 5.57953523384),  # Schaefer and Turek, 2D-1
-    "street": ("largest drag", ("5%", "2%", "1%"), 3.2275),      # Schaefer and Turek, 2D-2
-    "cavity": ("u minimum", ("20%", "10%", "5%"), 0),            # an error itself
-    "flap": ("tip at 0.4 s", ("5%", "2%", "1%"), ("limit", "semi-implicit")),
-}
 
 
 def ladder(name):
     return [(r["series"], float(r["size"]), float(r["value"]), float(r["seconds"])) for r in read(HERE / f"{name}.csv") if r["value"]]
 
 
-def truth_of(name, rows):
-    given = CASES[name][2]
+def truth_of(given, rows):
+    """A number, or the series whose finest run of the ladder is the truth, or whose finest runs' fit is its limit."""
     if not isinstance(given, tuple):
         return given
     from couplet.study import fits
@@ -56,8 +42,8 @@ def cost_of(rows, series, size):
     return math.exp(np.interp(math.log(size), *np.log(np.array(own)).T))
 
 
-def asked(job, name, target):
-    quantity, out = CASES[name][0], job.scratch / f"prediction-{name}"
+def asked(job, name, quantity, target):
+    out = job.scratch / f"prediction-{name}"
     done = job.run([sys.executable, job.root / "scripts/couplet", "study", HERE / f"{name}.yaml", f"--build={job.build}", f"--out={out}", f"--for-error={target}"], timeout=3600)
     file = out / f"for-error-{quantity.replace(' ', '-')}-{target.replace('%', 'pc')}.json"
     if not file.exists():
@@ -77,11 +63,12 @@ def judged(rows, truth, r):
     return text, 0.3 <= share <= 1.1 and price <= 1.5 and 0.7 <= time <= 1.3 and (before <= 3 or r["seconds"] <= 1)
 
 
-def predicted(job, name):
-    rows = ladder(name)
-    truth, parts = truth_of(name, rows), []
-    for target in CASES[name][1]:
-        text, met = judged(rows, truth, asked(job, name, target))
+def predicted(job, name, quantity, targets, truth):
+    """`name`: a file beside this one."""
+    rows, parts = ladder(name), []
+    right = truth_of(truth, rows)
+    for target in targets:
+        text, met = judged(rows, right, asked(job, name, quantity, target))
         parts.append((f"{target}: {text}" + ("" if met else " (not met)"), met))
     return "; ".join(p for p, _ in parts), all(met for _, met in parts)
 

@@ -1,0 +1,1 @@
+../thermocline-andasol/figures.py

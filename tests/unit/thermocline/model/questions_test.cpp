@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is asked about before a run: each sentence where it belongs, and none where all is well.
+#include "tests/support/test.hpp"
+#include "thermocline/model/model.hpp"
+
+namespace couplet::thermocline::questions_test {
+using testing::HasSubstr;
+
+/// A plant's tank about which there is nothing to ask.
+TankParameters sound() {
+  TankParameters p;
+  p.diameter = 10;
+  p.bed.cells = 20;
+  p.bed.layers = {{10, 0.3, 0.02}};
+  p.bed.initial_temperature = kelvin(290);
+  p.ambient_given.emplace();
+  p.flow.type = FlowParameters::Type::plant;
+  p.flow.plant = {50e6, 0.38, 510120, 0.70, kelvin(390), kelvin(290), 15, 10};
+  return p;
+}
+
+std::vector<std::string> asked(const TankParameters& p) {
+  const auto weather = make_weather(p.ambient, ".");
+  return questions(p, TankModel(std::make_shared<const TankSetup>(p), *weather));
+}
+
+TEST(Questions, nothing_is_asked_about_a_sound_tank) {
+  EXPECT_TRUE(asked(sound()).empty());
+  TankParameters hot = sound();
+  hot.bed.initial_temperature = kelvin(390);
+  EXPECT_TRUE(asked(hot).empty());
+}
+
+TEST(Questions, a_restart_above_the_cut_off_is_said) {
+  TankParameters p = sound();
+  p.flow.plant.cut_off = 5;
+  ASSERT_EQ(asked(p).size(), 1u);
+  EXPECT_THAT(asked(p)[0], HasSubstr("flow.restart (10 K) is above flow.cut-off (5 K)"));
+  p.flow.plant.cut_off = 10;
+  EXPECT_TRUE(asked(p).empty());
+}
+
+TEST(Questions, a_tank_that_can_neither_charge_nor_discharge_is_said) {
+  TankParameters p = sound();
+  p.bed.initial_temperature = kelvin(340);
+  ASSERT_EQ(asked(p).size(), 1u);
+  EXPECT_THAT(asked(p)[0], HasSubstr("charging starts at 300.0 degC or below"));
+  EXPECT_THAT(asked(p)[0], HasSubstr("discharging starts at 380.0 degC or above"));
+  p.bed.profile_z = {0, 10}, p.bed.profile_temperature = {kelvin(290), kelvin(340)};
+  EXPECT_TRUE(asked(p).empty()) << "cold at the bottom: it charges";
+}
+
+TEST(Questions, a_schedule_that_is_stopped_at_once_is_said) {
+  TankParameters p = sound();
+  p.flow = {};
+  p.flow.type = FlowParameters::Type::schedule;
+  p.flow.rows = {{0, 70, kelvin(290), {}, kelvin(380)}};
+  ASSERT_EQ(asked(p).size(), 1u);
+  EXPECT_THAT(asked(p)[0], HasSubstr("the outlet is at 290.0 degC, but the row stops below 380.0 degC"));
+  p.flow.rows = {{0, -70, kelvin(390), kelvin(300), {}}};
+  EXPECT_TRUE(asked(p).empty());
+  p.flow.rows[0].at = 3600;  // what will be then is not known yet
+  p.flow.rows[0].stop_above = kelvin(280);
+  EXPECT_TRUE(asked(p).empty());
+}
+
+TEST(Questions, air_and_sun_that_nobody_gave_are_said) {
+  TankParameters p = sound();
+  p.ambient_given.reset();
+  ASSERT_EQ(asked(p).size(), 1u);
+  EXPECT_THAT(asked(p)[0], HasSubstr("no sun, day and night"));
+  p.flow = {};
+  EXPECT_TRUE(asked(p).empty()) << "a bed alone has nothing to do with the air";
+  p.ullage.emplace().height = 1;
+  ASSERT_EQ(asked(p).size(), 1u);
+  EXPECT_THAT(asked(p)[0], HasSubstr("still air of 20 degC"));
+}
+
+TEST(Questions, a_temperature_without_its_unit_is_refused) {
+  TankParameters p = sound();
+  EXPECT_EQ(forgotten_unit_of_bed(p), "");
+  EXPECT_EQ(forgotten_unit_of_flow(p), "");
+  p.bed.initial_temperature = 290;
+  EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("is 290 K, that is 16.9 degC"));
+  EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("write '290 degC'"));
+  p.bed.initial_temperature = 100;  // frozen either way: the run warns
+  EXPECT_EQ(forgotten_unit_of_bed(p), "");
+  p.bed.profile_z = {0, 1}, p.bed.profile_temperature = {kelvin(290), 390};
+  EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("a value of profile-temperature is 390 K"));
+  p.flow.plant.hot = 390;
+  EXPECT_THAT(forgotten_unit_of_flow(p), HasSubstr("hot is 390 K"));
+  p.flow = {};
+  p.flow.type = FlowParameters::Type::schedule;
+  p.flow.rows = {{0, 0, 0, {}, {}}, {10, -70, kelvin(390), 300, {}}};
+  EXPECT_THAT(forgotten_unit_of_flow(p), HasSubstr("rows[1].stop-above is 300 K"));
+  p.fluid.type = FluidParameters::Type::caloria_ht43;
+  EXPECT_EQ(forgotten_unit_of_flow(p), "") << "an oil is a liquid at 300 K";
+  p.flow = {};
+  p.bed = sound().bed;
+  p.bed.initial_temperature = 204;
+  EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("is 204 K, that is -69.1 degC"));
+}
+
+TEST(Questions, capsules_that_cannot_melt_are_refused) {
+  TankParameters p = sound();
+  p.bed.layers[0].melting = Melting{298, 4, 150e3};
+  EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("layers[0].melting.temperature is 298 K"));
+  p.bed.layers[0].melting->temperature = kelvin(400);
+  EXPECT_EQ(forgotten_unit_of_bed(p), "");
+}
+
+TEST(Questions, seasons_need_a_weather_with_dates) {
+  TankParameters p = sound();
+  p.ambient.kind = WeatherKind::constant;
+  p.flow.plant.calendar = {{{}, "", "", {0.5}, {}}};
+  EXPECT_EQ(season_without_dates(p), "") << "all year";
+  p.flow.plant.calendar.push_back({{}, "05-01", "09-30", {0.8}, {}});
+  EXPECT_THAT(season_without_dates(p), HasSubstr("calendar[1] has a season"));
+  p.ambient.kind = WeatherKind::clear_sky;
+  EXPECT_EQ(season_without_dates(p), "");
+}
+
+TEST(Questions, prices_for_what_is_not_there_are_said) {
+  EconomicsParameters prices;
+  prices.steel = 6, prices.insulation = 200, prices.filler = 1, prices.field = 1;
+  Inventory nothing;
+  EXPECT_EQ(prices_for_nothing(prices, nothing, false).size(), 3u);
+  EXPECT_THAT(prices_for_nothing(prices, nothing, false)[0],
+              HasSubstr("report.economics.steel is 6, but has no effect"));
+  EXPECT_TRUE(prices_for_nothing(prices, {.steel = 1, .filler = 1, .insulated = 1}, false).empty());
+  EXPECT_TRUE(prices_for_nothing({}, nothing, false).empty());
+  EconomicsParameters more;
+  more.pump = 600, more.capsules = 2;
+  EXPECT_EQ(prices_for_nothing(more, nothing, false).size(), 2u);
+  EXPECT_THAT(prices_for_nothing(more, {.capsules = 1}, false).at(0),
+              HasSubstr("report.economics.pump is 600"));
+  EXPECT_TRUE(prices_for_nothing(more, {.capsules = 1}, true).empty());
+}
+
+TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {
+  WeatherParameters constant;
+  constant.constant.dni = 800;
+  const auto nowhere = make_weather(constant, ".");
+  EXPECT_FALSE(nowhere->has_site());
+  EXPECT_NO_THROW(require_sun(0, *nowhere, "x"));
+  EXPECT_THAT(
+      support::error_of(
+          [&] { require_sun(0.4, *nowhere, "participants.tank.insulation.solar-absorptance"); }),
+      HasSubstr(
+          "participants.tank.insulation.solar-absorptance: solar heating of the cover needs the sun's height"));
+  WeatherParameters file;
+  file.kind = WeatherKind::file;
+  file.file = std::string(WEATHER_FOLDER) + "/granada_aldeire_surrogate.csv.gz";
+  EXPECT_FALSE(make_weather(file, ".")->has_site());
+  file.site = SiteParameters{37.2, -3.1, 0};
+  const auto somewhere = make_weather(file, ".");
+  EXPECT_NO_THROW(require_sun(0.4, *somewhere, "x"));
+  // And it shines: noon of 21 June, the sun at 90 - 37.2 + 23.45 degrees; solar time is 12 minutes behind
+  // Greenwich.
+  const double noon = (171 * 24 + 12) * 3600 + 3.1 * 240;
+  EXPECT_NEAR(somewhere->at(noon).sun_height, std::sin((90 - 37.2 + 23.45) * 3.14159265358979 / 180), 1e-4);
+  EXPECT_EQ(somewhere->at(noon - 12 * 3600).sun_height, 0);
+  const OutsideParameters dark, sunny{0.2, 0.6};
+  const Ambient air = somewhere->at(noon);
+  EXPECT_GT(air.dni, 0);
+  EXPECT_GT(roof_film(sunny, 300, 20, air).reference, roof_film(dark, 300, 20, air).reference + 1);
+}
+
+}  // namespace couplet::thermocline::questions_test
