@@ -118,6 +118,9 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
   explicit FlowThroughOpenings(const FluidView<D>& view) : view_(view) {
     // A moving wall may draw fluid in through an outlet.
     const bool at_rest = !view.has_mover && !view.is_prescribed && !view.has_interface;
+    const auto& waves = view.parameters().compressibility;
+    // Fluid may flow back into a volume or line behind the inlets.
+    const bool prescribed = !waves || (!(waves->upstream_volume > 0) && !waves->upstream_line);
     for (const mesh::Patch& patch : view.mesh.patches) {
       const BoundaryParameters& b = view.parameters().boundaries.at(patch.name);
       const bool inlet = condition_of(b).passage == Passage::in;
@@ -129,7 +132,8 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
                              : std::ranges::all_of(b.velocity, [](const auto& v) { return v.text == "0"; });
       if (inlet && !is_closed)
         fv::uses()["boundaries." + patch.name].given = "the inlet, through which fluid enters,";
-      if (inlet || outlet || total) openings_.push_back({&patch, inlet, inlet || outlet, total});
+      if (inlet || outlet || total)
+        openings_.push_back({&patch, inlet, (inlet && prescribed) || outlet, total});
     }
     sums_.resize(n_sums * openings_.size());
   }

@@ -173,7 +173,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
                  {{"closed", End::closed}, {"open", End::open}, {"absorbing", End::absorbing}})
             .doc(
                 "far end of the tube. closed: there flows in what the inlets prescribe. open: a reservoir at 'pressure'; "
-                "what the inlets prescribe is only the start. absorbing: the tube goes on, and a wave of 'pressure' and "
+                "what the inlets prescribe is not used. absorbing: the tube goes on, and a wave of 'pressure' and "
                 "of the flow that the inlets prescribe comes through it");
         l.value("pressure", line.pressure).unit("Pa").plausible(1e-6, 1e9).doc("pressure at the far end");
       },
