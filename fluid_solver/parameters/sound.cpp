@@ -173,9 +173,16 @@ void declare(config::Section& s, CompressibilityParameters& p) {
                  {{"closed", End::closed}, {"open", End::open}, {"absorbing", End::absorbing}})
             .doc(
                 "far end of the tube. closed: there flows in what the inlets prescribe. open: a reservoir at 'pressure'; "
-                "what the inlets prescribe is not used. absorbing: the tube goes on, and a wave of 'pressure' and "
+                "the inlets then prescribe zero. absorbing: the tube goes on, and a wave of 'pressure' and "
                 "of the flow that the inlets prescribe comes through it");
         l.value("pressure", line.pressure).unit("Pa").plausible(1e-6, 1e9).doc("pressure at the far end");
+        l.check(
+            [&line] {
+              return line.end == End::closed && line.pressure != 0
+                         ? "a closed end has no pressure of its own; remove the key, or set 'end'"
+                         : "";
+            },
+            "pressure");
       },
       "tube upstream of the inlets that is not meshed, without friction, in which waves travel at the speed of "
       "sound; instead of 'upstream-volume'");
