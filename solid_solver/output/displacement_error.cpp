@@ -14,47 +14,11 @@
 #include "common/linalg/krylov.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/quadratic_fit.hpp"
 #include "solid_solver/body/stress.hpp"
+#include "solid_solver/output/reconstruction.hpp"
 
 namespace couplet::solid {
 namespace {
-
-constexpr int curvatures = 6;  // second derivatives of a component
-
-/// Cubic about a cell's center.
-struct Cubic {
-  Vec3 value = Vec3::Zero();
-  Tensor3 slope = Tensor3::Zero();  // entry (i, j) = d u_j / d x_i
-  std::array<Tensor3, 3> curvature{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero()};  // per component
-  /// Coefficients of xxx, xxy, xxz, xyy, xyz, xzz, yyy, yyz, yzz and zzz per component.
-  std::array<std::array<double, 10>, 3> cubes{};
-
-  Vec3 cubic_part(const Vec3& at) const {
-    const double x = at[0], y = at[1], z = at[2];
-    Vec3 u;
-    for (int j = 0; j < 3; ++j) {
-      const auto& c = cubes[std::size_t(j)];
-      u[j] = x * (x * (c[0] * x + c[1] * y + c[2] * z) + y * (c[3] * y + c[4] * z) + c[5] * z * z) +
-             y * (y * (c[6] * y + c[7] * z) + c[8] * z * z) + c[9] * z * z * z;
-    }
-    return u;
-  }
-  /// Gradient of the cubic part of a component from the products of the coordinates.
-  template <class T>
-  std::array<T, 3> slope_of_cubes(std::size_t component, const std::array<std::array<T, 3>, 3>& s) const {
-    const auto& c = cubes[component];
-    const T xx = s[0][0], xy = 2 * s[0][1], xz = 2 * s[0][2], yy = s[1][1], yz = 2 * s[1][2], zz = s[2][2];
-    return {3 * c[0] * xx + c[1] * xy + c[2] * xz + c[3] * yy + 0.5 * c[4] * yz + c[5] * zz,
-            c[1] * xx + c[3] * xy + 0.5 * c[4] * xz + 3 * c[6] * yy + c[7] * yz + c[8] * zz,
-            c[2] * xx + 0.5 * c[4] * xy + c[5] * xz + c[7] * yy + c[8] * yz + 3 * c[9] * zz};
-  }
-  Vec3 at(const Vec3& x) const {
-    Vec3 u = value + slope.transpose() * x + cubic_part(x);
-    for (int j = 0; j < 3; ++j) u[j] += 0.5 * x.dot(curvature[std::size_t(j)] * x);
-    return u;
-  }
-};
 
 using elastic::Four;
 using FourVectors = std::array<Four, 3>;
@@ -112,163 +76,10 @@ COUPLET_PROCESSOR_CLONES void measure(Parts& parts, const Cubic& w, int dim) {
   }
 }
 
-struct Sample {
-  Vec3 x, u;  // x from the cell's center
-};
-
 /// Thermal pressure of a cell, and its slope by Gauss's theorem.
 struct Pressure {
   double value = 0, mean = 0;  // mean: lambda times the volume strain, where cells have one
   Vec3 slope = Vec3::Zero(), mean_slope = Vec3::Zero();
-};
-
-/// Cubics of the cells of this rank.
-class Reconstruction {
- public:
-  Reconstruction(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const SolidState& state)
-      : mesh_(mesh),
-        rows_(rows),
-        state_(state),
-        cells_of_point_(mesh::transpose(mesh_.cell_points, 0, mesh_.points.n_local())),
-        boundary_faces_(boundary_faces_of_cells(mesh_)),
-        mark_(std::size_t(mesh_.cells.n_local()), -1),
-        curvature_(std::size_t(mesh_.cells.n_local()) * values_of_cell, 0.0) {
-    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-      gather(c);
-      keep(c, fit(samples_).curvature);
-    }
-    mesh_.cells.update_ghosts(curvature_, values_of_cell);
-    std::ranges::fill(mark_, -1);
-  }
-  /// Cells that share a vertex with the last cell, and it.
-  const std::vector<Index>& patch() const { return patch_; }
-  /// Fit to the samples of an owned cell without their known cubic part.
-  Cubic fitted(Index cell) {
-    gather(cell);
-    Cubic known;
-    known.cubes = cubes_of(cell);
-    for (Sample& s : samples_) s.u -= known.cubic_part(s.x);
-    Cubic cubic = fit(samples_);
-    cubic.cubes = known.cubes;
-    return cubic;
-  }
-
-  /// Quadratic fit to samples, the first of which is the cell's.
-  Cubic fit(const std::vector<Sample>& samples) {
-    Cubic cubic;
-    double reach = 0;
-    for (const Sample& s : samples) reach = std::max(reach, s.x.squaredNorm());
-    cubic.value = samples.front().u;
-    if (!(reach > 0)) return cubic;
-    const int dim = mesh_.dim;
-    const double inverse = 1 / std::sqrt(reach);
-    quadratic_.start(dim, 3, Vec3::Zero(), 1 / inverse);
-    for (const Sample& s : samples) quadratic_.add_near(s.x, {s.u.data(), 3});
-    quadratic_.solve_near();
-    const QuadraticFit::Row& c = quadratic_.coefficients();
-    cubic.value = c.row(0);
-    for (int j = 0; j < dim; ++j)
-      for (int a = 0, i = 1 + dim; a < dim; ++a) {
-        cubic.slope(a, j) = inverse * c(1 + a, j);
-        for (int b = a; b < dim; ++b, ++i) {
-          Tensor3& h = cubic.curvature[std::size_t(j)];
-          h(a, b) = h(b, a) = (a == b ? 2 : 1) * inverse * inverse * c(i, j);
-        }
-      }
-    return cubic;
-  }
-
- private:
-  static constexpr int values_of_cell = 3 * curvatures + 3;  // second derivatives, and their place
-
-  void keep(Index cell, const std::array<Tensor3, 3>& curvature) {
-    double* to = curvature_.data() + std::size_t(cell) * values_of_cell;
-    for (const Tensor3& h : curvature) {
-      const PackedTensor packed = pack(h);
-      to = std::copy(packed.begin(), packed.end(), to);
-    }
-    Vec3 middle = Vec3::Zero();
-    for (const Sample& s : samples_) middle += s.x / double(samples_.size());
-    const Vec3 place = rows_.geometry().cell_centre[cell] + middle;
-    std::ranges::copy(place, to);
-  }
-
-  void gather(Index cell) {
-    patch_.clear();
-    gather_cells(mesh_, cells_of_point_, cell, mark_, patch_);
-    samples_.clear();
-    const mesh::Geometry& g = rows_.geometry();
-    const Vec3 centre = g.cell_centre[cell];
-    std::vector<MirrorPlane> mirrors;
-    for (const Index f : boundary_faces_[cell])
-      if (rows_.mirrored(f)) add_mirror(g, f, mirrors);
-    const auto add = [&](const Vec3& x, const Vec3& u) {
-      samples_.push_back({x - centre, u});
-      for (const MirrorPlane& m : mirrors) samples_.push_back({m.image(x) - centre, m.reflect(u)});
-    };
-    for (const Index c : patch_) {
-      add(g.cell_centre[c], elastic::vector_at(state_.cell_u, c, mesh_.dim));
-      for (const Index f : boundary_faces_[c])
-        if (!rows_.mirrored(f))
-          add(g.face_centre[f], elastic::vector_at(state_.face_u, f - mesh_.n_interior, mesh_.dim));
-    }
-  }
-
-  /// Third derivatives by the slopes of the neighbors' second ones, which are those at the middle of their samples.
-  std::array<std::array<double, 10>, 3> cubes_of(Index cell) const {
-    using Values = Eigen::Matrix<double, 1, 3 * curvatures>;
-    const auto values = [&](Index c) {
-      return Eigen::Map<const Values>(curvature_.data() + std::size_t(c) * values_of_cell);
-    };
-    const std::vector<Vec3>& centre = rows_.geometry().cell_centre;
-    Eigen::Matrix3d of = Eigen::Matrix3d::Zero();
-    std::array<Values, 3> right{Values::Zero(), Values::Zero(), Values::Zero()};
-    for (const Index c : patch_) {
-      const Vec3 x = place(c) - place(cell);
-      const double far = (centre[c] - centre[cell]).squaredNorm();
-      if (c == cell || !(far > 0)) continue;
-      const Vec3 weighted = x / far;  // the places of two cells across a body coincide
-      of += weighted * x.transpose();
-      const Values change = values(c) - values(cell);
-      for (int i = 0; i < 3; ++i) right[std::size_t(i)] += weighted[i] * change;
-    }
-    of.diagonal().array() += 1e-6 * of.trace() + 1e-300;
-    const Eigen::Matrix3d inverse = of.inverse();
-    std::array<Values, 3> slope;
-    for (int i = 0; i < 3; ++i)
-      slope[std::size_t(i)] = inverse(i, 0) * right[0] + inverse(i, 1) * right[1] + inverse(i, 2) * right[2];
-    std::array<std::array<double, 10>, 3> cubes;
-    for (int j = 0; j < 3; ++j) {
-      enum Packed { xx, yy, zz, xy, yz, xz };
-      const auto along = [&](std::size_t axis, Packed of_what) {
-        return slope[axis][j * curvatures + int(of_what)] / 6;
-      };
-      cubes[std::size_t(j)] = {along(0, xx),
-                               along(1, xx) + 2 * along(0, xy),
-                               along(2, xx) + 2 * along(0, xz),
-                               along(0, yy) + 2 * along(1, xy),
-                               2 * (along(0, yz) + along(1, xz) + along(2, xy)),
-                               along(0, zz) + 2 * along(2, xz),
-                               along(1, yy),
-                               along(2, yy) + 2 * along(1, yz),
-                               along(1, zz) + 2 * along(2, yz),
-                               along(2, zz)};
-    }
-    return cubes;
-  }
-
-  Vec3 place(Index cell) const {
-    return Vec3(curvature_.data() + std::size_t(cell) * values_of_cell + 3 * curvatures);
-  }
-
-  const mesh::Mesh& mesh_;
-  const elastic::ElasticOperator& rows_;
-  const SolidState& state_;
-  mesh::Csr cells_of_point_, boundary_faces_;
-  std::vector<Index> mark_, patch_;
-  std::vector<Sample> samples_;
-  QuadraticFit quadratic_;
-  std::vector<double> curvature_;  // per local cell
 };
 
 class Defect {
