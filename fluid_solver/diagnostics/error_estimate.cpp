@@ -279,11 +279,15 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     parts.dimension = D;
     const double speed = size(view_.fluid.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;
-    const double falls = std::sqrt(pressure_range(view_).value_or(0) / view_.parameters().density);
+    const double falls = std::sqrt(largest_pressure() / view_.parameters().density);
     const double across = std::pow(double(view_.mesh.cells.n_global()), 1. / D);
-    // A fluid at rest is so within the tolerance of its pressure.
+    // A fluid at rest is so within the tolerance of its pressure; what moves then is no solution.
     const double left = view_.parameters().pressure_tolerance * std::sqrt(across) * falls;
-    const double scale = diagnostics::scale_of(std::max({speed, largest_, left}), falls);
+    if (std::max(speed, largest_) < left) {
+      parts.mesh = parts.step = parts.linear = 0;
+      return parts;
+    }
+    const double scale = diagnostics::scale_of(std::max(speed, largest_), falls);
     parts.mesh = recovered_difference() / scale;
     parts.step = step_part() * steps_.size() / scale;
     // The trapezoidal rule also knows the divergence before.
@@ -292,6 +296,14 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     parts.linear =
         speed / scale * (open ? view_.parameters().pressure_tolerance : net_outflow()) * std::sqrt(across);
     return parts;
+  }
+  /// [Pa]; 0 in the first step, whose pressure is an impulse.
+  double largest_pressure() const {
+    const auto latest = view_.fluid.pressure();
+    double most = 0;
+    if (latest && view_.step.number > 0)
+      for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c) most = std::max(most, std::abs(latest->p[c]));
+    return parallel::max(view_.mesh.comm, most);
   }
   /// Root mean square over the volume; per local cell.
   double size(const Vectors<D>& values) const {
