@@ -1,11 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The coupled benchmarks: a cavity, lock-in, the wave in a tube."""
+"""The coupled benchmarks: the plate of Turek and Hron, a cavity, lock-in, the wave in a tube."""
 import math
 
 import numpy as np
 
 from couplet.runs.process import launch
 from couplet.study.quantities import top
+
+
+# -- Turek and Hron -----------------------------------------------------------------------------------------------------
+PLATE = {12: "{nx: 60, ny: 10}", 17: "{nx: 85, ny: 14}", 24: "{nx: 120, ny: 20}"}  # mesh-parameters of the plate for n of the fluid
+
+
+def turek_hron(job, case, keys, name, right, percent, least=1.7):
+    """One of the published quantities on meshes of which each has 2^(1/2) times as many cells along a side as the one before, and with its own keys, such as a
+    step that shrinks alike: the finest beside the published value, and the order of the changes."""
+    found, minutes = [], []
+    for (n, plate), key in zip(PLATE.items(), keys):
+        meshes = [*(f"participants.{who}.mesh-parameters={{n: {n}}}" for who in ("fluid", "mover")), f"participants.solid.mesh-parameters={plate}"]
+        run = job.case(case, (*meshes, key), timeout=20000)
+        found.append(job.beside("configs/turek-hron/summary.py").summary(run.folder)[name])
+        minutes.append(f"{run.cost.cpu / 60:.1f}")
+    changes = [abs(b - a) for a, b in zip(found, found[1:])]
+    order = math.log(changes[0] / changes[1]) / math.log(math.sqrt(2)) if len(changes) == 2 else math.nan
+    off = 100 * (found[-1] / right - 1)
+    return (f"{', '.join(f'{v:.5g}' for v in found)} for {right:.5g}: {off:+.2f} %, order {order:.1f} ({', '.join(minutes)} processor minutes)",
+            abs(off) <= percent and order >= least)
 
 
 def band(job, which, low, high):

@@ -44,10 +44,12 @@ def flag(case, rows):
     def number(text, name):
         _, factor, digits = shown[name]
         return f"{factor * float(text):.{digits}g}" if re.fullmatch(NUMBER, text) else "-"  # a row may tell why there is none
-    for who, cells, step, beginning in DATA["ours"][case]:
-        mine = {q.rsplit(": ", 1)[1]: r.got for q, r in rows.items() if q.startswith(beginning) and ": " in q and r.verdict != "not measured"}
-        values = [number(mine[name].split(" ")[0], name) if name in mine else "-" for name in shown]
-        found.append((f"**{who}**", cells, step, *values, next((hours(text) for text in mine.values()), "-")))
+    mine = {q.rsplit(": ", 1)[1]: r.got for q, r in rows.items() if q.startswith(f"{case}, ") and r.verdict != "not measured"}
+    values = {name: text.split(" for ")[0].split(", ") for name, text in mine.items()}
+    minutes = re.search(r"\(([\d., ]+) processor minutes", next(iter(mine.values()), ""))
+    for i, (cells, step) in enumerate(zip(DATA["meshes"], DATA["steps"][case])):
+        cost = f"{float(minutes[1].split(', ')[i]) / 60:.3f}" if minutes else "-"
+        found.append(("**Couplet**", cells, step, *(number(values[name][i], name) if name in values else "-" for name in shown), cost))
     for source, (who, cells, step, cost) in DATA["peers"].items():
         if source in theirs:
             found.append((who, cells, step if case == "FSI3" else "-", *(number(theirs[source][name], name) for name in shown), cost if case == "FSI3" else "-"))
