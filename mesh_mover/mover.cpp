@@ -216,10 +216,9 @@ void Mover::move(const coupling::Exchange& in) {
   if (!refusal.empty())
     throw SolveFailure(
         "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
-        incremental() || chooses_ || parameters_.method == Method::rotations
+        incremental() || parameters_.method == Method::barrier
             ? ""
-            : " 'form: incremental' with 'stiffening-volumes: current' tolerates larger motions, but its "
-              "mesh depends on the path.");
+            : " 'method: barrier', to which 'auto' changes by itself, follows larger motions.");
 }
 
 coupling::Exchange Mover::solve(const coupling::Exchange& in) {
