@@ -23,7 +23,7 @@ namespace couplet::fluid {
 
 /// Time-dependent expressions that drive a flow: body force, motion of the mesh, velocities and pressures at boundaries. A
 /// flow that responds linearly to such an expression does not drift from it, because errors cancel over half
-/// a period. A flow coupled to a structure or with vortices may oscillate and never counts as driven.
+/// a period, unless waves carry them away. A flow coupled to a structure or with vortices may oscillate and never counts as driven.
 class Driving {
  public:
   explicit Driving(const FluidParameters& parameters);
@@ -248,6 +248,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     if (knows_third) {
       for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
         squares[6] += std::max(0., view_.fluid.state().phi[f]);
+      squares[6] += waves_out();
       MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
@@ -255,13 +256,16 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       energy_.add(dt, state.ledger);
       drift_.add(dt, std::max(0., state.ledger.energy), mean(1), mean(2),
                  adams_bashforth_error * sub_step * sub_step);
-      // Errors leave with the outflow, and are dissipated by friction.
+      // Errors leave with the outflow and the waves, and are dissipated by friction.
       const double forgotten = energy_.friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
       for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
       const double faded = std::exp(-dt / (window * energy_.time()));
       left_of_late_ = std::max(mean(5), left_of_late_ * faded);
       carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
-      steps_.add({.error = adams_bashforth_error * step / apart * mean(3),
+      const bool trapezoidal = view_.parameters().is_compressible() &&
+                               view_.parameters().compressibility->scheme == WaveScheme::trapezoidal &&
+                               driving_.is_possible() && mean(7) <= hardly * mean(1);
+      steps_.add({.error = (trapezoidal ? driven_error : adams_bashforth_error) * step / apart * mean(3),
                   .rate = mean(1),
                   .size = mean(0),
                   .dt = dt,
@@ -273,6 +277,22 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     }
     dt_old_ = dt;
     ++seen_;
+  }
+  /// Volume of which the waves leave through absorbing boundaries of this rank in a second [m^3/s].
+  double waves_out() const {
+    const FluidParameters& p = view_.parameters();
+    if (!p.is_compressible()) return 0;
+    const auto& line = p.compressibility->upstream_line;
+    const bool line_absorbs = line && line->end == UpstreamLineParameters::End::absorbing;
+    double area = 0;
+    for (const mesh::Patch& patch : view_.mesh.patches) {
+      const auto b = p.boundaries.find(patch.name);
+      if (b == p.boundaries.end()) continue;
+      if (!b->second.absorbing && !(line_absorbs && b->second.type == BoundaryType::inlet)) continue;
+      for (Index f = patch.first; f < patch.first + patch.count; ++f)
+        area += view_.fluid.state().placement->area[f].norm();
+    }
+    return p.sound_speed() * area;
   }
   diagnostics::ErrorParts parts() const {
     diagnostics::ErrorParts parts;
@@ -324,7 +344,9 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const bool acts =
         driving_.is_possible() && driving_.acts(view_.mesh.comm, places, view_.fluid.state().time, dt_old_,
                                                 view_.fluid.state().mesh_flux);
-    if (acts) return carried_ <= hardly * changed_ ? std::min(sum, left_of_late_ / steps_.size()) : sum;
+    // The errors of a wave travel with it and add up.
+    const bool stays = !view_.parameters().is_compressible() && carried_ <= hardly * changed_;
+    if (acts) return stays ? std::min(sum, left_of_late_ / steps_.size()) : sum;
     return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
   }
   double recovered_difference() const {
