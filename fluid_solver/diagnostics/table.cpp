@@ -44,6 +44,25 @@ double hydraulic_diameter(const Fluid<D>& fluid) {
   return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Largest cell Reynolds number of the rotation, |rot u| h^2/nu. Collective.
+template <int D>
+double largest_rotation(const FluidView<D>& view) {
+  const mesh::Mesh& mesh = view.mesh;
+  const State<D>& s = view.fluid.state();
+  std::vector<Vec3> circulation(std::size_t(mesh.cells.n_local()), Vec3::Zero());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const Index p = mesh.owner[f], n = f < mesh.n_interior ? mesh.neighbour[f] : p;
+    Vec3 u = Vec3::Zero(), area = Vec3::Zero();
+    u.head<D>() = 0.5 * (s.u[p] + s.u[n]), area.head<D>() = s.placement->area[f];
+    circulation[p] += area.cross(u);
+    if (n != p) circulation[n] -= area.cross(u);
+  }
+  double largest = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    largest = std::max(largest, circulation[c].norm() * std::pow(s.placement->volume[c], 2. / D - 1));
+  return parallel::max(mesh.comm, largest) / view.parameters().kinematic_viscosity();
+}
+
 /// True if the flow has no third dimension in which vortices stretch: most cells reach from one boundary to the
 /// opposite one, or across periodic patches to themselves. Collective.
 template <int D>
@@ -143,8 +162,9 @@ std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const int dimension = is_plane(view) ? 2 : 3;
   if (p.turbulence && dimension == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
   const double reynolds = p.density * largest_speed(view) * hydraulic_diameter(view.fluid) / p.viscosity;
-  return diagnostics::finding_of(unresolved_layers(dimension, view.sizes.largest_peclet(view.fluid.state()),
-                                                   largest_yplus(view), reynolds));
+  double peclet = view.sizes.largest_peclet(view.fluid.state());
+  if (std::isnan(reynolds)) peclet = std::min(peclet, largest_rotation(view));  // no wall makes a layer
+  return diagnostics::finding_of(unresolved_layers(dimension, peclet, largest_yplus(view), reynolds));
 }
 
 template <int D>

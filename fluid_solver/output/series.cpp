@@ -192,7 +192,7 @@ Row balance(const Fluid<D>& fluid) {
   if (s.pressure[0]) sums[taken_up] = s.pressure[0]->taken_up;
   MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh.comm);
   const double worst = parallel::max(mesh.comm, over_cells.worst);
-  return {{"inflow [m^3/s]", sums[inflow]},
+  Row row{{"inflow [m^3/s]", sums[inflow]},
           {"outflow [m^3/s]", sums[outflow]},
           {"volume [m^3]", sums[volume]},
           {"kinetic energy [J]", sums[energy]},
@@ -200,6 +200,13 @@ Row balance(const Fluid<D>& fluid) {
           {"mean divergence [1/s]", sums[divergence] / sums[volume]},
           {"mass defect [m^3/s]", sums[outflow] - sums[inflow] + sums[taken_up]},
           {"sub-steps [-]", double(fluid.statistics().sub_steps)}};
+  if (fluid.boundary().upstream_patches().empty()) return row;
+  double mouth = 0;
+  for (const auto& [first, count] : fluid.boundary().upstream_patches())
+    for (Index b = first; b < first + count; ++b) mouth -= s.phi[mesh.n_interior + b];
+  row.emplace_back("pressure upstream [Pa]", s.pressure[0] ? s.pressure[0]->upstream : 0);
+  row.emplace_back("flow from upstream [m^3/s]", parallel::sum(mesh.comm, mouth));
+  return row;
 }
 
 template <int D>

@@ -160,7 +160,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
             .unit("m")
             .plausible(1e-6, 1e5)
             .positive()
-            .doc("length of the tube");
+            .doc("length of the tube; steps are no longer than a wave takes to its end and back");
         l.value("area", line.area)
             .required()
             .unit("m^2")

@@ -34,11 +34,6 @@ class UpstreamLine {
     using End = UpstreamLineParameters::End;
     const double given = impedance_ * at(past, t - travel_, &LineRow::given);
     if (end_ == End::absorbing) return pressure_ + given;
-    if (t - 2 * travel_ > past.back().time)
-      throw Error(
-          "compressibility.upstream-line.length: a wave comes back from the far end after {:.3g} s, within a single "
-          "step. Use shorter steps, or 'upstream-volume' for a tube that is as short as this.",
-          2 * travel_);
     const double back = at(past, t - 2 * travel_, &LineRow::wave);
     return end_ == End::closed ? back + 2 * given : 2 * pressure_ - back;
   }

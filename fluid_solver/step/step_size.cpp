@@ -10,7 +10,6 @@
 #include <numbers>
 #include <span>
 
-#include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -271,7 +270,11 @@ template <int D>
 SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
                             const FluidParameters& parameters, const MomentumTerms<D>& terms)
     : parameters_(parameters),
-      size_(mesh, boundary, parameters.kinematic_viscosity(), terms, parameters.scheme) {}
+      size_(mesh, boundary, parameters.kinematic_viscosity(), terms, parameters.scheme) {
+  const auto& sound = parameters.compressibility;
+  if (sound && sound->upstream_line && sound->upstream_line->end != UpstreamLineParameters::End::absorbing)
+    echo_ = 2 * sound->upstream_line->length / solved_sound(sound, parameters.density, parameters.viscosity);
+}
 
 template <int D>
 void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, double frame_rate,
@@ -320,12 +323,15 @@ double SubStepSize<D>::next(const State<D>& level, bool implicit, int done, doub
     const StepLimits limits = done == 0 ? limits_ : size_.limits(level);
     limit = parameters_.safety_factor * (implicit ? implicit_limit(limits) : limits.explicit_viscous);
   }
-  const double n = parts(remaining, limit);
+  const bool echo = echo_ < limit;
+  const double n = parts(remaining, std::min(limit, echo_));
   if (!(n + done <= most_sub_steps))
     throw SolveFailure(
         "The fluid would need more than {} sub-steps of {:.3g} s for the step of {:.3g} s at t = {:.6g} s. {}",
-        most_sub_steps, limit, dt_, time_,
-        parameters_.time_step ? " It follows from 'time-step'." : in_words(size_.limiter(level, implicit)));
+        most_sub_steps, std::min(limit, echo_), dt_, time_,
+        echo                    ? "It follows from the length of 'upstream-line'."
+        : parameters_.time_step ? " It follows from 'time-step'."
+                                : in_words(size_.limiter(level, implicit)));
   last = n == 1;
   return remaining / n;
 }

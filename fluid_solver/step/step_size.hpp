@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "common/base/constants.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/state/state.hpp"
@@ -107,6 +108,7 @@ class SubStepSize {
   const FluidParameters& parameters_;
   StepSize<D> size_;
   double time_ = 0, dt_ = 0;
+  double echo_ = base::infinity;  // time after which a wave comes back from the end of an upstream line [s]
   StepLimits limits_;
 };
 

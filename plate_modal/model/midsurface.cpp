@@ -223,12 +223,13 @@ double order_at_corner(double kink) {
   return 2 * (smoothest - 1);
 }
 
-double with_corners(double gap, std::span<const double> kinks) {
+double with_corners(double smooth, double gap, std::span<const double> kinks) {
   constexpr double counts_fully = 20 * base::degree;
-  double most = gap;
+  double most = smooth;
   for (const double kink : kinks)
-    most = std::max(most, std::min(1.0, std::abs(kink) / counts_fully) *
-                              std::pow(std::min(1.0, gap), 0.5 * order_at_corner(kink)));
+    if (order_at_corner(kink) < 1.99)
+      most = std::max(most, std::min(1.0, std::abs(kink) / counts_fully) *
+                                std::pow(std::min(1.0, gap), 0.5 * order_at_corner(kink)));
   return most;
 }
 

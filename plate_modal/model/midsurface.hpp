@@ -53,10 +53,10 @@ std::vector<OutlinePoint> outline_of(const Midsurface& surface);
 /// above 1 [blum1980], so the error decreases as h^(2 (mu - 1)).
 double order_at_corner(double kink);
 
-/// Relative mesh error of the deflection. `gap`: error for a smooth or rectangular outline, of order h^2; it
-/// grows at corners, `kinks`, of lower order. Within a factor of 2 for a hexagon (5 and 10 edges per side), a
+/// Relative mesh error of the deflection. `smooth`: error for a smooth or rectangular outline; `gap`, of order
+/// h^2, gives that at corners, `kinks`, of lower order. Within a factor of 2 for a hexagon (5 and 10 edges per side), a
 /// rhombus of 30 degrees and polygons of 12 sides. Corners below 20 degrees are weighted by their turn.
-double with_corners(double gap, std::span<const double> kinks);
+double with_corners(double smooth, double gap, std::span<const double> kinks);
 
 /// Outline points between two simply supported edges that are corners of an order below 2. Straight lines
 /// instead of a curved edge describe another plate there (Babuska's paradox). `support`: one per patch.

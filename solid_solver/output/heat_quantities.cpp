@@ -161,6 +161,49 @@ std::vector<LocalHeat> local_heat(const Heat& heat, const HeatState& field) {
   return all;
 }
 
+/// Curve or surface of which a boundary face is a chord, as the normals at its vertices show it.
+struct Bulge {
+  double height = 0;  ///< mean distance from the face, positive outward [m]
+  double area = 0;    ///< excess over the area of the face, relative to it
+};
+
+/// Bulges of the boundary faces of owned cells. The normal at a vertex is the mean over the faces of the
+/// patch, within planes of symmetry; where a patch turns by more than 50 degrees it has a corner. Collective.
+std::vector<Bulge> bulges(const Conduction& conduction) {
+  constexpr double smooth = 0.9;  // cosine of half of the turn
+  const mesh::Mesh& mesh = conduction.mesh();
+  const mesh::Geometry& g = conduction.geometry();
+  std::vector<Bulge> all(std::size_t(mesh.boundary.n_owned()));
+  for (const mesh::Patch& patch : mesh.patches) {
+    const auto each = [&](auto&& visit) {
+      for (Index f = patch.first; f < patch.first + patch.count; ++f) visit(f, mesh.face_points[f]);
+    };
+    Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, mesh.points.n_local());
+    each([&](Index f, std::span<const Index> points) {
+      for (const Index v : points) sum.col(v) += conduction.faces().normal[f];
+    });
+    mesh.points.add_to_owners({sum.data(), std::size_t(sum.size())}, 3);
+    mesh.points.update_ghosts({sum.data(), std::size_t(sum.size())}, 3);
+    each([&](Index f, std::span<const Index> points) {
+      const Vec3& flat = conduction.faces().normal[f];
+      const auto tilt = [&](Index v) {
+        const Vec3 n = conduction.vertices().projector(v) * sum.col(v);
+        return n.dot(flat) > smooth * n.norm() ? Vec3(n.normalized() - flat) : Vec3(Vec3::Zero());
+      };
+      Bulge& bulge = all[std::size_t(f - mesh.n_interior)];
+      Vec3 together = Vec3::Zero();
+      double squares = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) {  // sees the edge of a 2-D mesh twice
+        const Index v = points[i], next = points[(i + 1) % points.size()];
+        bulge.height += (tilt(next) - tilt(v)).dot(g.points[next] - g.points[v]) / 24;
+        squares += tilt(v).squaredNorm(), together += tilt(v);
+      }
+      bulge.area = (squares + together.squaredNorm()) / (12 * (mesh.dim - 1));
+    });
+  }
+  return all;
+}
+
 /// The fluxes of the scheme have a defect tau_f = exact - scheme's on the exact field. For a functional
 /// with dual solution z and source defect s ([becker2001]; [Venditti, Darmofal 2000]) the error is -S + z.s,
 ///   S = sum_f tau_f (z_N - z_P)
@@ -203,6 +246,34 @@ double weighted_defect(const Heat& heat, std::span<const LocalHeat> of_t, const 
   return parallel::sum(mesh.comm, sum);
 }
 
+/// Change of a functional with dual solution z from the polygon of the mesh to the curve around it, of height b
+/// and excess a of area over each face, by Hadamard's formula:
+///   sum_b k |S| (b (d_n T d_n z - grad_t T . grad_t z - lap T z) + a d_n T (z - w))
+/// w is 1 on the patch whose heat is `counted`, and 0 elsewhere. Collective.
+double missed_by_chords(const Heat& heat, std::span<const LocalHeat> of_t, const HeatState& z,
+                        const mesh::Patch* counted) {
+  const Conduction& conduction = heat.conduction();
+  const mesh::Mesh& mesh = conduction.mesh();
+  const std::vector<Bulge> curved = bulges(conduction);
+  const HeatState& now = heat.accepted();
+  const std::vector<double> points = heat.point_temperature(now), points_of_z = heat.point_temperature(z);
+  double sum = 0;
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+    const auto& [height, excess] = curved[std::size_t(f - mesh.n_interior)];
+    if (height == 0) continue;
+    const Vec3 &normal = conduction.faces().normal[f],
+               slope = conduction.gradient(f, now.cells, now.boundary, points),
+               of_z = conduction.gradient(f, z.cells, z.boundary, points_of_z);
+    const double out = slope.dot(normal), here = z.boundary[f - mesh.n_interior];
+    const bool counts = counted && f >= counted->first && f < counted->first + counted->count;
+    const double curvature = of_t[mesh.owner[f]].second.trace();
+    sum += heat.conductivity()[f] * conduction.geometry().face_area[f].norm() *
+           (height * (2 * out * of_z.dot(normal) - slope.dot(of_z) - curvature * here) +
+            excess * out * (here - (counts ? 1 : 0)));
+  }
+  return parallel::sum(mesh.comm, sum);
+}
+
 class HeatEstimates {
  public:
   explicit HeatEstimates(const Heat& heat)
@@ -228,7 +299,8 @@ class HeatEstimates {
     for (const Index c : cells_at(mesh_, probe))
       sum += fits_[std::size_t(c)].at(e.place - g.cell_centre[c]), n += 1;
     e.local = is_given(probe) ? 0 : parallel::sum(mesh_.comm, sum) / parallel::sum(mesh_.comm, n) - e.value;
-    e.dual = -missed(rows_of(probe), std::vector<double>(conduction_.n_known(), 0));
+    const HeatState z = heat_.answer(rows_of(probe), std::vector<double>(conduction_.n_known(), 0));
+    e.dual = missed_by_chords(heat_, fits_, z, nullptr) - missed(z);
     e.is_signed = true;
     return e;
   }
@@ -294,12 +366,13 @@ class HeatEstimates {
     for (std::size_t i = 0; i < transfer.size(); ++i)
       if (is_here(flux[i])) faces[std::size_t(flux[i] - mesh_.n_interior)] = transfer[i];
     e.is_signed = true;
-    e.dual = missed(in_rows(std::vector<double>(std::size_t(mesh_.cells.n_owned()), 0), faces), known);
+    const HeatState z =
+        heat_.answer(in_rows(std::vector<double>(std::size_t(mesh_.cells.n_owned()), 0), faces), known);
+    e.dual = missed(z), e.local = -missed_by_chords(heat_, fits_, z, &here);
     return e;
   }
 
-  double missed(std::vector<double> rows, std::vector<double> known) const {
-    const HeatState z = heat_.answer(std::move(rows), std::move(known));
+  double missed(const HeatState& z) const {
     double source = 0;
     for (std::size_t c = 0; c < source_missed_.size(); ++c) source += z.cells[c] * source_missed_[c];
     return weighted_defect(heat_, fits_, z) - parallel::sum(mesh_.comm, source);

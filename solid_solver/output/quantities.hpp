@@ -32,7 +32,8 @@ struct QuantityEstimate {
   Vec3 place = Vec3::Zero();  ///< undeformed [m]
   double value = 0;           ///< as the probes have it
   /// Error at the place itself: of a displacement by the curvature that vertex weights miss
-  /// (quadratic_displacement()), of a stress by the residual of its recovery.
+  /// (quadratic_displacement()), of a stress by the residual of its recovery. Of a heat flow, what the chords of curved
+  /// boundaries leave out.
   double local = 0;
   double dual = 0;  ///< DualProblem::missed()
   /// Variation within the quadrilaterals of the whole body times the value. Covers cases where the other parts miss

@@ -172,6 +172,47 @@ TEST(HeatQuantities, of_a_layer_between_planes_of_symmetry_are_those_of_the_shee
   }
 }
 
+/// Quarter of a ring of radii 7 and 18.625; in 3-D with its ends in planes of symmetry.
+RawMesh ring(BoxCells cells, int across, int around) {
+  const int dim = dimension_of(cells);
+  RawMesh raw = make_box(cells, {across, around, dim == 3 ? 2 : 1}, Vec3::Zero(), Vec3(1, M_PI / 2, dim - 2));
+  for (Vec3& x : raw.points) {
+    const double r = 7 * std::pow(18.625 / 7, x[0]);
+    x = Vec3(r * std::cos(x[1]), r * std::sin(x[1]), x[2]);
+  }
+  return raw;
+}
+
+// 100 K or 100 W/m^2 at the inside, 0 K or a film outside. The boundary of the mesh is a polygon, whose area and distance from the
+// probes are wrong by more than the operator.
+TEST(HeatQuantities, see_that_a_curved_boundary_is_made_of_chords) {
+  const double wide = std::log(18.625 / 7);
+  for (const auto& [name, cells] : all_cells)
+    for (const auto& [across, around] : {std::pair{16, 6}, {16, 12}}) {
+      Scene given{"given", steady(), {{"between", temperature_at({9.9 * M_SQRT1_2, 9.9 * M_SQRT1_2})}}, {}};
+      for (const char* side : {"ymin", "ymax", "zmin", "zmax"})
+        if (side[0] == 'y' || dimension_of(cells) == 3)
+          given.parameters.boundaries[side].type = HeatType::symmetry;
+      if (dimension_of(cells) == 3) given.wanted["between"].point.push_back(0.5);
+      Scene flux = given;
+      given.parameters.boundaries["xmin"] = heat_boundary(HeatType::temperature, "100");
+      given.parameters.boundaries["xmax"] = heat_boundary(HeatType::temperature, "0");
+      given.exact["between"] = 100 * std::log(18.625 / 9.9) / wide;
+      flux.name = "flux", flux.wanted["inside"] = heat_through("xmin");
+      flux.parameters.boundaries["xmin"] = heat_boundary(HeatType::flux, "100");
+      flux.parameters.boundaries["xmax"] = convection("100", "0");
+      flux.exact = {{"between", 700 / 1862.5 + 700 * std::log(18.625 / 9.9)}, {"inside", M_PI / 2 * 700}};
+      for (const Scene& scene : {given, flux})
+        for (const QuantityEstimate& q : found(MPI_COMM_WORLD, ring(cells, across, around), scene)) {
+          const double ratio = q.error() / std::abs(scene.exact.at(q.name) - q.value);
+          fmt::print("{} {}x{} {} {}: {:.5g} for {:.5g}, estimated over true error {:.2f}\n", name, across,
+                     around, scene.name, q.name, q.value, scene.exact.at(q.name), ratio);
+          EXPECT_GT(ratio, q.name == "inside" ? 0.9 : 0.4) << name << " " << scene.name << " " << q.name;
+          EXPECT_LT(ratio, q.name == "inside" ? 1.15 : 2) << name << " " << scene.name << " " << q.name;
+        }
+    }
+}
+
 std::string refused(const Scene& scene) {
   HeatCase here(box(BoxCells::triangles, 2), {{1, 1.0, 1.0}}, scene.parameters);
   return support::error_of([&] { check_heat_quantities(*here.heat, scene.wanted); });

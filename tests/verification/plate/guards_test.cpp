@@ -216,8 +216,8 @@ TEST(PlateGuards, a_mesh_of_one_cell_across_is_no_mesh) {
     return support::observe(plate, 1, 1.).diagnostics().errors().mesh;
   };
   EXPECT_GT(gap(40, 1), 0.15);
-  EXPECT_GT(gap(40, 2), 0.15);
-  EXPECT_LT(gap(10, 10), 0.1);
+  EXPECT_GT(gap(40, 2), 0.12);  // the deflection is 0.16 off
+  EXPECT_NEAR(gap(12, 12), 0.0042, 0.0015);
 }
 
 TEST(PlateGuards, edges_that_hold_nothing_or_twice_are_refused) {

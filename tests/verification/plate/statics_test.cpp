@@ -240,10 +240,10 @@ TEST(PlateStatics, a_hexagon_converges_as_its_corners_let_it_and_is_told) {
     }
     before = error;
   }
-  EXPECT_EQ(with_corners(0.0045, {}), 0.0045);
+  EXPECT_EQ(with_corners(0.0045, 0.0045, {}), 0.0045);
   const std::array<double, 1> sixty{60 * degree}, faint{degree};
-  EXPECT_NEAR(with_corners(0.0045, sixty), std::sqrt(0.0045), 1e-12);
-  EXPECT_LT(with_corners(0.0045, faint), 0.05);
+  EXPECT_NEAR(with_corners(0.0015, 0.0045, sixty), std::sqrt(0.0045), 1e-12);
+  EXPECT_LT(with_corners(0.0015, 0.0045, faint), 0.05);
 }
 
 TEST(PlateStatics, sides_of_one_edge_are_told_from_a_curve_by_the_drawing) {
