@@ -122,8 +122,19 @@ void ViscousSolver<D>::set_diagonal(std::span<const double> added) {
   for (double& value : inverse_diagonal_) value = 1 / value;
 }
 
+/// Skew-symmetric but for the net outflow of a cell.
 template <int D>
-void ViscousSolver<D>::set_entries(std::span<const double> added) {
+void ViscousSolver<D>::add_carried(std::span<const double> carried) {
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const bool inside = f < mesh_.n_interior;
+    if (const Index p = mesh_.owner[f]; p < a_->size()) a_->diagonal[p] += (inside ? 0.5 : 1) * carried[f];
+    if (const Index n = inside ? mesh_.neighbour[f] : a_->size(); n < a_->size())
+      a_->diagonal[n] -= 0.5 * carried[f];
+  }
+}
+
+template <int D>
+void ViscousSolver<D>::set_entries(std::span<const double> added, std::span<const double> carried) {
   scale_.resize(mesh_.cells.n_local());
   for (Index c = 0; c < a_->size(); ++c) {
     scale_[c] = std::sqrt(inverse_diagonal_[c]);
@@ -133,22 +144,26 @@ void ViscousSolver<D>::set_entries(std::span<const double> added) {
   std::size_t e = 0;
   for (Index c = 0; c < a_->size(); ++c)
     for (const std::size_t end = e + a_->width; e < end; ++e)
-      if (const Index f = a_->face[e]; f >= 0)
-        a_->value[e] = -(beta_ + (added.empty() ? 0 : added[f])) * at_->conductance[f] * scale_[c] *
-                       scale_[a_->column[e]];
+      if (const Index f = a_->face[e]; f >= 0) {
+        double entry = -(beta_ + (added.empty() ? 0 : added[f])) * at_->conductance[f];
+        if (carries_) entry += (mesh_.owner[f] == c ? 0.5 : -0.5) * carried[f];
+        a_->value[e] = entry * scale_[c] * scale_[a_->column[e]];
+      }
 }
 
 template <int D>
 void ViscousSolver<D>::prepare(std::shared_ptr<const Placement<D>> at, double beta,
-                               std::span<const double> added) {
+                               std::span<const double> added, std::span<const double> carried) {
   // Equal on all ranks, because each step of a moving mesh has its own placement.
-  if (at == at_ && beta == beta_ && added.empty() && !has_more_) return;
+  if (at == at_ && beta == beta_ && added.empty() && carried.empty() && !has_more_) return;
   at_ = std::move(at);
   beta_ = beta;
-  has_more_ = !added.empty();
+  carries_ = !carried.empty();
+  has_more_ = !added.empty() || carries_;
   if (!a_) a_ = std::make_unique<ViscousRows>(mesh_);
   set_diagonal(added);
-  set_entries(added);
+  if (carries_) add_carried(carried);
+  set_entries(added, carried);
 }
 
 /// Returns x.y of this rank.
@@ -182,6 +197,25 @@ int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   const double goal = tolerance * tolerance * sums[0];
   const std::size_t n = static_cast<std::size_t>(owned) * D;
+  if (carries_) {
+    if (!krylov_)
+      krylov_ = std::make_unique<linalg::KrylovSolver>(
+          "the predicted velocity", mesh_.comm, n,
+          [this, n](std::span<const double> x, std::span<double> y) {
+            std::ranges::copy(x, flat<D>(search_).begin());
+            apply(search_, q_);
+            std::ranges::copy(flat<D>(q_).first(n), y.begin());
+          },
+          [](std::span<const double> x, std::span<double> y) { std::ranges::copy(x, y.begin()); });
+    for (Index c = 0; c < owned; ++c) r_[c] = scale_[c] * b[c];
+    const int needed = krylov_
+                           ->solve(flat<D>(r_).first(n), flat<D>(x_).first(n),
+                                   {.relative_tolerance = tolerance, .is_hard = true})
+                           .iterations;
+    for (Index c = 0; c < owned; ++c) u[c] = scale_[c] * x_[c];
+    mesh_.cells.update_ghosts(flat<D>(u), D);
+    return needed;
+  }
   double rr = sums[1];
   int iterations = 0;
   while (rr > goal && iterations < most_iterations) {
@@ -242,9 +276,11 @@ void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, con
     scene_.obstacles->clear(added_rate_);
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) side[c] += step_.dt * added_rate_[c];
   }
-  solver_.prepare(step_.to, a * scene_.fluid.nu * step_.dt, added_);
+  set_carried(from, a);
+  solver_.prepare(step_.to, a * scene_.fluid.nu * step_.dt, added_, carried_);
   guess(from, rates, a, side, u);
   damp(from, side);
+  carry(from, side);
   if (scene_.oblique)
     solve_in_passes(w, a, side, u);
   else
@@ -265,6 +301,54 @@ void ImplicitFriction<D>::damp(const State<D>& from, Vectors<D>& side) const {
     const Vec<D> part = added_[f] * step_.to->conductance[f] * (ahead(n) - ahead(p));
     side[p] -= part;
     side[n] += part;
+  }
+}
+
+/// Volume that each face of a fast cell carries at n+1/2, with the weight of t^{n+1}. Closed cells and faces with
+/// given velocities remain explicit.
+template <int D>
+void ImplicitFriction<D>::set_carried(const State<D>& from, double a) {
+  carried_.clear();
+  if (step_.fast.empty()) return;
+  carried_.assign(mesh_.n_flux_faces(), 0.0);
+  const double ahead = from.phi_old.empty() ? 0 : step_.ratio() / 2;
+  const auto volume = [&](Index f) {
+    const double flux = ahead > 0 ? (1 + ahead) * from.phi[f] - ahead * from.phi_old[f] : from.phi[f];
+    return step_.dt * flux - (step_.moving() ? step_.swept[f] : 0);
+  };
+  const auto now = scene_.obstacles->marks();
+  const auto closed = [&](Index c) { return (from.blocked && (*from.blocked)[c]) || (now && (*now)[c]); };
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    if (step_.fast[p] + step_.fast[n] > 0 && !closed(p) && !closed(n)) carried_[f] = a * volume(f);
+  }
+  for (const Index b : scene_.boundary.rows().of_pressure) {
+    const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+    if (step_.fast[p] > 0 && !closed(p)) carried_[f] = a * std::max(0.0, volume(f));
+  }
+}
+
+/// Replaces the extrapolated convection of these faces by -F [a u^{n+1} + b u^n + c u^{n-1}]_f, F of n+1/2 for all three
+/// levels: subtracts a F times the second time difference of u as damp() does, and from the Adams-Bashforth sum of
+/// products of flux and velocity the product of their changes.
+template <int D>
+void ImplicitFriction<D>::carry(const State<D>& from, Vectors<D>& side) const {
+  const double ratio = step_.ratio();
+  const bool changes = ratio > 0 && !from.phi_old.empty();
+  for (Index f = 0; f < static_cast<Index>(carried_.size()); ++f) {
+    if (carried_[f] == 0) continue;
+    const bool inside = f < mesh_.n_interior;
+    const Index p = mesh_.owner[f], n = inside ? mesh_.neighbour[f] : p;
+    const Vec<D> value = 0.5 * (from.u[p] + from.u[n]);
+    Vec<D> part = carried_[f] * value;
+    if (ratio > 0) {
+      const Vec<D> change = value - 0.5 * (from.u_old[p] + from.u_old[n]);
+      part += carried_[f] * ratio * change;
+      if (changes)
+        part -= step_.dt * (1 + ratio / 2) * (ratio / 2) * (from.phi[f] - from.phi_old[f]) * change;
+    }
+    side[p] += part;
+    if (inside) side[n] -= part;
   }
 }
 

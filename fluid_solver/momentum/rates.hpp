@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/linalg/acceleration.hpp"
+#include "common/linalg/krylov.hpp"
 #include "fluid_solver/boundary/boundary.hpp"
 #include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
@@ -117,7 +118,7 @@ template <int D>
 void wall_flux(const mesh::Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
                const Vectors<D>& u_boundary, Vectors<D>& force);
 
-/// Symmetric matrix stored by rows of owned cells, all of the same width. A CG iteration then takes one pass
+/// Matrix stored by rows of owned cells, all of the same width. A CG iteration then takes one pass
 /// over the rows and two over the vectors. A loop over faces needs twice the instructions.
 struct ViscousRows {
   Index width = 0;  ///< entries per row besides the diagonal: the largest number of neighbors of a cell
@@ -141,13 +142,15 @@ struct ViscousBoundaryRow {
 
 /// Solves A u = V u + beta sum_f g (u_P - u_f) = b for all components at once. Uses CG on D^(-1/2) A
 /// D^(-1/2), which is Jacobi-preconditioned CG [hestenes1952]. beta = a nu dt [m^2], plus `added` at
-/// interior faces. The system is well conditioned if convection limits the step.
+/// interior faces. The system is well conditioned if convection limits the step. With implicit convection, A u
+/// also has sum_f F u_f with F = `carried`, the volume through a face, and GMRES solves it.
 template <int D>
 class ViscousSolver {
  public:
   ViscousSolver(const mesh::Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
   /// Sets up the system for the following solves. Collective.
-  void prepare(std::shared_ptr<const Placement<D>> at, double beta, std::span<const double> added = {});
+  void prepare(std::shared_ptr<const Placement<D>> at, double beta, std::span<const double> added = {},
+               std::span<const double> carried = {});
   /// Inverse of the diagonal D, per owned cell.
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
   /// `b`: per local cell (owned ones are read), without boundary parts. `w`: given velocity per boundary
@@ -157,18 +160,21 @@ class ViscousSolver {
 
  private:
   void set_diagonal(std::span<const double> added);
-  void set_entries(std::span<const double> added);
+  void set_entries(std::span<const double> added, std::span<const double> carried);
+  void add_carried(std::span<const double> carried);
   double apply(Vectors<D>& x, Vectors<D>& y) const;
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   std::shared_ptr<const Placement<D>> at_;
   double beta_ = 0;
   bool has_more_ = false;           // than beta_ at interior faces
+  bool carries_ = false;            // has implicit convection: A is not symmetric
   std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2) without boundary_rows_
   std::vector<ViscousBoundaryRow<D>> boundary_rows_;
   std::vector<double> inverse_diagonal_;
-  std::vector<double> scale_;      // D^(-1/2), per local cell
-  Vectors<D> x_, r_, q_, search_;  // vectors of the scaled system
+  std::vector<double> scale_;                     // D^(-1/2), per local cell
+  Vectors<D> x_, r_, q_, search_;                 // vectors of the scaled system
+  std::unique_ptr<linalg::KrylovSolver> krylov_;  // with implicit convection
 };
 
 /// Implicit part of modified Crank-Nicolson, V' u^p - a dt nu L' u^p = right-hand side, in passes on
@@ -194,6 +200,8 @@ class ImplicitFriction {
   void guess(const State<D>& from, const Rates<D>& rates, double a, const Vectors<D>& side,
              Vectors<D>& u) const;
   void damp(const State<D>& from, Vectors<D>& side) const;
+  void set_carried(const State<D>& from, double a);
+  void carry(const State<D>& from, Vectors<D>& side) const;
   void solve_in_passes(const Vectors<D>& w, double a, const Vectors<D>& side, Vectors<D>& u);
   void accelerate(bool start, Vectors<D>& u);
 
@@ -207,6 +215,8 @@ class ImplicitFriction {
   std::vector<double>
       added_;  // by terms: viscosity times a dt per interior face [m^2]; empty if there is none
   Vectors<D> added_rate_;
+  std::vector<double>
+      carried_;  // a (dt phi - dV) per flux face with implicit convection; empty if none has [m^3]
   std::unique_ptr<linalg::Accelerator> accelerator_;  // for meshes that need many passes
 };
 

@@ -256,6 +256,24 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "order in space of convection, explicit friction, fluxes and pressure gradient. fourth-order: along lines of "
           "hexahedra or quadrilaterals whose faces lie straight across, away from walls, second order elsewhere; a mesh "
           "at rest. auto: fourth-order where that is possible on at least half of the mesh");
+  s.value("courant", p.courant)
+      .range(1, 1000)
+      .doc(
+          "largest Courant number of a sub-step: convection becomes implicit in the cells whose explicit limit the sub-step "
+          "exceeds. For a few small cells that dictate many sub-steps, as at the edge of a gap; changes of the flow faster "
+          "than the sub-step are lost there. Absent: explicit convection limits the sub-steps everywhere");
+  s.check(
+      [&p] {
+        const bool is_explicit = p.viscous == ViscousTreatment::explicit_ ||
+                                 p.scheme == ExplicitScheme::runge_kutta || !p.bodies.empty();
+        if (p.courant && is_explicit)
+          return "it makes convection implicit beside the viscous term, which 'viscous: explicit', 'scheme: runge-kutta' "
+                 "and 'bodies' make explicit; remove it";
+        if (p.courant && p.face_values != FaceValues::second_order)
+          return "convection of fourth order is explicit; remove it or 'face-values'";
+        return "";
+      },
+      "courant");
   s.choice("volume-level", p.volume_level,
            {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
       .doc(

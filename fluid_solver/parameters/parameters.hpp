@@ -269,6 +269,8 @@ struct FluidParameters {
   ViscousTreatment viscous = ViscousTreatment::automatic;
   /// Largest ratio of implicit to explicit sub-step; absent if unlimited.
   std::optional<double> implicit_stretch;
+  /// Largest Courant number of a sub-step; absent if convection is explicit.
+  std::optional<double> courant;
   double pressure_tolerance = 1e-6;
   std::vector<config::ExpressionText> initial_velocity;    // [m/s]; empty means at rest
   std::optional<config::ExpressionText> initial_pressure;  // [Pa]

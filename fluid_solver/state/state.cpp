@@ -193,6 +193,7 @@ void visit(State<D>& s, bool moving, io::Archive archive) {
     if (s.implicit) field(archive, Entries::cells, "old-viscous-rate", s.rates_old.viscous);
     field(archive, Entries::owned_boundary, "old-shear", s.shear_old);
     field(archive, Entries::interior_faces, "old-flux-memory", s.memory_old);
+    field(archive, Entries::flux_faces, "old-flux", s.phi_old);
   }
   if (moving) {
     field(archive, Entries::points, "points", s.points);

@@ -250,6 +250,7 @@ struct State : History<D> {
   std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty without a model
 
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}
+  std::vector<double> phi_old;       ///< at t^{n-1}; empty if convection is explicit everywhere
   Rates<D> rates_old;                ///< at t^{n-1}
   Vectors<D> shear_old;              ///< viscous force on the boundary faces at t^{n-1} [N]
 
@@ -268,6 +269,8 @@ struct SubStep {
   Vectors<D> rate{};                       ///< mean of R over the step; empty with Adams-Bashforth
   Vectors<D> shear{};                      ///< with `rate`: mean viscous force on the boundary faces [N]
   bool yields = false;                     ///< walls of known mass respond to the pressure (Robin condition)
+  /// 1 in cells whose convection is implicit, else 0, per local cell; empty if there are none on any rank.
+  std::vector<double> fast{};
 };
 
 /// Sub-step with the history at its start, time level n. Constant until the next sub-step.

@@ -128,6 +128,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const double dt = sizes_.next(level(), history_.implicit, statistics_.sub_steps, dt_ - done, last);
     const double end = last ? dt_ : done + dt;
     SubStep<D> sub_step = path_.sub_step(level(), dt, end / dt_, accepted_.points, points, time_);
+    sub_step.fast = sizes_.fast_cells(level(), history_.implicit, dt);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
     if (history_.start == Start::after_impulse) {
       if (!step_.pressure_is_state()) history_.pressure = {};

@@ -255,6 +255,7 @@ void FractionalStep<D>::commit(State<D>& s) {
   static_cast<History<D>&>(s) = step_.by;
   for (const auto& term : projection_.terms()) term->commit(projected_, s);
   s.phi.swap(projected_.phi);
+  if (scene_.parameters.courant) s.phi_old = projected_.phi;
   s.u_old.swap(s.u);
   s.u.swap(u_);
   s.number = ++states_;

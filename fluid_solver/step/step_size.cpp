@@ -129,6 +129,27 @@ double StepSize<D>::friction_limit(Index cell, double angle, double size) const 
                                       : base::infinity;
 }
 
+/// Largest Courant number of a cell with an implicit viscous term.
+template <int D>
+double StepSize<D>::convective_limit(Index cell) const {
+  return std::max(implicit_convective_limit(4 / peclet_of_[cell]), courant_);
+}
+
+template <int D>
+std::vector<double> StepSize<D>::fast_cells(const State<D>& s, double size) {
+  std::vector<double> fast(mesh_.cells.n_local(), 0.0);
+  add_rates(s, true);
+  bool any = false;
+  for_rates(s, [&](Index c, double convection, double) {
+    if (convection * size <= implicit_convective_limit(4 / peclet_of_[c])) return;
+    fast[c] = 1;
+    any = true;
+  });
+  if (!parallel::any(mesh_.comm, any)) return {};
+  mesh_.cells.update_ghosts(fast);
+  return fast;
+}
+
 /// sum |phi - dV/dt|/2 and 2 nu sum g of each cell; with `peclet` also the largest |phi - dV/dt|/(nu g) of
 /// its faces. Returns the largest on this rank.
 template <int D>
@@ -215,7 +236,7 @@ bool StepSize<D>::explicit_viscous_limit_is_below(double size, const State<D>& s
 template <int D>
 StepLimits StepSize<D>::limits(const State<D>& s) {
   const double largest = add_rates(s, true);
-  const double lowest_implicit = implicit_table().least();
+  const double lowest_implicit = std::max(implicit_table().least(), courant_);
   double least[3] = {base::infinity, base::infinity, -largest};
   for_rates(s, [&](Index c, double convection, double diffusion) {
     const double size = std::sqrt(convection * convection + diffusion * diffusion),
@@ -225,7 +246,7 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
     if (few_faces_[c] && longest_implicit * lowest < least[1] * size)
       least[1] = std::min(least[1], friction_limit(c, std::atan2(convection, diffusion), size));
     if (lowest_implicit < least[1] * convection)
-      least[1] = std::min(least[1], implicit_convective_limit(4 / peclet_of_[c]) / convection);
+      least[1] = std::min(least[1], convective_limit(c) / convection);
   });
   MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
   peclet_ = -least[2];
@@ -243,7 +264,7 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
     bool friction = diffusion > convection;
     if (implicit) {
       const double own = friction_limit(c, angle, size);
-      limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : base::infinity;
+      limit = convection > 0 ? convective_limit(c) / convection : base::infinity;
       friction = own < limit;
       limit = std::min(limit, own);
     }
@@ -274,6 +295,7 @@ SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
   const auto& sound = parameters.compressibility;
   if (sound && sound->upstream_line && sound->upstream_line->end != UpstreamLineParameters::End::absorbing)
     echo_ = 2 * sound->upstream_line->length / solved_sound(sound, parameters.density, parameters.viscosity);
+  size_.set_courant(parameters.courant.value_or(0) / parameters.safety_factor);
 }
 
 template <int D>

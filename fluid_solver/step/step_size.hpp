@@ -44,6 +44,10 @@ class StepSize {
   /// Largest rate of the Coriolis force [1/s]; 0 if there is none.
   void set_frame_rate(double rate) { frame_rate_ = rate; }
   void set_fourth(bool fourth) { fourth_ = fourth; }
+  /// Lets implicit convection replace explicit one up to this Courant number.
+  void set_courant(double courant) { courant_ = courant; }
+  /// Marks cells in which explicit convection is unstable with steps of this size, see SubStep. Collective.
+  std::vector<double> fast_cells(const State<D>& state, double size);
   StepLimits limits(const State<D>& state);
   /// Cell that limits one treatment of the viscous term. Loops over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
@@ -60,12 +64,14 @@ class StepSize {
   void for_rates(const State<D>& state, const Use& use) const;
   double frame_limit() const;
   double friction_limit(Index cell, double angle, double size) const;
+  double convective_limit(Index cell) const;
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   const MomentumTerms<D>& terms_;
   double nu_, frame_rate_ = 0;
   ExplicitScheme scheme_;
   bool fourth_ = false;                  // the operators are of fourth order
+  double courant_ = 0;                   // largest Courant number of implicit convection; 0 if there is none
   std::vector<std::uint8_t> few_faces_;  // per owned cell: it has fewer faces than a box
   Vectors<2> rates_;                     // rates of convection and diffusion
   std::vector<double> peclet_of_;
@@ -94,6 +100,11 @@ class SubStepSize {
   /// Returns an equal part of the remaining time [s] within the limit of the present flow. `done`: sub-steps
   /// so far. Throws SolveFailure if there would be too many. Collective.
   double next(const State<D>& level, bool implicit, int done, double remaining, bool& last);
+  /// See StepSize; for a sub-step [s]. Collective.
+  std::vector<double> fast_cells(const State<D>& level, bool implicit, double dt) {
+    if (!parameters_.courant || !implicit) return {};
+    return size_.fast_cells(level, dt / parameters_.safety_factor);
+  }
   /// Limits at the start of the last step; not computed if nothing depends on them.
   const StepLimits& limits() const { return limits_; }
   /// Largest cell Reynolds number |phi|/(nu g) of a state. Collective.

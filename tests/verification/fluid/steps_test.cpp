@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranks, repetition, coupling schemes and step sizes.
 #include "fluid_case.hpp"
+#include "participant_case.hpp"
+#include "tests/support/saved_state.hpp"
 
 namespace couplet::fluid::test::steps_test {
 using namespace mesh;
@@ -201,6 +203,95 @@ TEST(ImplicitStretch, bounds_an_implicit_sub_step_in_limits_of_the_explicit_one)
     EXPECT_EQ(parts, std::ceil(explicit_parts / stretch - 1e-9)) << stretch;
   }
   EXPECT_EQ(sub_steps(1e6).first, 1);
+}
+
+/// Vortices carried by a mean flow through columns that are up to 40 times thinner than the mean one. In steps of 0.02 s the
+/// Courant number is 15 there and 0.2 elsewhere.
+FluidParameters carried_vortices(std::optional<double> courant, std::optional<double> step = {}) {
+  FluidParameters p = fluid_of(1, 0.002, 1e-11, "box");
+  p.viscous = ViscousTreatment::implicit;
+  p.courant = courant;
+  p.time_step = step;
+  p.initial_velocity = {{"1+0.3*sin(2*pi*x)*cos(pi*y)"}, {"-0.6*cos(2*pi*x)*sin(pi*y)"}};
+  all_sides(p, 2, boundary(BoundaryType::slip));
+  p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::periodic);
+  return p;
+}
+RawMesh thin_columns(double share = 0.99) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {20, 12, 1}, Vec3::Zero(), Vec3::Ones());
+  raw.periodic = {{"xmin", "xmax"}};
+  for (Vec3& x : raw.points) x.x() += share * std::sin(2 * std::numbers::pi * x.x()) / (2 * std::numbers::pi);
+  return raw;
+}
+Vec3 inner_swing(const Vec3& x, GlobalIndex, double t) {
+  const double shape = std::sin(std::numbers::pi * x.x()) * std::sin(std::numbers::pi * x.y());
+  return x + Vec3(0, 0.05 * shape * shape * std::sin(5 * t), 0);
+}
+
+TEST(ImplicitConvection, is_of_second_order_in_time_where_explicit_one_fails) {
+  const double end = 0.4;
+  const auto after = [&](int steps, const PointMotion& motion, std::optional<double> courant) {
+    auto c = std::make_unique<FluidCase<2>>(MPI_COMM_WORLD, thin_columns(),
+                                            carried_vortices(courant, end / steps), motion);
+    c->run(end, steps);
+    return c;
+  };
+  EXPECT_THROW(after(20, {}, {}), SolveFailure);
+  for (const PointMotion& motion : {PointMotion(), PointMotion(inner_swing)}) {
+    std::vector<std::unique_ptr<FluidCase<2>>> runs;
+    for (const int steps : {20, 40, 80, 160}) runs.push_back(after(steps, motion, 20));
+    const double d[3] = {difference(*runs[0], *runs[1]), difference(*runs[1], *runs[2]),
+                         difference(*runs[2], *runs[3])};
+    printf("implicit convection: %.2e %.2e %.2e\n", d[0], d[1], d[2]);
+    RecordProperty(motion ? "slope_moving" : "slope", std::to_string(std::log2(d[1] / d[2])));
+    EXPECT_GE(std::log2(d[1] / d[2]), 1.8);
+  }
+}
+
+TEST(ImplicitConvection, keeps_a_uniform_flow_on_a_moving_mesh_and_cells_that_do_not_need_it) {
+  FluidParameters uniform = carried_vortices(20, 0.04);
+  uniform.initial_velocity = {{"1"}, {"0"}};
+  FluidCase<2> c(MPI_COMM_WORLD, thin_columns(), uniform, inner_swing);
+  c.run(0.4, 10);
+  EXPECT_LT(c.largest_velocity_error([](const Vec3&) { return Vec3(1, 0, 0); }), 1e-9);
+  const auto few = [](std::optional<double> courant) {
+    auto slow =
+        std::make_unique<FluidCase<2>>(MPI_COMM_WORLD, thin_columns(0), carried_vortices(courant, 0.01));
+    slow->run(0.1, 10);
+    return slow->state().u;
+  };
+  EXPECT_EQ(few(20), few({}));
+}
+
+TEST(ImplicitConvection, goes_on_from_a_checkpoint_bit_for_bit_and_alike_on_any_number_of_ranks) {
+  const auto make = [](std::optional<double> courant, MPI_Comm comm = MPI_COMM_WORLD) {
+    return std::make_unique<FluidParticipant<2>>(
+        distribute(comm, parallel::comm_rank(comm) == 0 ? thin_columns() : RawMesh()),
+        carried_vortices(courant), FluidContext{}, MotionLink{});
+  };
+  const auto first = make(20), second = make(20), alone = make(20, MPI_COMM_SELF), many = make({});
+  take_steps(*first, 0, 4);
+  support::SavedState(*first).load_into(*second);
+  take_steps(*first, 4, 8);
+  take_steps(*second, 4, 8);
+  EXPECT_EQ(first->fluid().state().u, second->fluid().state().u);
+  take_steps(*alone, 0, 8);
+  take_steps(*many, 0, 8);
+  EXPECT_EQ(first->fluid().statistics().all_sub_steps, 8);
+  EXPECT_GT(many->fluid().statistics().all_sub_steps, 8 * 10);
+  std::vector<Vec<2>> by_id(alone->fluid().mesh().cells.n_global());
+  for (Index c = 0; c < alone->fluid().mesh().cells.n_owned(); ++c)
+    by_id[alone->fluid().mesh().cell_id[c]] = alone->fluid().state().u[c];
+  double ranks = 0, steps = 0;
+  for (Index c = 0; c < first->fluid().mesh().cells.n_owned(); ++c) {
+    const Vec<2>& u = first->fluid().state().u[c];
+    ranks = std::max(ranks, (u - by_id[first->fluid().mesh().cell_id[c]]).norm());
+    steps = std::max(steps, (u - many->fluid().state().u[c]).norm());
+  }
+  printf("implicit convection: %.2e from one rank, %.2e from %ld sub-steps\n", ranks, steps,
+         many->fluid().statistics().all_sub_steps);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, ranks), 1e-7);
+  EXPECT_LT(parallel::max(MPI_COMM_WORLD, steps), 0.02);
 }
 
 TEST(ImpulsiveStart, loads_the_first_step_with_the_impulse_of_the_fluid_set_in_motion) {
