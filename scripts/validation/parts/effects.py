@@ -5,6 +5,7 @@ import math
 import pathlib
 import re
 
+import atlas
 import yaml
 
 from validation.parts import error_estimates
@@ -66,3 +67,19 @@ def truths(job, only=""):
             if one.get("truth") is None or abs(found - one["truth"]) > 0.05 * one["truth"] + 1e-3:
                 off.append(f"{name}: {found:.3g}")
     return "all as recorded" if not off else "; ".join(off), not off
+
+
+def unstable(job, *names):
+    """Squares of these maps of the atlas whose runs stopped: those that stop again, and those that hold now, with their errors."""
+    runner, stopped, holding, wrong = atlas.Runner(job.build, job.scratch), 0, [], []
+    for name in names:
+        for key, before in atlas.read(job.root / f"docs/stability/{name}.csv").items():
+            if before.outcome != atlas.REFUSED:
+                continue
+            now = atlas.judged(*atlas.maps()[name].run(*key, runner))
+            stopped += now.outcome == atlas.REFUSED
+            if now.outcome != atlas.REFUSED:
+                (holding if now.outcome == atlas.HOLDS else wrong).append(f"{name}, {key[0]}, {key[1]:g}, {key[2]:g}")
+    said = [f"{stopped} of {stopped + len(holding) + len(wrong)} stop"]
+    said += [f"{word}: {'; '.join(those)}" for word, those in (("hold within 5 %", holding), ("run on unsound", wrong)) if those]
+    return ", ".join(said), not wrong
