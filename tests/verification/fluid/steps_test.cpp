@@ -231,7 +231,7 @@ Vec3 inner_swing(const Vec3& x, GlobalIndex, double t) {
 TEST(ImplicitConvection, is_of_second_order_in_time_where_explicit_one_fails) {
   const double end = 0.4;
   const auto after = [&](int steps, const PointMotion& motion, std::optional<double> courant) {
-    auto c = std::make_unique<FluidCase<2>>(MPI_COMM_WORLD, thin_columns(),
+    auto c = std::make_unique<FluidCase<2>>(MPI_COMM_SELF, thin_columns(),
                                             carried_vortices(courant, end / steps), motion);
     c->run(end, steps);
     return c;
