@@ -115,20 +115,35 @@ def tip(job, rho, mu, step):
     return run.probes("solid")["tip x [m]"][-1], run.report("coupler")["errors"]["step"]
 
 
+def limit_of(tips):
+    """Limit of the two finest steps for the order that they show (1 to 2)."""
+    order = min(2, max(1, math.log2(abs(tips[1] - tips[2]) / abs(tips[2] - tips[3]))))
+    return tips[3] + (tips[3] - tips[2]) / (2**order - 1)
+
+
+def coarsest(job, rho, mu):
+    """Compares the tip in steps of 10 ms with the limit."""
+    tips = [tip(job, rho, mu, step)[0] for step in STEPS]
+    if None in tips:
+        return "ended before", False
+    limit = limit_of(tips)
+    return f"{1e3 * tips[0]:.2f} mm, {100 * (tips[0] / limit - 1):+.2f} % of {1e3 * limit:.2f} mm", abs(tips[0] / limit - 1) <= 0.02
+
+
 def estimates(job):
-    """Compares the estimates for steps of 10, 5 and 2.5 ms, in the cases that finish, with the limit of the two finest for the order that they show (1 to 2)."""
+    """Compares the estimates for steps of 10, 5 and 2.5 ms, in the cases that finish, with the limit."""
     ratios = []
     for rho, mu in ((rho, mu) for rho in (1000, 100, 10, 1) for mu in (10, 1, 0.1, 0.01)):
         found = [tip(job, rho, mu, step) for step in STEPS]
         tips = [value for value, _ in found]
         if None in tips:
             continue
-        order = min(2, max(1, math.log2(abs(tips[1] - tips[2]) / abs(tips[2] - tips[3]))))
-        limit = tips[3] + (tips[3] - tips[2]) / (2**order - 1)
+        limit = limit_of(tips)
         truths = [(abs(value / limit - 1), told) for value, told in found[:3]]
         ratios += [told / truth for truth, told in truths if truth > 1e-4]  # less is what the coupling's tolerance leaves
     good = sum(1 / 3 <= r <= 3 for r in ratios)
-    return (f"{good} of {len(ratios)}; {sum(r > 3 for r in ratios)} above three times the truth, {sum(r < 1 / 3 for r in ratios)} below a third; "
+    return (f"{good} of {len(ratios)}; {sum(r > 3 for r in ratios)} above three times the truth, {sum(r < 1 / 3 for r in ratios)} below a third, {sum(r < 1 / 5 for r in ratios)} "
+            f"below a fifth; "
             f"{min(ratios):.2f} to {max(ratios):.1f} times it"), good >= 0.8 * len(ratios)
 
 
