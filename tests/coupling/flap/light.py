@@ -67,30 +67,41 @@ def main():
             shutil.copy(SOURCE / file, here)
 
         change = ended("1 kg/m^3, 10 Pa s runs", launch(here, "lightest", 1, 10, 0.01, 2))
-        require("its first failure is tried again, implicit", bool(change) and "the semi-implicit step failed" in change[2], change and change[0])
+        require("its first step is tried again, implicit", bool(change) and "a semi-implicit step" in change[2], change and change[0])
         neighbour = launch(here, "neighbour", 1, 10, 0.01, 2, "coupling.scheme=semi-implicit")
         require("the semi-implicit neighbour fails", neighbour.returncode != 0 and "did not converge" in neighbour.stdout, neighbour.returncode)
+
+        # With the default time scheme its first semi-implicit steps end in 84 passes, at a tenth of the motion.
+        damped = "participants.solid.time-scheme={type: generalised-alpha}"
+        for scheme in ("auto", "implicit"):
+            ended(f"1 kg/m^3, 10 Pa s runs, {scheme}", launch(here, f"start-{scheme}", 1, 10, 0.01, 2, damped, f"coupling.scheme={scheme}"))
+        first, second = tip(here / "start-auto")[-1], tip(here / "start-implicit")[-1]
+        require("it starts as in the implicit scheme", abs(first / second - 1) < 0.02, f"{first:.5g} and {second:.5g} m")
 
         require("3000 kg/m^3, 1 Pa s stays semi-implicit", ended("3000 kg/m^3, 1 Pa s runs", launch(here, "heavy", 3000, 1, 0.01, 8, *COARSE)) is None)
 
         light = (1, 10, 0.0025)
-        # Fields at step 12, too: what a participant learns from them is in its state.
-        keep = (*COARSE, "simulation.checkpoint={interval: 0.01, keep: 99}", "simulation.output.interval=0.03")
-        change = ended("1 kg/m^3, 10 Pa s runs in short steps", launch(here, "light", *light, 40, *keep))
-        require("its renewals change the scheme at the sixth step", bool(change) and "in 6 steps in a row" in change[2] and float(change[1]) == 0.015, change and change[0])
-        ended("the semi-implicit neighbour runs", launch(here, "swings", *light, 40, "coupling.scheme=semi-implicit", *keep))
+        change = ended("1 kg/m^3, 10 Pa s runs in short steps", launch(here, "light", *light, 40, *COARSE))
+        require("it is implicit from its first step on", bool(change) and float(change[1]) == 0, change and change[0])
+        ended("the semi-implicit neighbour runs", launch(here, "swings", *light, 40, "coupling.scheme=semi-implicit", *COARSE))
         smooth, rough = zigzag(tip(here / "light")), zigzag(tip(here / "swings"))
         require("it is smooth, where the neighbour oscillates", smooth < 0.05 and rough > 0.5, f"{smooth:.3f} and {rough:.3f}")
-        wanted = state(here / "light/checkpoints/step-00000012")
+
+        renewed = (10, 10, 0.0025, 12)
+        # Fields at step 12, too: what a participant learns from them is in its state.
+        keep = (*COARSE, "simulation.checkpoint={interval: 0.01, keep: 99}", "simulation.output.interval=0.03")
+        change = ended("10 kg/m^3, 10 Pa s runs in short steps", launch(here, "renewed", *renewed, *keep))
+        require("its renewals change the scheme at the sixth step", bool(change) and "in 6 steps in a row" in change[2] and float(change[1]) == 0.015, change and change[0])
+        wanted = state(here / "renewed/checkpoints/step-00000012")
         for start in (4, 8):
             saved = here / f"from-{start}"
-            shutil.copytree(here / f"light/checkpoints/step-{start:08d}", saved)
-            ended(f"goes on from step {start}", launch(here, f"on-{start}", *light, 12, *keep, restart=saved))
+            shutil.copytree(here / f"renewed/checkpoints/step-{start:08d}", saved)
+            ended(f"goes on from step {start}", launch(here, f"on-{start}", *renewed, *keep, restart=saved))
             found = state(here / f"on-{start}/checkpoints/step-00000012")
             apart = [key for key in wanted if key not in found or not numpy.array_equal(wanted[key], found[key], equal_nan=True)]
             require(f"from step {start} bit for bit", not apart and len(wanted) > 40, ", ".join(apart[:6]))
-        ended("on 2 ranks", launch(here, "ranks", *light, 12, *keep, ranks=2))
-        one, two = tip(here / "light")[:12], tip(here / "ranks")
+        ended("on 2 ranks", launch(here, "ranks", *renewed, *keep, ranks=2))
+        one, two = tip(here / "renewed"), tip(here / "ranks")
         require("the same on 2 ranks", float(numpy.abs(one - two).max()) < 1e-4 * float(numpy.abs(one).max()), float(numpy.abs(one - two).max()))
 
 
