@@ -104,7 +104,9 @@ constexpr double adams_bashforth_error = 5. / 12;
 // 5/12 for the little convection. For a flow held by friction at rate r, u' = f - r u, the error is r u''
 // dt^3/8, reduced by 1 + r dt/2 with that rule. Adams-Bashforth gives 5/12 + 1/24.
 constexpr double driven_error = 1. / 12, held_error = 1. / 8, held_explicitly = 11. / 24;
-constexpr double hardly = 0.1;   // share of convection in the rate of change of a flow that answers linearly
+constexpr double hardly = 0.1;  // share of convection in the rate of change of a flow that answers linearly
+constexpr double quasi_steady =
+    0.5;                         // phase [rad] across the mesh below which pressures follow the flow as one
 constexpr double window = 0.25;  // recent means cover about this part of the elapsed time
 
 /// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
@@ -344,10 +346,17 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const bool acts =
         driving_.is_possible() && driving_.acts(view_.mesh.comm, places, view_.fluid.state().time, dt_old_,
                                                 view_.fluid.state().mesh_flux);
-    // The errors of a wave travel with it and add up.
-    const bool stays = !view_.parameters().is_compressible() && carried_ <= hardly * changed_;
+    // The errors of a wave travel with it and add up, unless the flow changes too slowly for one.
+    const bool stays = !has_waves(places) && carried_ <= hardly * changed_;
     if (acts) return stays ? std::min(sum, left_of_late_ / steps_.size()) : sum;
     return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
+  }
+  /// True if sound crosses the mesh, with its boundary at `places`, in no small part of the time in which the flow changes.
+  bool has_waves(std::span<const Vec3> places) const {
+    const FluidParameters& p = view_.parameters();
+    if (!p.is_compressible()) return false;
+    const double across = mesh::extent_of(view_.mesh.comm, places).size().maxCoeff();
+    return changed_ * across > quasi_steady * largest_ * p.sound_speed();
   }
   double recovered_difference() const {
     const State<D>& s = view_.fluid.state();
