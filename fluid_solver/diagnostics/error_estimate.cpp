@@ -250,7 +250,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     if (knows_third) {
       for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
         squares[6] += std::max(0., view_.fluid.state().phi[f]);
-      squares[6] += waves_out();
+      if (driving_.is_possible() && has_waves()) squares[6] += waves_out();
       MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
@@ -280,6 +280,14 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     dt_old_ = dt;
     ++seen_;
   }
+  /// True if sound crosses the mesh in no small part of the time in which the flow changes. Collective.
+  bool has_waves() {
+    const FluidParameters& p = view_.parameters();
+    if (!p.is_compressible()) return false;
+    if (across_ == 0)
+      across_ = mesh::extent_of(view_.mesh.comm, view_.fluid.points_at_rest()).size().maxCoeff();
+    return changed_ * across_ > quasi_steady * largest_ * p.sound_speed();
+  }
   /// Volume of which the waves leave through absorbing boundaries of this rank in a second [m^3/s].
   double waves_out() const {
     const FluidParameters& p = view_.parameters();
@@ -296,7 +304,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     }
     return p.sound_speed() * area;
   }
-  diagnostics::ErrorParts parts() const {
+  diagnostics::ErrorParts parts() {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
     const double speed = size(view_.fluid.state().u);
@@ -338,7 +346,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     squares = parallel::sum(view_.mesh.comm, squares), whole = parallel::sum(view_.mesh.comm, whole);
     return whole > 0 ? std::sqrt(squares / whole) : 0;
   }
-  double step_part() const {
+  double step_part() {
     const double sum = steps_.over_size();
     if (!(steps_.size() > 0)) return sum;
     std::vector<Vec3> places;
@@ -347,16 +355,9 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
         driving_.is_possible() && driving_.acts(view_.mesh.comm, places, view_.fluid.state().time, dt_old_,
                                                 view_.fluid.state().mesh_flux);
     // The errors of a wave travel with it and add up, unless the flow changes too slowly for one.
-    const bool stays = !has_waves(places) && carried_ <= hardly * changed_;
+    const bool stays = !has_waves() && carried_ <= hardly * changed_;
     if (acts) return stays ? std::min(sum, left_of_late_ / steps_.size()) : sum;
     return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
-  }
-  /// True if sound crosses the mesh, with its boundary at `places`, in no small part of the time in which the flow changes.
-  bool has_waves(std::span<const Vec3> places) const {
-    const FluidParameters& p = view_.parameters();
-    if (!p.is_compressible()) return false;
-    const double across = mesh::extent_of(view_.mesh.comm, places).size().maxCoeff();
-    return changed_ * across > quasi_steady * largest_ * p.sound_speed();
   }
   double recovered_difference() const {
     const State<D>& s = view_.fluid.state();
@@ -420,6 +421,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
   double left_of_late_ = 0;  // norm, the largest of late
   double largest_ = 0;       // mean speed of the run [m/s]
+  double across_ = 0;        // largest extent of the mesh at rest [m]; 0 if not known
   double carried_ = 0,
          changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
 };
