@@ -106,7 +106,7 @@ constexpr double adams_bashforth_error = 5. / 12;
 constexpr double driven_error = 1. / 12, held_error = 1. / 8, held_explicitly = 11. / 24;
 constexpr double hardly = 0.1;  // share of convection in the rate of change of a flow that answers linearly
 constexpr double quasi_steady =
-    0.5;                         // phase [rad] across the mesh below which pressures follow the flow as one
+    0.2;                         // phase [rad] across the mesh below which pressures follow the flow as one
 constexpr double window = 0.25;  // recent means cover about this part of the elapsed time
 
 /// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
