@@ -105,9 +105,8 @@ constexpr double adams_bashforth_error = 5. / 12;
 // dt^3/8, reduced by 1 + r dt/2 with that rule. Adams-Bashforth gives 5/12 + 1/24.
 constexpr double driven_error = 1. / 12, held_error = 1. / 8, held_explicitly = 11. / 24;
 constexpr double hardly = 0.1;  // share of convection in the rate of change of a flow that answers linearly
-constexpr double quasi_steady =
-    0.2;                         // phase [rad] across the mesh below which pressures follow the flow as one
-constexpr double window = 0.25;  // recent means cover about this part of the elapsed time
+constexpr double quasi_steady = 0.2;  // phase of sound across the mesh [rad] below which there are no waves
+constexpr double window = 0.25;       // recent means cover about this part of the elapsed time
 
 /// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
 template <int D>
@@ -288,17 +287,15 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       across_ = mesh::extent_of(view_.mesh.comm, view_.fluid.points_at_rest()).size().maxCoeff();
     return changed_ * across_ > quasi_steady * largest_ * p.sound_speed();
   }
-  /// Volume of which the waves leave through absorbing boundaries of this rank in a second [m^3/s].
+  /// Volume of a compressible fluid that waves leave in a second through absorbing boundaries of this rank [m^3/s].
   double waves_out() const {
     const FluidParameters& p = view_.parameters();
-    if (!p.is_compressible()) return 0;
     const auto& line = p.compressibility->upstream_line;
     const bool line_absorbs = line && line->end == UpstreamLineParameters::End::absorbing;
     double area = 0;
     for (const mesh::Patch& patch : view_.mesh.patches) {
-      const auto b = p.boundaries.find(patch.name);
-      if (b == p.boundaries.end()) continue;
-      if (!b->second.absorbing && !(line_absorbs && b->second.type == BoundaryType::inlet)) continue;
+      const BoundaryParameters& b = p.boundaries.at(patch.name);
+      if (!b.absorbing && !(line_absorbs && b.type == BoundaryType::inlet)) continue;
       for (Index f = patch.first; f < patch.first + patch.count; ++f)
         area += view_.fluid.state().placement->area[f].norm();
     }

@@ -2,6 +2,7 @@
 // A fluid alone as a participant: steps and the moment on its walls.
 #pragma once
 
+#include "common/parallel/collective.hpp"
 #include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/participant.hpp"
 #include "tests/support/test.hpp"
@@ -15,6 +16,17 @@ inline void take_steps(FluidParticipant<2>& run, int begin, int end, double dt =
     run.solve({});
     run.accept_step();
   }
+}
+
+/// Largest difference of the cells' velocities between a run and one that has the whole mesh on this rank.
+inline double apart(const FluidParticipant<2>& run, const FluidParticipant<2>& whole) {
+  const auto &cells = run.fluid().mesh(), &all = whole.fluid().mesh();
+  std::vector<Vec<2>> by_id(all.cells.n_global());
+  for (Index c = 0; c < all.cells.n_owned(); ++c) by_id[all.cell_id[c]] = whole.fluid().state().u[c];
+  double largest = 0;
+  for (Index c = 0; c < cells.cells.n_owned(); ++c)
+    largest = std::max(largest, (run.fluid().state().u[c] - by_id[cells.cell_id[c]]).norm());
+  return parallel::max(MPI_COMM_WORLD, largest);
 }
 
 /// About the origin [N m/m].
