@@ -261,7 +261,8 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
       .doc(
           "largest Courant number of a sub-step: convection becomes implicit in the cells whose explicit limit the sub-step "
           "exceeds. For a few small cells that dictate many sub-steps, as at the edge of a gap; changes of the flow faster "
-          "than the sub-step are lost there. Absent: explicit convection limits the sub-steps everywhere");
+          "than the sub-step are lost there. Above some 20, its equations may cost more than the sub-steps that they "
+          "save. Absent: explicit convection limits the sub-steps everywhere");
   s.check(
       [&p] {
         const bool is_explicit = p.viscous == ViscousTreatment::explicit_ ||
@@ -269,6 +270,7 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
         if (p.courant && is_explicit)
           return "it makes convection implicit beside the viscous term, which 'viscous: explicit', 'scheme: runge-kutta' "
                  "and 'bodies' make explicit; remove it";
+        if (p.courant && p.time_step) return "'time-step' gives the sub-steps; remove one of the two";
         if (p.courant && p.face_values != FaceValues::second_order)
           return "convection of fourth order is explicit; remove it or 'face-values'";
         return "";

@@ -173,8 +173,9 @@ void declare(config::Section& s, CompressibilityParameters& p) {
                  {{"closed", End::closed}, {"open", End::open}, {"absorbing", End::absorbing}})
             .doc(
                 "far end of the tube. closed: there flows in what the inlets prescribe. open: a reservoir at 'pressure'; "
-                "the inlets then prescribe zero. absorbing: the tube goes on, and a wave of 'pressure' and "
-                "of the flow that the inlets prescribe comes through it");
+                "the inlets then prescribe zero. absorbing: the tube goes on, and the pressure and the mean flow that the "
+                "inlets prescribe come through it; of a flow that oscillates, half enters as a wave, because a whole "
+                "wave has its own pressure, too");
         l.value("pressure", line.pressure).unit("Pa").plausible(1e-6, 1e9).doc("pressure at the far end");
         l.check(
             [&line] {
