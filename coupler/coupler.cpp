@@ -84,19 +84,17 @@ std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
     if (std::string reason = d->stop(); !reason.empty()) return app::StepFailure(std::move(reason), false);
   const long before = iterations_;
   auto failure = attempt_once(step);
-  const bool drags = !failure && scheme_.drags(iterations_ - before);
   // Retries only failures of the iteration: no scheme helps a failed first pass.
-  if (!drags && (!failure || !failure->halving_helps || iterations_ - before < 2)) return failure;
+  if (!failure || !failure->halving_helps || iterations_ - before < 2) return failure;
   if (!scheme_.failed()) return failure;
   auto learnt = std::move(accelerator_);
   start_acceleration();
   if (attempt_once(step)) {
     scheme_.withdraw();
     accelerator_ = std::move(learnt);
-    return drags ? attempt_once(step) : failure;
+    return failure;
   }
-  SchemeChoice::tell(step.time, drags ? "a semi-implicit step hardly converged"
-                                      : "the semi-implicit step failed: " + failure->reason);
+  SchemeChoice::tell(step.time, "the semi-implicit step failed: " + failure->reason);
   return {};
 }
 

@@ -51,10 +51,8 @@ class SchemeChoice {
   void renewed() { ++renewals_; }
   /// Call after a step that ended at `time`. Returns true, and reports it, if further steps are implicit.
   bool accepted(double time);
-  /// True after a semi-implicit step that took so many passes that it hardly converged: its answer may be far off.
-  bool drags(long passes) const { return is_open_ && passes >= hopeless; }
-  /// Call after a failed step or one that drags. Returns true if it must be repeated as an implicit one, set in now(). On
-  /// success call tell(), on failure withdraw().
+  /// Call after a failed step. Returns true if it must be repeated as an implicit one, set in now(). On success call
+  /// tell(), on failure withdraw().
   bool failed();
   static void tell(double time, const std::string& why);
   void withdraw() { is_open_ = true, now_ = coupling::Scheme::semi_implicit; }
@@ -65,10 +63,10 @@ class SchemeChoice {
   }
   void restore(const std::array<double, 2>& state);
 
-  /// Limits: renewals within a step, consecutive steps with so many, and passes after which it is repeated.
+  /// Limits: renewals within a step, and consecutive steps with so many.
   /// A start from rest takes up to five (perpendicular flap of 42 kg/m^3 in a fluid of 1 Pa s). If it takes six, the
   /// implicit scheme costs no more (docs/validation/strong-coupling.md).
-  static constexpr int too_many = 3, most_in_a_row = 6, hopeless = 25;
+  static constexpr int too_many = 3, most_in_a_row = 6;
   /// Limit of the recent share of steps with renewals (exponential mean). Alternating renewals leave an
   /// oscillation that is small relative to the load but not to its smallest component (lift of FSI1: 10 %).
   static constexpr double most_renewed = 0.4, memory = 50;

@@ -27,7 +27,8 @@ class Renewal {
   /// Starts the first pass of a step, whose prediction uses w.
   void start(const Vectors<D>& w);
   /// Takes a further pass with w. `unseen`: friction force due to w - guess(), relative to the load. Returns
-  /// true if the prediction must be repeated with guess(). Collective.
+  /// true if the prediction must be repeated with guess(). Throws SolveFailure if it was repeated often and still
+  /// misses too much. Collective.
   bool wanted(MPI_Comm comm, const Vectors<D>& w, double unseen);
   const Vectors<D>& guess() const { return guess_; }
   int count() const { return count_; }

@@ -211,4 +211,25 @@ TEST(Renewal, waits_for_a_better_velocity_than_a_relaxed_pass_has) {
   EXPECT_TRUE(shrinking.wanted(MPI_COMM_SELF, at(1.5), 1)) << "the gap of 1 became 0.5";
 }
 
+TEST(Renewal, renews_for_a_wall_that_a_first_correction_throws_about_whatever_its_third_pass_changes) {
+  const auto at = [](double w) { return Vectors<2>{Vec<2>(w, 0)}; };
+  Renewal<2> renewal;
+  renewal.start(at(0));
+  EXPECT_FALSE(renewal.wanted(MPI_COMM_SELF, at(-10), 1));
+  EXPECT_TRUE(renewal.wanted(MPI_COMM_SELF, at(-9.9), 0.02));
+}
+
+TEST(Renewal, fails_where_four_better_predictions_still_miss_two_percent_of_the_load) {
+  const auto at = [](double w) { return Vectors<2>{Vec<2>(w, 0)}; };
+  const auto after_four = [&](double unseen) {
+    Renewal<2> renewal;
+    renewal.start(at(0));
+    for (int pass = 2, k = 1; renewal.count() < 4 && pass < 40; ++pass) renewal.wanted(MPI_COMM_SELF, at(k = -k), 0.02);
+    EXPECT_EQ(renewal.count(), 4);
+    for (int pass = 0; pass < 3; ++pass) EXPECT_FALSE(renewal.wanted(MPI_COMM_SELF, at(1), unseen));
+  };
+  after_four(0.005);
+  EXPECT_THROW(after_four(0.02), SolveFailure);
+}
+
 }  // namespace couplet::fluid::test::light_wall_test

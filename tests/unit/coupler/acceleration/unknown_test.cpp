@@ -188,10 +188,7 @@ TEST(SchemeChoice, a_scheme_that_was_asked_for_stays) {
 
 TEST(SchemeChoice, a_failed_step_is_tried_once_as_an_implicit_one_until_withdrawn) {
   SchemeChoice choice{{}};
-  EXPECT_FALSE(choice.drags(SchemeChoice::hopeless - 1));
-  EXPECT_TRUE(choice.drags(SchemeChoice::hopeless));
   EXPECT_TRUE(choice.failed());
-  EXPECT_FALSE(choice.drags(SchemeChoice::hopeless));
   EXPECT_EQ(choice.now(), Scheme::implicit);
   EXPECT_FALSE(choice.failed());
   choice.withdraw();
