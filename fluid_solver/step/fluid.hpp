@@ -27,8 +27,8 @@ class Renewal {
   /// Starts the first pass of a step, whose prediction uses w.
   void start(const Vectors<D>& w);
   /// Takes a further pass with w. `unseen`: friction force due to w - guess(), relative to the load. Returns
-  /// true if the prediction must be repeated with guess(). Throws SolveFailure if it was repeated often and still
-  /// misses too much. Collective.
+  /// true if the prediction must be repeated with guess(). Throws SolveFailure if it was
+  /// repeated often and still misses too much. Collective.
   bool wanted(MPI_Comm comm, const Vectors<D>& w, double unseen);
   const Vectors<D>& guess() const { return guess_; }
   int count() const { return count_; }
@@ -42,7 +42,7 @@ class Renewal {
 
   Vectors<D> guess_, gap_;  // gap_: w - guess at the last renewal
   Vectors<D> last_;         // w of the previous pass
-  double factor_ = 1, slowest_ = 0, last_change_ = 0;
+  double factor_ = 1, slowest_ = 0, last_change_ = 0, unseen_before_ = 0;
   int passes_ = 0;  // with the current prediction
   int count_ = 0;   // renewals in the step
 };

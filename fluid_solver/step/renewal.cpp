@@ -14,10 +14,6 @@ namespace {
 // Limits of the unseen share of the load: for growing oscillations, and for heavy structures, whose velocity
 // hardly changes in a third pass. The latter do not oscillate, so only a poor guess is corrected.
 constexpr double largest_unseen_share = 0.001, largest_of_heavy = 0.05, slow = 0.1;
-// In its second pass a light structure may leave more of the load unseen than this, whatever its third pass changes.
-constexpr double share_of_light = 0.5;
-// A flap of 1 kg/m^3 in 1 Pa s whose last prediction misses 2 % of the load moves by 16 % too little.
-constexpr double most_missed = 0.01;
 // In the third pass w is better than the guess. After a renewal this holds in the second pass if the gap has
 // decreased by this factor, as with quasi-Newton methods but not with relaxation.
 constexpr int enough_passes = 3;
@@ -38,7 +34,7 @@ template <int D>
 void Renewal<D>::start(const Vectors<D>& w) {
   guess_ = w;
   last_ = w;
-  last_change_ = 0;
+  last_change_ = unseen_before_ = 0;
   gap_.clear();
   factor_ = 1;
   passes_ = 1;
@@ -87,18 +83,17 @@ bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen) {
   ++passes_;
   const double left = contraction(comm, w);
   // Quasi-Newton methods hide the weight of the structure once they know it, so the slowest step is used.
-  if (count_ == 0 && passes_ == enough_passes && unseen > largest_unseen_share)
+  // A second pass that overshoots may leave little in the third.
+  const double most_unseen = std::max(unseen, std::exchange(unseen_before_, unseen));
+  if (count_ == 0 && passes_ == enough_passes && most_unseen > largest_unseen_share)
     slowest_ = std::max(slowest_, left);
-  if (count_ == 0 && passes_ < enough_passes && unseen > share_of_light) slowest_ = std::max(slowest_, 1.);
   const double allowed = slowest_ > slow ? largest_unseen_share : largest_of_heavy;
   if (unseen <= allowed || !is_good(comm, w)) return false;
-  if (count_ == most) {
-    if (unseen <= most_missed) return false;
+  if (count_ == most)
     throw SolveFailure(
         "After {} better predictions in the step, the friction of the fluid still misses {:.2g} % of the load (limit {:g} "
         "%): the structure is too light for semi-implicit steps. Try `coupling.scheme: implicit`.",
-        most, 100 * unseen, 100 * most_missed);
-  }
+        most, 100 * unseen, 100 * allowed);
   move_guess(comm, w);
   passes_ = 1;
   ++count_;

@@ -67,25 +67,25 @@ def main():
             shutil.copy(SOURCE / file, here)
 
         change = ended("1 kg/m^3, 10 Pa s runs", launch(here, "lightest", 1, 10, 0.01, 2))
-        require("its first step is tried again, implicit", bool(change) and "a semi-implicit step" in change[2], change and change[0])
+        require("its first step is tried again, implicit", bool(change) and "the semi-implicit step failed" in change[2], change and change[0])
         neighbour = launch(here, "neighbour", 1, 10, 0.01, 2, "coupling.scheme=semi-implicit")
-        require("the semi-implicit neighbour fails", neighbour.returncode != 0 and "did not converge" in neighbour.stdout, neighbour.returncode)
+        require("the semi-implicit neighbour fails", neighbour.returncode != 0 and "% of the load (limit 1 %)" in neighbour.stdout, neighbour.returncode)
 
-        # With the default time scheme its first semi-implicit steps end in 84 passes, at a tenth of the motion.
+        # With the default time scheme semi-implicit steps converge to a tenth of the motion in 10 Pa s, and to half of it in 3 Pa s.
         damped = "participants.solid.time-scheme={type: generalised-alpha}"
-        for scheme in ("auto", "implicit"):
-            ended(f"1 kg/m^3, 10 Pa s runs, {scheme}", launch(here, f"start-{scheme}", 1, 10, 0.01, 2, damped, f"coupling.scheme={scheme}"))
-        first, second = tip(here / "start-auto")[-1], tip(here / "start-implicit")[-1]
-        require("it starts as in the implicit scheme", abs(first / second - 1) < 0.02, f"{first:.5g} and {second:.5g} m")
+        for viscosity in (3, 10):
+            for scheme in ("auto", "implicit"):
+                ended(f"1 kg/m^3, {viscosity} Pa s runs, {scheme}", launch(here, f"{viscosity}-{scheme}", 1, viscosity, 0.01, 2, damped, f"coupling.scheme={scheme}", *COARSE))
+            first, second = (tip(here / f"{viscosity}-{scheme}") for scheme in ("auto", "implicit"))
+            require("it starts as in the implicit scheme", float(abs(first / second - 1).max()) < 0.02, f"{first} and {second} m")
 
         require("3000 kg/m^3, 1 Pa s stays semi-implicit", ended("3000 kg/m^3, 1 Pa s runs", launch(here, "heavy", 3000, 1, 0.01, 8, *COARSE)) is None)
 
         light = (1, 10, 0.0025)
         change = ended("1 kg/m^3, 10 Pa s runs in short steps", launch(here, "light", *light, 40, *COARSE))
         require("it is implicit from its first step on", bool(change) and float(change[1]) == 0, change and change[0])
-        ended("the semi-implicit neighbour runs", launch(here, "swings", *light, 40, "coupling.scheme=semi-implicit", *COARSE))
-        smooth, rough = zigzag(tip(here / "light")), zigzag(tip(here / "swings"))
-        require("it is smooth, where the neighbour oscillates", smooth < 0.05 and rough > 0.5, f"{smooth:.3f} and {rough:.3f}")
+        smooth = zigzag(tip(here / "light"))
+        require("it is smooth", smooth < 0.05, f"{smooth:.3f}")
 
         renewed = (10, 10, 0.0025, 12)
         # Fields at step 12, too: what a participant learns from them is in its state.
