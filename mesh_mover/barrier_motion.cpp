@@ -75,16 +75,17 @@ class BarrierMotion final : public MotionMethod {
         else
           remaining(prescribed, u, way);
         relaxed = arrived;
+        // What a whole step leaves over is far smaller than the step.
+        if (arrived && change() < at_rest) return displacement_ = u;
         continue;
       }
       const bool whole = advance(u, none, false) == 1;
-      const double change = -slope_ / (simplices_.total + energy_);
-      relaxed = change < nearly_at_rest;
-      if (arrived && whole && (change < at_rest || (change < slowly_at_rest && change > slow * before))) {
-        displacement_ = u;
-        return u;
-      }
-      before = change;
+      const double now = change();
+      relaxed = now < nearly_at_rest;
+      // Steps so short that rounding of the energy shortens them further do not count as refused.
+      if (arrived && (now < at_rest || (whole && now < slowly_at_rest && now > slow * before)))
+        return displacement_ = u;
+      before = now;
       if (energy_ > most_energy * simplices_.total) break;
     }
     const Vec3 x = system_.worst_place(u);
@@ -122,6 +123,7 @@ class BarrierMotion final : public MotionMethod {
     }
     return parallel::max(mesh_.comm, most);
   }
+  double change() const { return -slope_ / (simplices_.total + energy_); }
   /// One Newton step of `u`, with or without the boundary motion. Returns the share that was taken.
   double advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
     const bool exact = find_direction(u, way, BarrierSystem::Hessian::exact);
