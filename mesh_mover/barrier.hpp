@@ -64,9 +64,8 @@ struct Distortion {
   };
 
   /// Its positive part in the frame of the stretches, F = U diag(s) V^T [smith2019]: coupling of the entry (ij)
-  /// with itself (`own`) and with (ji) (`across`). W is a sum over the stretches with W''(s_i) = 2 + 6 s_i^-4.
-  /// Each pair of them has a symmetric mode (W'_i - W'_j)/(s_i - s_j) and an antisymmetric one (W'_i +
-  /// W'_j)/(s_i + s_j). Only the latter may be negative.
+  /// with itself (`own`) and with (ji) (`across`). W''(s_i) = 2 + 6 s_i^-4; each pair has a symmetric mode (W'_i -
+  /// W'_j)/(s_i - s_j) and an antisymmetric one (W'_i + W'_j)/(s_i + s_j), which alone may be negative.
   struct Tangent {
     Matrix u, v;
     Matrix own, across;

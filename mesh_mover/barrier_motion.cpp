@@ -18,11 +18,12 @@ constexpr double least_kept = 0.1;
 // cells near buckling; below the third the boundary advances.
 constexpr double at_rest = 1e-5, slowly_at_rest = 1e-4, nearly_at_rest = 1e-2, slow = 0.1;
 // Factor by which energy plus weights may grow as the boundary moves.
-constexpr double most_growth = 2;
-constexpr double linear_tolerance = 3e-3;
+constexpr double most_growth = 2, linear_tolerance = 3e-3;
 constexpr int most_steps = 200;
 // Energy over the weights above which no valid mesh is expected: cells at a thousandth of their width.
 constexpr double most_energy = 1e6;
+// Share of its way below which a boundary cannot arrive: onto a wall that holds it, each is a tenth of the last.
+constexpr double least_share = 1e-3;
 // Constants of the Armijo rule.
 constexpr double least_decrease = 1e-4, shortest_step = 1e-8;
 
@@ -69,12 +70,13 @@ class BarrierMotion final : public MotionMethod {
     double before = std::numeric_limits<double>::infinity();
     for (int step = 0; step < most_steps; ++step) {
       if (!arrived && relaxed) {
-        arrived = advance(u, way, true) == 1;
+        const double share = advance(u, way, true);
+        if (share < least_share) break;
+        relaxed = arrived = share == 1;
         if (arrived)
           arrive(prescribed, u);
         else
           remaining(prescribed, u, way);
-        relaxed = arrived;
         // What a whole step leaves over is far smaller than the step.
         if (arrived && change() < at_rest) return displacement_ = u;
         continue;
