@@ -43,7 +43,6 @@ Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
 template <int D>
 struct Distortion {
   using Matrix = Eigen::Matrix<double, D, D>;
-  static constexpr double unbounded = 1e300;
 
   static double energy(const Matrix& f) { return f.squaredNorm() + f.inverse().squaredNorm() - 2 * D; }
 
@@ -53,16 +52,27 @@ struct Distortion {
     return 2 * f - 2 * (inverse * inverse.transpose() * inverse).transpose();
   }
 
-  /// d2W/dF2 in the frame of the stretches, F = U diag(s) V^T [smith2019]: coupling of the entry (ij) with
-  /// itself (`own`) and with (ji) (`across`). W is a sum over the stretches with W''(s_i) = 2 + 6 s_i^-4.
-  /// Each pair of them has a symmetric mode (W'_i - W'_j)/(s_i - s_j) and an antisymmetric one (W'_i +
-  /// W'_j)/(s_i + s_j). Only the latter may be negative; `is_projected` removes that.
+  /// b_k . d2W/dF2 . b_l for the columns of `b`; it may be negative.
+  struct Curvature {
+    Matrix b, a, c, ac;
+    Curvature(const Matrix& f, const Matrix& columns)
+        : b(columns), a(f.inverse().transpose() * f.inverse()), c(f.inverse().transpose() * b), ac(a * c) {}
+    Matrix operator()(int k, int l) const {
+      return 2 * (b.col(k).dot(b.col(l)) * Matrix::Identity() + c.col(k).dot(c.col(l)) * a +
+                  ac.col(l) * c.col(k).transpose() + c.col(l) * ac.col(k).transpose());
+    }
+  };
+
+  /// Its positive part in the frame of the stretches, F = U diag(s) V^T [smith2019]: coupling of the entry (ij)
+  /// with itself (`own`) and with (ji) (`across`). W''(s_i) = 2 + 6 s_i^-4; each pair has a symmetric mode (W'_i -
+  /// W'_j)/(s_i - s_j) and an antisymmetric one (W'_i + W'_j)/(s_i + s_j), which alone may be negative.
   struct Tangent {
     Matrix u, v;
     Matrix own, across;
   };
-  static Tangent tangent(const Matrix& f, bool is_projected) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen = decompose(f.transpose() * f);
+  static Tangent tangent(const Matrix& f) {
+    Eigen::SelfAdjointEigenSolver<Matrix> eigen;
+    eigen.computeDirect(f.transpose() * f);
     Tangent t;
     t.v = eigen.eigenvectors();
     t.u = f * t.v;
@@ -78,18 +88,11 @@ struct Distortion {
         const double product = s[i] * s[j], cube = product * product * product;
         const double squares = s[i] * s[i] + s[j] * s[j];
         const double even = 2 + 2 * (squares + product) / cube;
-        const double odd = std::max(2 - 2 * (squares - product) / cube, is_projected ? 0.0 : -unbounded);
+        const double odd = std::max(2 - 2 * (squares - product) / cube, 0.0);
         t.own(i, j) = t.own(j, i) = (even + odd) / 2;
         t.across(i, j) = t.across(j, i) = (even - odd) / 2;
       }
     return t;
-  }
-
- private:
-  static Eigen::SelfAdjointEigenSolver<Matrix> decompose(const Matrix& c) {
-    Eigen::SelfAdjointEigenSolver<Matrix> eigen;
-    eigen.computeDirect(c);
-    return eigen;
   }
 };
 

@@ -18,11 +18,12 @@ constexpr double least_kept = 0.1;
 // cells near buckling; below the third the boundary advances.
 constexpr double at_rest = 1e-5, slowly_at_rest = 1e-4, nearly_at_rest = 1e-2, slow = 0.1;
 // Factor by which energy plus weights may grow as the boundary moves.
-constexpr double most_growth = 2;
-constexpr double linear_tolerance = 3e-3;
+constexpr double most_growth = 2, linear_tolerance = 3e-3;
 constexpr int most_steps = 200;
 // Energy over the weights above which no valid mesh is expected: cells at a thousandth of their width.
 constexpr double most_energy = 1e6;
+// Share of its way below which a boundary cannot arrive: onto a wall that holds it, each is a tenth of the last.
+constexpr double least_share = 1e-3;
 // Constants of the Armijo rule.
 constexpr double least_decrease = 1e-4, shortest_step = 1e-8;
 
@@ -69,22 +70,24 @@ class BarrierMotion final : public MotionMethod {
     double before = std::numeric_limits<double>::infinity();
     for (int step = 0; step < most_steps; ++step) {
       if (!arrived && relaxed) {
-        arrived = advance(u, way, true) == 1;
+        const double share = advance(u, way, true);
+        if (share < least_share) break;
+        relaxed = arrived = share == 1;
         if (arrived)
           arrive(prescribed, u);
         else
           remaining(prescribed, u, way);
-        relaxed = arrived;
+        // What a whole step leaves over is far smaller than the step.
+        if (arrived && change() < at_rest) return displacement_ = u;
         continue;
       }
       const bool whole = advance(u, none, false) == 1;
-      const double change = -slope_ / (simplices_.total + energy_);
-      relaxed = change < nearly_at_rest;
-      if (arrived && whole && (change < at_rest || (change < slowly_at_rest && change > slow * before))) {
-        displacement_ = u;
-        return u;
-      }
-      before = change;
+      const double now = change();
+      relaxed = now < nearly_at_rest;
+      // Steps so short that rounding of the energy shortens them further do not count as refused.
+      if (arrived && (now < at_rest || (whole && now < slowly_at_rest && now > slow * before)))
+        return displacement_ = u;
+      before = now;
       if (energy_ > most_energy * simplices_.total) break;
     }
     const Vec3 x = system_.worst_place(u);
@@ -122,6 +125,7 @@ class BarrierMotion final : public MotionMethod {
     }
     return parallel::max(mesh_.comm, most);
   }
+  double change() const { return -slope_ / (simplices_.total + energy_); }
   /// One Newton step of `u`, with or without the boundary motion. Returns the share that was taken.
   double advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
     const bool exact = find_direction(u, way, BarrierSystem::Hessian::exact);

@@ -299,20 +299,29 @@ void BarrierSystem::add_simplices(std::span<const double> u, std::span<const dou
     const double w = simplices_.weight[s];
     const Matrix inverse = edges.inverse(s), f = edges.placed(s, u) * inverse;
     const Matrix stress = w * Distortion<D>::stress(f);
-    const auto t = Distortion<D>::tangent(f, hessian == Hessian::projected);
-    const Matrix gradients = t.v.transpose() * inverse.transpose();  // of corners 1 .. D, turned
     for (int k = 0; k <= D; ++k) h[k][0].setZero(), h[0][k].setZero();
-    for (int k = 1; k <= D; ++k)
-      for (int l = 1; l <= k; ++l) {
-        Matrix turned;
+    const auto set = [&](const auto& block) {
+      for (int k = 0; k < D; ++k)
+        for (int l = 0; l <= k; ++l) {
+          h[k + 1][l + 1] = w * block(k, l);
+          if (k != l) h[l + 1][k + 1] = h[k + 1][l + 1].transpose();
+        }
+    };
+    if (hessian == Hessian::exact) {
+      set(typename Distortion<D>::Curvature(f, inverse.transpose()));
+    } else {
+      const auto t = Distortion<D>::tangent(f);
+      const Matrix gradients = t.v.transpose() * inverse.transpose();  // of corners 1 .. D, turned
+      set([&](int k, int l) -> Matrix {
+        Matrix turned = Matrix::Zero();
         for (int i = 0; i < D; ++i)
-          for (int j = 0; j < D; ++j)
-            turned(i, j) = i == j ? 0 : t.across(i, j) * gradients(j, k - 1) * gradients(i, l - 1);
-        for (int i = 0; i < D; ++i)
-          for (int j = 0; j < D; ++j) turned(i, i) += t.own(i, j) * gradients(j, k - 1) * gradients(j, l - 1);
-        h[k][l] = w * (t.u * turned * t.u.transpose());
-        if (k != l) h[l][k] = h[k][l].transpose();
-      }
+          for (int j = 0; j < D; ++j) {
+            if (i != j) turned(i, j) = t.across(i, j) * gradients(j, k) * gradients(i, l);
+            turned(i, i) += t.own(i, j) * gradients(j, k) * gradients(j, l);
+          }
+        return t.u * turned * t.u.transpose();
+      });
+    }
     for (int k = 1; k <= D; ++k) {
       for (int l = 1; l <= D; ++l) h[k][0] -= h[k][l];
       h[0][k] = h[k][0].transpose();
