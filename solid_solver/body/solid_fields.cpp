@@ -178,16 +178,13 @@ const StressRecovery& SolidFields::recovery() const {
   return *recovery_;
 }
 
-SidedTensors SolidFields::stress_sides(std::span<const double> points, std::span<const std::uint8_t> wanted,
-                                       std::vector<std::vector<double>>* left) const {
+SidedTensors SolidFields::stress_sides(std::span<const double> points,
+                                       std::span<const std::uint8_t> wanted) const {
   if (!recovers_stress(body_)) {
     const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
     return point_tensors().interpolate(cell_stress(points), faces);
   }
-  const DiscreteStress found = discrete_stress(points);
-  SidedTensors sides = recovery().at_points(found, wanted);
-  if (left) *left = recovery().left_at_points(found, wanted, sides);
-  return sides;
+  return recovery().at_points(discrete_stress(points), wanted);
 }
 
 SidedTensors SolidFields::strain_sides(std::span<const double> points) const {

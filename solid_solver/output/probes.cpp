@@ -163,10 +163,10 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
   return row;
 }
 
-std::vector<SolidProbes::Stress> SolidProbes::stresses(std::span<const double> points) const {
+std::vector<SolidProbes::Stress> SolidProbes::stresses(const DiscreteStress& of) const {
   if (!watches_stress()) return {};
-  std::vector<std::vector<double>> left;
-  const SidedTensors stress = derived_.stress_sides(points, stressed_, &left);
+  const SidedTensors stress = derived_.recovery().at_points(of, stressed_);
+  const auto left = derived_.recovery().left_at_points(of, stressed_, stress);
   std::vector<Stress> found;
   for (const Watched& watched : probes_) {
     if (std::ranges::none_of(watched.fields, is_stress)) continue;
@@ -202,10 +202,9 @@ std::vector<std::uint8_t> points_of_large_stress(const mesh::Mesh& mesh, const D
 
 /// Largest equivalent stress of the recovered field. Probes interpolate between points and the equivalent stress is convex, so
 /// none sees more than the points.
-ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::span<const double> points,
+ReportedStress largest(const SolidBody& body, const SolidFields& fields, const DiscreteStress& found,
                        double mesh_part) {
   const mesh::Mesh& mesh = body.mesh();
-  const DiscreteStress found = fields.discrete_stress(points);
   std::vector<std::uint8_t> wanted = points_of_large_stress(mesh, found);
   const SidedTensors sides = fields.recovery().at_points(found, wanted);
   struct Seen {
@@ -242,19 +241,19 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, std::sp
 
 Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
                              std::span<const double> points) {
-  return largest(body, fields, points, 0).place;
+  return largest(body, fields, fields.discrete_stress(points), 0).place;
 }
 
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
                                               const SolidProbes& probes, double mesh) {
   if (!recovers_stress(body)) return {};
-  const std::vector<double> points = fields.point_displacement();
+  const DiscreteStress stress = fields.discrete_stress(fields.point_displacement());
   std::vector<ReportedStress> found;
-  for (const SolidProbes::Stress& one : probes.stresses(points))
+  for (const SolidProbes::Stress& one : probes.stresses(stress))
     found.push_back(
         {fmt::format("at probe '{}'", one.probe), one.place, one.equivalent, larger_of(one.left, mesh)});
   if (!body.is_dynamic()) {
-    const ReportedStress most = largest(body, fields, points, mesh);
+    const ReportedStress most = largest(body, fields, stress, mesh);
     if (parallel::comm_rank(body.mesh().comm) == 0 && most.value > 0) found.push_back(most);
   }
   return found;

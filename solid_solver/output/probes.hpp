@@ -50,7 +50,7 @@ class SolidProbes {
     double left;        ///< StressRecovery::left_at_points() [1]
   };
   /// Stresses of the accepted state on rank 0, empty elsewhere. Collective.
-  std::vector<Stress> stresses(std::span<const double> points) const;
+  std::vector<Stress> stresses(const DiscreteStress& of) const;
 
  private:
   struct Watched {

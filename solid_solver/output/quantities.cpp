@@ -191,8 +191,11 @@ class Estimates {
   }
 
   void take_stress(const io::Probe& probe, const std::string& component, QuantityEstimate& e) const {
-    std::vector<std::vector<double>> left;
-    const SidedTensors stress = fields_.stress_sides(points_, flags_of(mesh_, probe.points()), &left);
+    const StressRecovery& recovery = fields_.recovery();
+    const DiscreteStress found = fields_.discrete_stress(points_);
+    const std::vector<std::uint8_t> wanted = flags_of(mesh_, probe.points());
+    const SidedTensors stress = recovery.at_points(found, wanted);
+    const auto left = recovery.left_at_points(found, wanted, stress);
     const Side side = worst_side_at(probe, materials_at(mesh_, probe), stress, mesh_.comm);
     const Tensor3 tensor = unpack(side.tensor), weights = weights_of(component, tensor);
     e.value = component.empty() ? equivalent_stress(tensor) : contraction(weights, tensor);
