@@ -94,7 +94,7 @@ std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
     accelerator_ = std::move(learnt);
     return failure;
   }
-  SchemeChoice::tell(step.time, "the semi-implicit step failed: " + failure->reason);
+  log::info("t = {:g} s: repeated as an implicit step: {}", step.time, failure->reason);
   return {};
 }
 

@@ -39,8 +39,8 @@ Schedule schedule_of(const CouplingParameters& parameters);
 
 /// Scheme of the next step. The semi-implicit scheme computes wall friction with a guessed velocity. If
 /// friction drags much of the moving mass, the fluid repeats its prediction within a step. This costs more
-/// than iterating the whole step, and may oscillate or diverge. `scheme: auto` counts these renewals and
-/// becomes implicit for the rest of the run once they do not stop.
+/// than iterating the whole step, and may oscillate or diverge. `scheme: auto` counts these renewals, repeats a failed
+/// step as an implicit one, and becomes implicit for the rest of the run once neither stops.
 class SchemeChoice {
  public:
   explicit SchemeChoice(CouplingParameters::CaseScheme scheme)
@@ -49,13 +49,12 @@ class SchemeChoice {
   void start_step() { renewals_ = 0; }
   /// Counts a pass in which a participant renewed its prediction (Participant::answered_anew).
   void renewed() { ++renewals_; }
-  /// Call after a step that ended at `time`. Returns true, and reports it, if further steps are implicit.
+  /// Call after a step that ended at `time`. Returns true if the next step has another scheme; reports it if all have.
   bool accepted(double time);
-  /// Call after a failed step. Returns true if it must be repeated as an implicit one, set in now(). On success call
-  /// tell(), on failure withdraw().
+  /// Call after a failed step. Returns true if it must be repeated as an implicit one, set in now() until accepted().
+  /// Call withdraw() if that fails, too.
   bool failed();
-  static void tell(double time, const std::string& why);
-  void withdraw() { is_open_ = true, now_ = coupling::Scheme::semi_implicit; }
+  void withdraw() { now_ = coupling::Scheme::semi_implicit; }
 
   /// Data for checkpoints: consecutive steps with too many renewals (-1 once implicit), share renewed.
   std::array<double, 2> state() const {
@@ -65,15 +64,13 @@ class SchemeChoice {
 
   /// Limits: renewals within a step, and consecutive steps with so many.
   /// A start from rest takes up to five (perpendicular flap of 42 kg/m^3 in a fluid of 1 Pa s). If it takes six, the
-  /// implicit scheme costs no more (docs/validation/strong-coupling.md).
+  /// implicit scheme costs no more (docs/validation/strong-coupling.md). A failed step counts as two of them.
   static constexpr int too_many = 3, most_in_a_row = 6;
   /// Limit of the recent share of steps with renewals (exponential mean). Alternating renewals leave an
   /// oscillation that is small relative to the load but not to its smallest component (lift of FSI1: 10 %).
   static constexpr double most_renewed = 0.4, memory = 50;
 
  private:
-  void turn();
-
   bool is_open_;
   coupling::Scheme now_;
   int renewals_ = 0, in_a_row_ = 0;

@@ -264,7 +264,8 @@ double Fluid<D>::unseen_share(const Vectors<D>& w) const {
     sums[3] += area.squaredNorm();
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  const double load = sums[3] > 0 ? sums[1] - sums[2] * sums[2] / sums[3] : 0;
+  // A uniform pressure does not count, but what is left of it is not rounding.
+  const double load = sums[3] > 0 ? std::max(sums[1] - sums[2] * sums[2] / sums[3], 1e-4 * sums[1]) : 0;
   return load > 0 ? std::sqrt(sums[0] / load) : 0;
 }
 

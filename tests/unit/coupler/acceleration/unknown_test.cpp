@@ -196,6 +196,24 @@ TEST(SchemeChoice, a_failed_step_is_tried_once_as_an_implicit_one_until_withdraw
   EXPECT_TRUE(choice.failed());
 }
 
+TEST(SchemeChoice, a_step_after_a_failed_one_is_semi_implicit_again_until_three_in_a_row_have_failed) {
+  SchemeChoice choice{{}};
+  const auto fails = [&] {
+    choice.start_step();
+    EXPECT_TRUE(choice.failed());
+    return choice.accepted(1);
+  };
+  for (int n = 0; n < 2; ++n) {
+    EXPECT_TRUE(fails()) << "what was learnt is of another scheme";
+    EXPECT_TRUE(fails());
+    EXPECT_FALSE(step(choice, 0));
+    EXPECT_EQ(choice.now(), Scheme::semi_implicit);
+  }
+  for (int n = 0; n < 3; ++n) EXPECT_TRUE(fails());
+  EXPECT_EQ(choice.now(), Scheme::implicit);
+  EXPECT_FALSE(choice.failed());
+}
+
 TEST(SchemeChoice, continues_from_a_checkpoint_with_its_count_or_its_change) {
   SchemeChoice choice{{}};
   step(choice, 4), step(choice, 4);
