@@ -68,7 +68,7 @@ class SchemeChoice {
   static constexpr int too_many = 3, most_in_a_row = 6;
   /// Limit of the recent share of steps with renewals (exponential mean). Alternating renewals leave an
   /// oscillation that is small relative to the load but not to its smallest component (lift of FSI1: 10 %).
-  static constexpr double most_renewed = 0.4, memory = 20;
+  static constexpr double most_renewed = 0.4, memory = 50;
 
  private:
   bool is_open_;

@@ -159,7 +159,7 @@ TEST(SchemeChoice, becomes_implicit_after_as_many_renewed_steps_in_a_row_as_it_s
 
 TEST(SchemeChoice, stays_where_steps_with_few_renewals_lie_between) {
   SchemeChoice choice{{}};
-  for (int n = 0; n < 9; ++n)
+  for (int n = 0; n < 20; ++n)
     EXPECT_FALSE(step(
         choice, n % SchemeChoice::most_in_a_row == 0 ? SchemeChoice::too_many - 1 : SchemeChoice::too_many));
   EXPECT_EQ(choice.now(), Scheme::semi_implicit);
@@ -172,8 +172,8 @@ TEST(SchemeChoice, becomes_implicit_where_half_of_the_steps_are_renewed_and_not_
     if (step(often, n % 2)) change = n;
     EXPECT_FALSE(step(seldom, n % 3 == 0 ? 2 : 0));
   }
-  EXPECT_GT(change, 20);
-  EXPECT_LT(change, 50);
+  EXPECT_GT(change, 60);
+  EXPECT_LT(change, 120);
   EXPECT_EQ(often.now(), Scheme::implicit);
 }
 
