@@ -279,7 +279,8 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
     predicted_ = step_.scheme == coupling::Scheme::semi_implicit;
     return;
   }
-  if (!renewal_.wanted(mesh_.comm, w, fluid_->unseen_share(w))) return;
+  const auto [unseen, of_all] = fluid_->unseen_share(w);
+  if (!renewal_.wanted(mesh_.comm, w, unseen, of_all)) return;
   renewed_now_ = true;
   fluid_->prepare(points_, renewal_.guess());
 }

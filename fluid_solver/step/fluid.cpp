@@ -251,7 +251,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
 /// The layer dragged by a wall within a step is rho sqrt(nu dt) thick, a mass that acts on w* in the loop,
 /// see docs/theory/coupling.md.
 template <int D>
-double Fluid<D>::unseen_share(const Vectors<D>& w) const {
+std::array<double, 2> Fluid<D>::unseen_share(const Vectors<D>& w) const {
   const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
   double sums[4] = {};  // unseen^2, load^2, load.S, S^2
   for (std::size_t b = 0; b < guess_.size(); ++b) {
@@ -264,9 +264,8 @@ double Fluid<D>::unseen_share(const Vectors<D>& w) const {
     sums[3] += area.squaredNorm();
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  // A uniform pressure does not count, but what is left of it is not rounding.
-  const double load = sums[3] > 0 ? std::max(sums[1] - sums[2] * sums[2] / sums[3], 1e-4 * sums[1]) : 0;
-  return load > 0 ? std::sqrt(sums[0] / load) : 0;
+  const auto share = [&](double load) { return load > 0 ? std::sqrt(sums[0] / load) : 0; };
+  return {share(sums[3] > 0 ? sums[1] - sums[2] * sums[2] / sums[3] : 0), share(sums[1])};
 }
 
 /// Rejects velocities of a failing structure that no fluid can follow. Motion by less than the adjacent

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -26,10 +27,11 @@ class Renewal {
  public:
   /// Starts the first pass of a step, whose prediction uses w.
   void start(const Vectors<D>& w);
-  /// Takes a further pass with w. `unseen`: friction force due to w - guess(), relative to the load. Returns
+  /// Takes a further pass with w. `unseen`: friction force due to w - guess(), relative to the load
+  /// less a uniform pressure; `of_all`: to all of it. Returns
   /// true if the prediction must be repeated with guess(). Throws SolveFailure if it was
   /// repeated often and still misses too much. Collective.
-  bool wanted(MPI_Comm comm, const Vectors<D>& w, double unseen);
+  bool wanted(MPI_Comm comm, const Vectors<D>& w, double unseen, double of_all = 1);
   const Vectors<D>& guess() const { return guess_; }
   int count() const { return count_; }
   /// Largest contraction from a second to a third pass over the run, for checkpoints.
@@ -87,9 +89,9 @@ class Fluid {
   /// `answer`: see PressureEquation::solve(); used in the passes of an iterative coupling.
   void solve_pressure(const Vectors<D>& wall_velocity, double answer = 0);
   /// Change of the friction force if it used the wall velocity w instead of w* of prepare(): rho sqrt(nu dt)
-  /// |w - w*| S/dt, relative to the load of the last solve_pressure() less a uniform pressure. Both are root
+  /// |w - w*| S/dt, relative to the load of the last solve_pressure() less a uniform pressure, and to all of it. These are root
   /// mean squares over the interface. Collective.
-  double unseen_share(const Vectors<D>& w) const;
+  std::array<double, 2> unseen_share(const Vectors<D>& w) const;
   /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// Makes the step level n. Cannot fail.

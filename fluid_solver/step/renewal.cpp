@@ -17,6 +17,8 @@ constexpr double largest_unseen_share = 0.001, largest_of_heavy = 0.05, slow = 0
 // In the third pass w is better than the guess. After a renewal this holds in the second pass if the gap has
 // decreased by this factor, as with quasi-Newton methods but not with relaxation.
 constexpr int enough_passes = 3;
+// Share of all of the load below which the share of a load that is uniform to rounding says nothing.
+constexpr double least_of_all = 1e-4;
 constexpr double shrunk = 0.7;
 constexpr int most = 4;  // then the whole step might as well be iterated
 constexpr double least_factor = 0.1, largest_factor = 1;
@@ -79,7 +81,7 @@ void Renewal<D>::move_guess(MPI_Comm comm, const Vectors<D>& w) {
 }
 
 template <int D>
-bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen) {
+bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen, double of_all) {
   ++passes_;
   const double left = contraction(comm, w);
   // Quasi-Newton methods hide the weight of the structure once they know it, so the slowest step is used.
@@ -89,6 +91,7 @@ bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen) {
     slowest_ = std::max(slowest_, left);
   const double allowed = slowest_ > slow ? largest_unseen_share : largest_of_heavy;
   if (unseen <= allowed || !is_good(comm, w)) return false;
+  if (count_ == most && of_all <= least_of_all) return false;
   if (count_ == most)
     throw SolveFailure(
         "After {} better predictions in the step, the friction of the fluid still misses {:.2g} % of the load (limit {:g} "

@@ -23,7 +23,7 @@ class LightWall {
     double a = solve(guess, push);
     if (renew_) {
       fluid.solve_pressure(velocity(a));
-      unseen_ = fluid.unseen_share(velocity(a));
+      unseen_ = fluid.unseen_share(velocity(a))[0];
       fluid.prepare({}, velocity(a));
       a = solve(a, push);
     }
