@@ -17,8 +17,8 @@ constexpr double largest_unseen_share = 0.001, largest_of_heavy = 0.05, slow = 0
 // In the third pass w is better than the guess. After a renewal this holds in the second pass if the gap has
 // decreased by this factor, as with quasi-Newton methods but not with relaxation.
 constexpr int enough_passes = 3;
-// Share of all of the load below which the share of a load that is uniform to rounding says nothing.
-constexpr double least_of_all = 1e-4;
+// Part of the load that is not uniform below which it is rounding, and the share of it says nothing.
+constexpr double uniform = 1e-5;
 constexpr double shrunk = 0.7;
 constexpr int most = 4;  // then the whole step might as well be iterated
 constexpr double least_factor = 0.1, largest_factor = 1;
@@ -91,11 +91,11 @@ bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen, doubl
     slowest_ = std::max(slowest_, left);
   const double allowed = slowest_ > slow ? largest_unseen_share : largest_of_heavy;
   if (unseen <= allowed || !is_good(comm, w)) return false;
-  if (count_ == most && of_all <= least_of_all) return false;
+  if (count_ == most && of_all <= uniform * unseen) return false;
   if (count_ == most)
     throw SolveFailure(
-        "After {} better predictions in the step, the friction of the fluid still misses {:.2g} % of the load (limit {:g} "
-        "%): the structure is too light for semi-implicit steps. Try `coupling.scheme: implicit`.",
+        "After {} renewed predictions, friction that depends on the motion of the wall is still off by {:.2g} % of the load "
+        "(limit {:g} %): the structure is too light for semi-implicit steps. Try `coupling.scheme: implicit`.",
         most, 100 * unseen, 100 * allowed);
   move_guess(comm, w);
   passes_ = 1;
