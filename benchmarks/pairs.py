@@ -102,7 +102,7 @@ def seconds(tree, build, name, folder):
     """Processor seconds of a step: of two runs the difference, of the cylinder what its test says."""
     make, sizes, counts = TIMED[name]
     if make is None:
-        launched([build / "tests/speed/fluid/speed_fluid_moving_cylinder", "--gtest_filter=*/0", "--gtest_output=json:result.json"], folder / "log", folder)
+        launched([build / "tests/speed/fluid/speed_fluid", "--gtest_filter=*/0", "--gtest_output=json:result.json"], folder / "log", folder)
         (test,) = (t for t in json.loads((folder / "result.json").read_text())["testsuites"][0]["testsuite"] if "cells" in t)
         return float(test["cells"]) / float(test["cells_steps_per_second"])
     few, many = (launched(make(*sizes)(tree, build, folder, n), folder / "log", folder).cpu for n in counts)
