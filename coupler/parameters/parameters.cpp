@@ -210,8 +210,8 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.check(
       [&] {
         return p.mesh_on_guess && (p.scheme != coupling::Scheme::implicit || !p.mesh)
-                   ? "it requires `scheme: implicit` with a `mesh` mover; the semi-implicit scheme always "
-                     "does so"
+                   ? "it requires `scheme: implicit` with a `mesh` mover; the semi-implicit scheme and `auto` "
+                     "always do so"
                    : "";
       },
       "mesh-on-guess");
@@ -229,7 +229,7 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.value("mesh-on-guess", p.mesh_on_guess)
       .doc(
           "implicit: the mesh keeps the position of the initial guess of the step, as in the semi-implicit "
-          "scheme: the iteration is stable for lighter structures");
+          "scheme and in the implicit steps of auto: the iteration is stable for lighter structures");
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
       "data transfer between the two sides of the interface");

@@ -27,7 +27,7 @@ int predictor_order_of(const CouplingParameters& p) {
 Schedule schedule_of(const CouplingParameters& p) {
   Schedule s;
   s.iterates = p.scheme != coupling::Scheme::explicit_;
-  s.mesh_on_guess = p.mesh_on_guess;
+  s.mesh_on_guess = p.mesh_on_guess || p.scheme.adapts;
   s.waveform = p.waveform == CouplingParameters::Waveform::linear;
   for (const auto& [name, steps] : p.sub_steps) s.sub_steps[name] = int(std::lround(steps));
   if (p.exchange) {
