@@ -4,7 +4,7 @@
 
   git worktree add --detach ../older COMMIT, and build its programs there
   pairs.py run ../older [--build BUILD] [--only NAME]   prints ratios and keeps them in BUILD/pairs.json
-  pairs.py time ../older [--build BUILD] [--only NAME]  the same by processor seconds, five turns of both
+  pairs.py time ../older [--build BUILD] [--only NAME]  the same by processor seconds, three turns of both
   pairs.py write [--build BUILD]                        docs/validation/pairs.md from that file
 
 Both commits run their own case files with the same settings. Two runs of different length are made of each: their difference has the instructions of
@@ -33,8 +33,9 @@ CASES = {  # name: programs, folder of the case, seconds of a step, numbers of s
     "cavity 64^3": (("fluid_solver",), "cavity-3d", 0.1, (1, 3), (FLUID + "mesh-parameters={n: 64}", "simulation.time-step=0.1 s")),
     "plate B, 16x24x12": (("solid_solver",), "elliptic-plate", 1, (1,), ()),
     "plate B, 32x48x24": (("solid_solver",), "elliptic-plate", 1, (1,), (SOLID + "mesh-parameters={nr: 32, nt: 48, nz: 24, shape: 0}",)),
+    "tank, a day": (("thermocline",), "thermocline-andasol", 86400, (2, 7), ("participants.tank.report.run-in=0 s",)),
 }
-TURNS = 5
+TURNS = 3
 SECTION = """n = {n};
 Point(1) = {{0, 0, 0}}; Point(2) = {{20, 0, 0}}; Point(3) = {{20, 2, 0}}; Point(4) = {{0, 2, 0}};
 Line(1) = {{1, 2}}; Line(2) = {{2, 3}}; Line(3) = {{3, 4}}; Line(4) = {{4, 1}};
@@ -162,9 +163,10 @@ def instructions(tree, build, name):
     with tempfile.TemporaryDirectory(prefix="couplet-pairs-") as temporary:
         folder, found = pathlib.Path(temporary), []
         shutil.copytree(tree / "configs" / case, folder / case)
+        (folder / "weather").symlink_to(tree / "configs/weather")
         places = [build / "bin" / p for p in programs]
         for n in counts:
-            more = (f"simulation.output.folder={folder}/out", f"simulation.end-time={n * step!r} s", "simulation.output.interval=1000 s")
+            more = (f"simulation.output.folder={folder}/out", f"simulation.end-time={n * step!r} s", "simulation.output.interval=1000 day")
             found.append(launch(places, folder / case / "case.yaml", folder, (*sets, *more)))
         if len(counts) == 1:
             return found[0]
