@@ -19,6 +19,16 @@ constexpr double least_cosine = 0.05;
 constexpr double least_skewness = 1e-6;
 // A cell whose gradient cannot be corrected has too few informative faces.
 constexpr double least_determinant = 0.1;
+// Skewness in lengths of a cell up to which it is corrected in full, and beyond which not at all.
+constexpr double full_skewness = 1. / 3, no_skewness = 0.5;
+
+template <class T>
+std::span<double> doubles_of(std::vector<T>& values) {
+  if constexpr (std::is_same_v<T, double>)
+    return values;
+  else
+    return {values.empty() ? nullptr : values.front().data(), values.size() * T::SizeAtCompileTime};
+}
 
 template <int D>
 void set_face(Placement<D>& p, Index f, const Vec<D>& d) {
@@ -33,17 +43,45 @@ void set_face(Placement<D>& p, Index f, const Vec<D>& d) {
   if (oblique > p.obliqueness * p.obliqueness * square) p.obliqueness = std::sqrt(oblique / square);
 }
 
+/// Limits the skewness of faces to a part of a cell's length, and returns what each loses. Across thin cells the
+/// corrections would be many times the differences of neighbors, and the pressure would supply energy. Collective.
+template <int D>
+Vectors<D> limit_skewness(const mesh::Mesh& mesh, Placement<D>& p) {
+  std::vector<Tensor<D>> metric(mesh.cells.n_local(),
+                                Tensor<D>::Zero());  // x.(metric x): x^2 in lengths of a cell
+  std::vector<double> faces(metric.size(), 0);
+  const auto add = [&](Index c, Index f) {
+    metric[c] += p.area[f] * p.area[f].transpose();
+    faces[c] += 0.5 / D;  // to 1 in cells of parallel faces
+  };
+  for (Index f = 0; f < mesh.n_interior; ++f) add(mesh.owner[f], f), add(mesh.neighbour[f], f);
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) add(mesh.owner[f], f);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) metric[c] *= 0.5 * std::pow(faces[c] / p.volume[c], 2);
+  mesh.cells.update_ghosts(doubles_of(metric), D * D);
+  Vectors<D> lost(mesh.n_interior, Vec<D>::Zero());
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const Vec<D> s = p.skew[f];
+    const Tensor<D>&before = metric[mesh.owner[f]], &after = metric[mesh.neighbour[f]];
+    const double length = std::sqrt(std::max(s.dot(before * s), s.dot(after * s)));
+    if (length <= full_skewness) continue;
+    p.skew[f] *= std::max(0.0, (no_skewness - length) / (no_skewness - full_skewness));
+    lost[f] = s - p.skew[f];
+  }
+  return lost;
+}
+
 /// B of each cell. The Gauss gradient uses values at the interpolation points on the line between the cells:
-/// (1 - w) d from the owner, -w d from the neighbor.
+/// (1 - w) d from the owner, -w d from the neighbor, moved by what the skewness lost.
 template <int D>
 void cure_gradients(const mesh::Mesh& mesh, Placement<D>& p) {
+  const Vectors<D> lost = limit_skewness(mesh, p);
   p.gradient_cure.assign(mesh.cells.n_local(), Tensor<D>::Zero());
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const Index o = mesh.owner[f], n = mesh.neighbour[f];
-    const Tensor<D> part =
-        (p.centre[n] + mesh.shift(f).template head<D>() - p.centre[o]) * p.area[f].transpose();
-    p.gradient_cure[o] += (1 - p.weight[f]) * part;
-    p.gradient_cure[n] += p.weight[f] * part;
+    const Vec<D> d = p.centre[n] + mesh.shift(f).template head<D>() - p.centre[o];
+    const Tensor<D> part = d * p.area[f].transpose(), moved = lost[f] * p.area[f].transpose();
+    p.gradient_cure[o] += (1 - p.weight[f]) * part + moved;
+    p.gradient_cure[n] += p.weight[f] * part - moved;
   }
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
     const Vec<D> centre = p.boundary_centre[f - mesh.n_interior].template head<D>();
@@ -141,14 +179,6 @@ template <bool Corrects, int D>
 }
 
 using mesh::Entries;
-
-template <class T>
-std::span<double> doubles_of(std::vector<T>& values) {
-  if constexpr (std::is_same_v<T, double>)
-    return values;
-  else
-    return {values.empty() ? nullptr : values.front().data(), values.size() * T::SizeAtCompileTime};
-}
 
 /// Archives a number or vector per entry, or none at all.
 template <class T>
