@@ -166,12 +166,13 @@ class Job:
 
     def case(self, case, keys=(), ranks=(), timeout=3600, flags=()):
         """Results of configs/<case>: a folder, a file 'folder/name' of it, or a path that ends in .yaml. `participant` is its first one; a key '.key' is one of that
-        participant. `ranks`: ranks of coupler, fluid, solid and mover, or one number for the only participant. Runs with the same keys are made once."""
+        participant. `ranks`: ranks of the coupler and of the participants in their order, or one number for the only participant. Runs with the same keys are made once."""
         def make():
             file = self.root / (case if case.endswith(".yaml") else f"configs/{case}.yaml" if "/" in case else f"configs/{case}/case.yaml")
-            participant = next(iter(Case(file).participants))
+            participants = list(Case(file).participants)
+            participant = participants[0]
             words = [f"participants.{participant}{k}" if k.startswith(".") else k for k in keys]
-            by_name = {participant: ranks} if isinstance(ranks, int) else dict(zip(("coupler", "fluid", "solid", "mover"), ranks))
+            by_name = {participant: ranks} if isinstance(ranks, int) else dict(zip(["coupler", *participants], ranks))
             name = hashlib.sha256(repr((case, tuple(keys), ranks, flags)).encode()).hexdigest()[:12]
             results = self.case_run(file, self.scratch / f"run-{name}", words, by_name, timeout, flags)
             results.participant = participant
