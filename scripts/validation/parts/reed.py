@@ -63,7 +63,7 @@ def off(value, right):
 
 def settling(job):
     """Incompressible, from the start of the source: frequency from peak to peak, and what is left of the swing in the end."""
-    run = valve(job, (*SOURCE, *meshed("{size: 5e-3, growth: 1.6}")))  # 4.0 k cells
+    run = valve(job, (*SOURCE, *meshed("{size: 5e-3, growth: 1.6}"), "simulation.end-time=200 ms"))  # 4.0 k cells: half an hour
     t, z = lift(run, 2)
     crests = 1 + np.flatnonzero((z[1:-1] > z[:-2]) & (z[1:-1] >= z[2:]) & (z[1:-1] > 2e-3))
     tops = [group[np.argmax(z[group])] for group in np.split(crests, 1 + np.flatnonzero(np.diff(t[crests]) > 8e-3))]
