@@ -320,7 +320,6 @@ void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
   fluid_->solvers().save(file);
   // Writing changes neither.
   if (statistics_) const_cast<RunningStatistics<D>&>(*statistics_).visit(io::Archive(file));
-  io::Archive(file).common("slowest-contraction", const_cast<Renewal<D>&>(renewal_).slowest());
 }
 
 template <int D>
@@ -329,7 +328,6 @@ void FluidParticipant<D>::load(io::CheckpointReader& file) {
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   fluid_->solvers().load(file);
   if (statistics_) statistics_->visit(io::Archive(file));
-  io::Archive(file).common("slowest-contraction", renewal_.slowest());
 }
 
 template <int D>

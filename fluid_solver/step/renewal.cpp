@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -11,9 +10,8 @@
 namespace couplet::fluid {
 namespace {
 
-// Limits of the unseen share of the load: for growing oscillations, and for heavy structures, whose velocity
-// hardly changes in a third pass. The latter do not oscillate, so only a poor guess is corrected.
-constexpr double largest_unseen_share = 0.001, largest_of_heavy = 0.05, slow = 0.1;
+// Largest unseen share of the load. The motion of a body that starts is wrong by ten times as much.
+constexpr double largest_unseen_share = 0.001;
 // In the third pass w is better than the guess. After a renewal this holds in the second pass if the gap has
 // decreased by this factor, as with quasi-Newton methods but not with relaxation.
 constexpr int enough_passes = 3;
@@ -35,22 +33,10 @@ double squares(const Vectors<D>& v) {
 template <int D>
 void Renewal<D>::start(const Vectors<D>& w) {
   guess_ = w;
-  last_ = w;
-  last_change_ = unseen_before_ = 0;
   gap_.clear();
   factor_ = 1;
   passes_ = 1;
   count_ = 0;
-}
-
-/// Ratio of the last change of w to the one before.
-template <int D>
-double Renewal<D>::contraction(MPI_Comm comm, const Vectors<D>& w) {
-  double square = 0;
-  for (std::size_t b = 0; b < w.size(); ++b) square += (w[b] - last_[b]).squaredNorm();
-  const double change = std::sqrt(parallel::sum(comm, square)), before = std::exchange(last_change_, change);
-  last_ = w;
-  return before > 0 ? change / before : 0;
 }
 
 template <int D>
@@ -83,20 +69,13 @@ void Renewal<D>::move_guess(MPI_Comm comm, const Vectors<D>& w) {
 template <int D>
 bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen, double of_all) {
   ++passes_;
-  const double left = contraction(comm, w);
-  // Quasi-Newton methods hide the weight of the structure once they know it, so the slowest step is used.
-  // A second pass that overshoots may leave little in the third.
-  const double most_unseen = std::max(unseen, std::exchange(unseen_before_, unseen));
-  if (count_ == 0 && passes_ == enough_passes && most_unseen > largest_unseen_share)
-    slowest_ = std::max(slowest_, left);
-  const double allowed = slowest_ > slow ? largest_unseen_share : largest_of_heavy;
-  if (unseen <= allowed || !is_good(comm, w)) return false;
+  if (unseen <= largest_unseen_share || !is_good(comm, w)) return false;
   if (count_ == most && of_all <= uniform * unseen) return false;
   if (count_ == most)
     throw SolveFailure(
         "After {} renewed predictions, friction that depends on the motion of the wall is still off by {:.2g} % of the load "
         "(limit {:g} %): the structure is too light for semi-implicit steps. Try `coupling.scheme: implicit`.",
-        most, 100 * unseen, 100 * allowed);
+        most, 100 * unseen, 100 * largest_unseen_share);
   move_guess(comm, w);
   passes_ = 1;
   ++count_;

@@ -75,11 +75,12 @@ def main():
         # With the default time scheme semi-implicit steps converge to a tenth of the motion in 10 Pa s, and to half of it in 3 Pa s.
         # A uniform pressure of 1 kPa, beside which the rest of the load is small, hides nothing.
         damped = "participants.solid.time-scheme={type: generalised-alpha}"
-        for viscosity, pressure in ((3, 0), (10, 0), (3, 1000)):
+        # Of a flap of 400 kg/m^3 the motion was 5 % off although only some percent of the load were missed.
+        for density, viscosity, pressure in ((1, 3, 0), (1, 10, 0), (1, 3, 1000), (400, 1, 0)):
             for scheme in ("auto", "implicit"):
-                ended(f"1 kg/m^3, {viscosity} Pa s, {pressure:g} Pa runs, {scheme}",
-                      launch(here, f"{viscosity}-{pressure:g}-{scheme}", 1, viscosity, 0.01, 2, damped, "simulation.accept=[error-estimate]", f"participants.fluid.boundaries.outlet.pressure={pressure}", f"coupling.scheme={scheme}", *COARSE))
-            first, second = (tip(here / f"{viscosity}-{pressure:g}-{scheme}") for scheme in ("auto", "implicit"))
+                ended(f"{density} kg/m^3, {viscosity} Pa s, {pressure:g} Pa runs, {scheme}",
+                      launch(here, f"{density}-{viscosity}-{pressure:g}-{scheme}", density, viscosity, 0.01, 2, damped, "simulation.accept=[error-estimate]", f"participants.fluid.boundaries.outlet.pressure={pressure}", f"coupling.scheme={scheme}", *COARSE))
+            first, second = (tip(here / f"{density}-{viscosity}-{pressure:g}-{scheme}") for scheme in ("auto", "implicit"))
             require("it starts as in the implicit scheme", float(abs(first / second - 1).max()) < 0.02, f"{first} and {second} m")
 
         # The mesh of an implicit step of `auto` stays on the guess. Where it moves in the loop, the fifth step of 20 ms has no solution.

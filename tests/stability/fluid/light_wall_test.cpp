@@ -188,13 +188,17 @@ TEST(Renewal, such_a_wall_grows_without_it_and_with_one_only) {
   EXPECT_GT(left_over(once, 1), 1e3);
 }
 
-TEST(Renewal, leaves_a_heavy_wall_alone_whatever_its_guess_misses) {
-  Wall heavy{100, 20};
+/// Passes hardly change a wall of five times the mass that it drags. On the guess alone it starts with 1.2 of its motion,
+/// though only 2 % of the load are missed.
+TEST(Renewal, starts_a_heavy_wall_as_its_whole_mass_does) {
+  const double push = 0.1 * load, right = push / (100 + 20);
+  Wall never{100, 20}, heavy{100, 20};
+  never.step(push, 0);
+  EXPECT_NEAR(never.now, 1.2 * right, 0.01 * right);
+  heavy.step(push, 100);
+  EXPECT_NEAR(heavy.now, right, 0.01 * right);
   left_over(heavy);
-  EXPECT_EQ(heavy.renewals, 0);
-  Wall lighter{100, 20, 30};
-  left_over(lighter);
-  EXPECT_GT(lighter.renewals, 0);
+  EXPECT_LE(heavy.renewals, 6);
 }
 
 TEST(Renewal, waits_for_a_better_velocity_than_a_relaxed_pass_has) {
@@ -203,21 +207,11 @@ TEST(Renewal, waits_for_a_better_velocity_than_a_relaxed_pass_has) {
   renewal.start(at(0));
   EXPECT_FALSE(renewal.wanted(MPI_COMM_SELF, at(0.8), 0.01)) << "second pass";
   EXPECT_FALSE(Renewal<2>(renewal).wanted(MPI_COMM_SELF, at(1), 1e-4)) << "nothing is missed";
-  EXPECT_FALSE(Renewal<2>(renewal).wanted(MPI_COMM_SELF, at(0.801), 0.01)) << "heavy: passes converge fast";
   EXPECT_TRUE(renewal.wanted(MPI_COMM_SELF, at(1), 0.01));
   Renewal<2> shrinking = renewal;
   EXPECT_FALSE(renewal.wanted(MPI_COMM_SELF, at(1.9), 1)) << "the gap of 1 became 0.9";
   EXPECT_TRUE(renewal.wanted(MPI_COMM_SELF, at(1.9), 1));
   EXPECT_TRUE(shrinking.wanted(MPI_COMM_SELF, at(1.5), 1)) << "the gap of 1 became 0.5";
-}
-
-TEST(Renewal, renews_for_a_wall_that_a_second_pass_throws_far_and_the_third_back) {
-  const auto at = [](double w) { return Vectors<2>{Vec<2>(w, 0)}; };
-  Renewal<2> renewal;
-  renewal.start(at(0));
-  EXPECT_FALSE(renewal.wanted(MPI_COMM_SELF, at(-10), 1));
-  EXPECT_FALSE(renewal.wanted(MPI_COMM_SELF, at(0.01), 1e-4));
-  EXPECT_TRUE(renewal.wanted(MPI_COMM_SELF, at(0.2), 0.02));
 }
 
 TEST(Renewal, fails_where_four_better_predictions_still_miss_too_much_of_the_load) {
