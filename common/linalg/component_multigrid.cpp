@@ -249,7 +249,7 @@ auto AggregationMultigrid<Number>::galerkin(const Level& fine, Index n_coarse, c
 namespace {
 
 constexpr std::size_t most_levels = 12;
-// Largest coarsest level that is factorized if it cannot be coarsened further (on many ranks).
+// Largest coarsest level that is factorized.
 constexpr GlobalIndex largest_dense = 1000;
 /// Sorts neighbors by insertion, since rows are short and nearly sorted.
 template <class Rows>
@@ -309,39 +309,66 @@ void AggregationMultigrid<Number>::factor_coarsest() {
   const Level& level = levels_.back();
   const Rows& a = level.a;
   const GlobalIndex n = parallel::sum(comm_, GlobalIndex(a.size()));
-  if (n > largest_dense) return;  // cannot be coarsened, so only smoothing is applied
+  if (n > largest_dense && comm_ == MPI_COMM_SELF)
+    return;  // cannot be coarsened, so only smoothing is applied
   first_coarsest_ = static_cast<Index>(parallel::exclusive_scan(comm_, a.size()));
   struct Entry {
     Index row, column;
-    float value[lanes];
+    Lanes value;
   };
   std::vector<Entry> entries;
-  const auto add = [&](Index i, GlobalIndex column, const Lanes& v) {
-    entries.push_back({first_coarsest_ + i, static_cast<Index>(column), {}});
-    for (int l = 0; l < lanes; ++l) entries.back().value[l] = lane(v, l);
-  };
   for (Index i = 0; i < a.size(); ++i) {
-    add(i, first_coarsest_ + i, a.diagonal[i] * (1 + 1e-5F));  // a pure Neumann problem is singular
+    entries.push_back({first_coarsest_ + i, first_coarsest_ + i, a.diagonal[i]});
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
-      add(i, level.map ? level.map->global(a.index[e]) : a.index[e], a.value[e]);
+      entries.push_back({first_coarsest_ + i,
+                         static_cast<Index>(level.map ? level.map->global(a.index[e]) : a.index[e]),
+                         a.value[e]});
   }
   entries = parallel::all_gather(comm_, entries);
+  if (n > largest_dense) return gather_coarsest(entries);
   for (int l = 0; l < lanes; ++l) {
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
-    for (const Entry& e : entries) dense(e.row, e.column) = e.value[l];
+    for (const Entry& e : entries)  // a pure Neumann problem is singular
+      dense(e.row, e.column) = lane(e.value, l) * (e.row == e.column ? 1 + 1e-5F : 1);
     coarsest_.emplace_back(dense);
   }
 }
 
+/// Every rank coarsens the rows of all ranks further, because aggregates no longer end at borders of ranks.
+template <class Number>
+template <class Entries>
+void AggregationMultigrid<Number>::gather_coarsest(const Entries& entries) {
+  Rows all;
+  for (const auto& e : entries) {
+    if (e.row == e.column) {
+      all.diagonal.push_back(e.value);
+      all.offset.push_back(all.offset.back());
+    } else {
+      all.index.push_back(e.column);
+      all.value.push_back(e.value);
+      ++all.offset.back();
+    }
+  }
+  gathered_ = std::make_unique<AggregationMultigrid>(
+      std::move(all), Options{.coarse_factor = coarse_factor_, .closed = closed_});
+}
+
 template <class Number>
 void AggregationMultigrid<Number>::solve_coarsest(Level& level) const {
-  if (coarsest_.empty()) {
+  if (coarsest_.empty() && !gathered_) {
     smooth_forward(level);
     level.update_ghosts();
     smooth_backward(level);
     return;
   }
-  const std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : parallel::all_gather(comm_, level.b);
+  std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : parallel::all_gather(comm_, level.b);
+  if (gathered_) {
+    Level& all = gathered_->levels_.front();
+    all.b.swap(right);
+    gathered_->cycle();
+    std::copy_n(all.x.begin() + first_coarsest_, level.a.size(), level.x.begin());
+    return;
+  }
   Eigen::VectorXd b(std::ssize(right));
   for (int l = 0; l < lanes; ++l) {
     for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = lane(right[i], l);

@@ -78,6 +78,8 @@ class AggregationMultigrid {
   bool coarsen();
   void add_level(Rows rows, const parallel::IndexMap* map, std::unique_ptr<parallel::IndexMap> own);
   void factor_coarsest();
+  template <class Entries>
+  void gather_coarsest(const Entries& entries);
   void solve_coarsest(Level& level) const;
   static void smooth_forward(Level& level);
   void restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const;
@@ -88,6 +90,7 @@ class AggregationMultigrid {
   MPI_Comm comm_;
   std::vector<Level> levels_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one per component, of the rows of all ranks
+  std::unique_ptr<AggregationMultigrid> gathered_;     // of these rows, where they are too many
   Index first_coarsest_ = 0;                           // first row of this rank among them
 };
 
