@@ -79,6 +79,15 @@ std::string Coupler::run() {
   return problem;
 }
 
+namespace {
+
+std::string without_advice(const std::string& reason) {
+  const std::size_t end = reason.find(". Try ");
+  return end == std::string::npos ? reason : reason.substr(0, end + 1);
+}
+
+}  // namespace
+
 std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
   for (const auto& d : known_->diagnostics)
     if (std::string reason = d->stop(); !reason.empty()) return app::StepFailure(std::move(reason), false);
@@ -94,7 +103,7 @@ std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
     accelerator_ = std::move(learnt);
     return failure;
   }
-  log::info("t = {:g} s: repeated as an implicit step: {}", step.time, failure->reason);
+  log::info("t = {:g} s: repeated as an implicit step: {}", step.time, without_advice(failure->reason));
   return {};
 }
 
@@ -117,14 +126,12 @@ std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step
   return {};
 }
 
-/// Findings of the coupling precede those of a participant.
+/// Findings of the coupling precede those of a participant, whose advice would not help.
 app::StepFailure Coupler::cause_of(const std::string& reported) const {
-  // Omits the advice, because a smaller step or another mesh would not help.
-  const std::string met = reported.substr(0, reported.find(". Try ") + 1);
+  const std::string met = without_advice(reported);
   std::string remarks;
   for (const auto& d : known_->diagnostics) {
-    if (const auto cause = d->suspects())
-      return {cause->reason + " Thereupon " + (met.empty() ? reported : met), cause->halving_helps};
+    if (const auto cause = d->suspects()) return {cause->reason + " Thereupon " + met, cause->halving_helps};
     remarks += d->remark();
   }
   return app::StepFailure(reported + remarks);

@@ -92,13 +92,23 @@ bool misses_mesh(const NamedErrors& n) {
   return std::isnan(n.parts.mesh) && !(std::isnan(n.parts.step) && std::isnan(n.parts.linear));
 }
 
-/// "the mesh", with the names of the participants that know other parts of their error but not that one. Empty if there are none.
+bool too_few_steps(const std::vector<NamedErrors>& participants) {
+  return std::isnan(largest(participants).step) &&
+         std::ranges::any_of(participants, [](const NamedErrors& n) { return n.parts.too_few_steps; });
+}
+
+/// "the mesh", with the names of the participants that know other parts of their error but not that one, and
+/// "the step". Empty if there are none.
 std::string unknown_part(const std::vector<NamedErrors>& participants) {
   std::vector<std::string> names;
   for (const NamedErrors& n : participants)
     if (misses_mesh(n)) names.push_back(n.name);
-  if (names.empty()) return "";
-  return participants.size() > 1 ? fmt::format("the mesh of '{}'", base::join(names, "', '")) : "the mesh";
+  const bool few = too_few_steps(participants);
+  const std::string step = few ? "the step, of which there are too few," : "";
+  if (names.empty()) return step;
+  const std::string mesh =
+      participants.size() > 1 ? fmt::format("the mesh of '{}'", base::join(names, "', '")) : "the mesh";
+  return few ? mesh + " and " + step : mesh;
 }
 
 }  // namespace
@@ -115,6 +125,7 @@ std::string ErrorParts::text() const {
   if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
   if (!text.empty() && mesh_order != 2) text += fmt::format(" mesh-order {:.6g}", mesh_order);
   if (!text.empty() && step_order != 2) text += fmt::format(" step-order {:.6g}", step_order);
+  if (!text.empty() && too_few_steps) text += " too-few-steps 1";
   if (!model_by.empty() || !omittable.empty()) text += fmt::format(" | {} | {}", model_by, omittable);
   return text;
 }
@@ -131,7 +142,8 @@ ErrorParts ErrorParts::of(const std::string& text) {
   for (std::string name; words >> name;) {
     const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return k.name == name; });
     double value = 0;
-    const bool is_about = name == "dimension" || name == "mesh-order" || name == "step-order";
+    const bool is_about =
+        name == "dimension" || name == "mesh-order" || name == "step-order" || name == "too-few-steps";
     if ((kind == kinds.end() && !is_about) || !(words >> value))
       throw Error(
           "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling, model), "
@@ -139,6 +151,8 @@ ErrorParts ErrorParts::of(const std::string& text) {
           text);
     if (name == "dimension")
       parts.dimension = int(std::clamp(value, 0.0, 3.0));
+    else if (name == "too-few-steps")
+      parts.too_few_steps = value != 0;
     else if (is_about)
       (name == "mesh-order" ? parts.mesh_order : parts.step_order) = value;
     else
@@ -195,6 +209,7 @@ std::string error_summary(const std::vector<NamedErrors>& participants) {
 
 std::string best_change(const std::vector<NamedErrors>& participants) {
   const auto worst = worst_part(participants);
+  if (too_few_steps(participants)) return "compare with a run at half the time step, which shows its error";
   // Else the known part is large enough to begin with.
   if (std::ranges::any_of(participants, misses_mesh) && !(total_error(participants) >= questionable_error))
     return "compare with a run at half the cell size, which shows its error";

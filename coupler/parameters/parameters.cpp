@@ -207,14 +207,6 @@ void declare(config::Section& section, CouplingParameters& p) {
       "convergence", [&](config::Section& s) { declare(s, p.convergence); }, "criteria for accepting a step");
   declare_predictor(section, p);
   declare_sub_steps(section, p);
-  section.check(
-      [&] {
-        return p.mesh_on_guess && (p.scheme != coupling::Scheme::implicit || !p.mesh)
-                   ? "it requires `scheme: implicit` with a `mesh` mover; the semi-implicit scheme and `auto` "
-                     "always do so"
-                   : "";
-      },
-      "mesh-on-guess");
   using Order = CouplingParameters::Exchange::Order;
   section
       .choice("order", p.order,
@@ -230,6 +222,14 @@ void declare(config::Section& section, CouplingParameters& p) {
       .doc(
           "implicit: the mesh keeps the position of the initial guess of the step, as in the semi-implicit "
           "scheme and in the implicit steps of auto: the iteration is stable for lighter structures");
+  section.check(
+      [&] {
+        return p.mesh_on_guess && (p.scheme != coupling::Scheme::implicit || !p.mesh)
+                   ? "it requires `scheme: implicit` with a `mesh` mover; the semi-implicit scheme and `auto` "
+                     "always do so"
+                   : "";
+      },
+      "mesh-on-guess");
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
       "data transfer between the two sides of the interface");

@@ -57,9 +57,9 @@ bool SchemeChoice::accepted(double time) {
   now_ = is_open_ ? coupling::Scheme::semi_implicit : coupling::Scheme::implicit;
   if (is_open_) return failed;
   log::info("t = {:g} s: scheme: implicit from here on: {}", time,
-            in_a_row
-                ? fmt::format("steps in a row failed, or the fluid renewed its prediction {} times or more",
-                              too_many)
+            in_a_row && failed ? "steps in a row failed"
+            : in_a_row
+                ? fmt::format("the fluid renewed its prediction {} times or more in steps in a row", too_many)
                 : fmt::format("the fluid renewed its prediction in {:.0f} % of the last steps",
                               100 * renewed_share_));
   return true;

@@ -317,6 +317,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const double scale = diagnostics::scale_of(std::max(speed, largest_), falls);
     parts.mesh = recovered_difference() / scale;
     parts.step = step_part() * steps_.size() / scale;
+    parts.too_few_steps = std::isnan(parts.step);
     // The trapezoidal rule also knows the divergence before.
     const auto& known = view_.parameters().compressibility;
     const bool open = known && known->scheme == WaveScheme::trapezoidal;

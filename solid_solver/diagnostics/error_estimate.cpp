@@ -331,6 +331,7 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
     find_displacement_error();  // a partner's load may be the last
   if (body_.is_dynamic()) {
     parts.step = steps_.over_size();
+    parts.too_few_steps = std::isnan(parts.step);
     parts.linear = linear_.over_size();
   } else {
     parts.linear = strain_ ? missed_work() : left_by_solver();
