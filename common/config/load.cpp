@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -305,9 +304,6 @@ void Reader::variant(const Declaration& d) {
 
 void Reader::apply_rule(const Declaration& d) {
   const Frame& frame = frames_.back();
-  const std::string& key = d.facts.name;
-  if (!key.empty() && std::ranges::find(frame.known, key) == frame.known.end())
-    throw std::logic_error(fmt::format("the rule on '{}' is declared before the key", key));
   // The rule may depend on any key of the surrounding mappings.
   const bool wrong_key =
       std::any_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.wrong_key; });
@@ -315,6 +311,7 @@ void Reader::apply_rule(const Declaration& d) {
   std::string text = d.rule();
   if (text.empty()) return;
   if (text.back() != '.') text += '.';
+  const std::string& key = d.facts.name;
   const Entry entry = find(frame.node, key);
   (d.kind == Declaration::Kind::check ? messages_ : doubts_)
       .push_back(message(entry.found ? entry.place : frame.place,
