@@ -47,7 +47,7 @@ FINE = (*SOURCE, *meshed("~"), "simulation.end-time=18 ms", "simulation.output.i
 
 
 def valve(job, keys=()):
-    """configs/reed-valve, 100 ms: 50 minutes."""
+    """configs/reed-valve, 115 ms: 50 minutes."""
     return job.case("reed-valve", keys, (1, 1, 1, 1), 20000)
 
 
