@@ -82,7 +82,7 @@ std::string Coupler::run() {
 namespace {
 
 std::string without_advice(const std::string& reason) {
-  const std::size_t end = reason.find(". Try ");
+  const std::size_t end = std::min(reason.find(". Try "), reason.find(". Use "));
   return end == std::string::npos ? reason : reason.substr(0, end + 1);
 }
 

@@ -93,8 +93,7 @@ bool misses_mesh(const NamedErrors& n) {
 }
 
 bool too_few_steps(const std::vector<NamedErrors>& participants) {
-  return std::isnan(largest(participants).step) &&
-         std::ranges::any_of(participants, [](const NamedErrors& n) { return n.parts.too_few_steps; });
+  return largest(participants).too_few_steps;
 }
 
 /// "the mesh", with the names of the participants that know other parts of their error but not that one, and
@@ -171,6 +170,8 @@ ErrorParts largest(const std::vector<NamedErrors>& participants) {
     parts.dimension = p.of->parts.dimension;
     parts.mesh_order = p.of->parts.mesh_order;
   }
+  for (const NamedErrors& n : participants)
+    parts.too_few_steps |= std::isnan(parts.step) && n.parts.too_few_steps;
   for (const NamedErrors& n : participants)
     if (!n.parts.omittable.empty())
       parts.omittable +=

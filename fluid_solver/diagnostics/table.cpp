@@ -205,7 +205,8 @@ std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
        .limit = 0.1,
        .what =
            fmt::format("kinetic energy without work of boundaries or forces = {:.2g} of the total", excess),
-       .advice = "the time scheme generates it: remove 'time-step' or reduce it",
+       .advice =
+           "the schemes generate it: reduce the step, without a 'time-step' of the fluid; on distorted cells set 'projection: incremental'",
        .left_out = false,
        .wrong_from = 0.5});
 }

@@ -127,12 +127,8 @@ template void eddy_viscosity(const TurbulenceParameters&, const Placement<3>&, c
 template <int D>
 MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   MomentumTerms<D> terms;
-  const auto add = [&](bool wanted, const auto& make) {
-    if (wanted) terms.push_back(make());
-  };
-  add(parameters.is_compressible(), [&] { return std::make_unique<Dilatation<D>>(mesh); });
-  add(parameters.turbulence.has_value(),
-      [&] { return std::make_unique<EddyStress<D>>(mesh, *parameters.turbulence); });
+  if (parameters.is_compressible()) terms.push_back(std::make_unique<Dilatation<D>>(mesh));
+  if (parameters.turbulence) terms.push_back(std::make_unique<EddyStress<D>>(mesh, *parameters.turbulence));
   return terms;
 }
 

@@ -109,6 +109,7 @@ class FractionalStep {
   const std::vector<Vec3>& points() const { return step_.points; }
   /// Largest speed of the accepted steps [m/s].
   double largest_speed() const { return speed_scale_; }
+  double& largest_speed() { return speed_scale_; }
   /// True if the mesh is not orthogonal or may become so.
   bool oblique() const { return scene_.oblique; }
 
