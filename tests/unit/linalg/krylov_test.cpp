@@ -341,6 +341,49 @@ TEST(ComponentMultigrid, iterations_grow_with_the_ranks_where_none_knows_of_anot
   }
 }
 
+/// A line of which each rank has every third row or so: no rank has neighbors of its own, and nothing is coarsened until
+/// the rows of all are gathered. Smoothing alone would need some thousand iterations.
+TEST(ComponentMultigrid, rows_that_are_dealt_to_the_ranks_in_turn_are_gathered) {
+  const int size = comm_size(MPI_COMM_WORLD), rank = comm_rank(MPI_COMM_WORLD), n = 3000;
+  AggregationMultigrid<float>::Rows rows;
+  std::vector<int> owner;
+  std::vector<Index> there;
+  const Index n_owned = (n - rank + size - 1) / size;
+  for (int g = rank; g < n; g += size) {
+    for (const int other : {g - 1, g + 1}) {
+      if (other < 0 || other == n) continue;
+      rows.value.push_back(-1);
+      if (other % size == rank) {
+        rows.index.push_back(other / size);
+        continue;
+      }
+      rows.index.push_back(n_owned + Index(owner.size()));
+      owner.push_back(other % size);
+      there.push_back(other / size);
+    }
+    rows.diagonal.push_back(2);
+    rows.offset.push_back(Index(rows.index.size()));
+  }
+  const IndexMap map(MPI_COMM_WORLD, n_owned, owner, there);
+  AggregationMultigrid<float> multigrid(rows, {1, &map, MPI_COMM_WORLD});
+  std::vector<double> local(map.n_local()), b(n_owned, 1.0), x(n_owned, 0.0);
+  const auto apply = [&](std::span<const double> u, std::span<double> y) {
+    std::ranges::copy(u, local.begin());
+    map.update_ghosts(local);
+    for (Index i = 0; i < n_owned; ++i) {
+      y[i] = 2 * u[i];
+      for (Index e = rows.offset[i]; e < rows.offset[i + 1]; ++e) y[i] -= local[rows.index[e]];
+    }
+  };
+  const auto precondition = [&](std::span<const double> r, std::span<double> z) { multigrid.apply(r, z, 1); };
+  KrylovSolver solver("u", MPI_COMM_WORLD, n_owned, apply, precondition);
+  EXPECT_LE(solver.solve(b, x, {1e-8, 200}).iterations, 60);
+  for (Index i = 0; i < n_owned; ++i) {
+    const double g = double(rank + i * size + 1);
+    EXPECT_NEAR(x[i], g * (n + 1 - g) / 2, 1e-5 * n * n);
+  }
+}
+
 TEST(ComponentMultigrid, components_do_not_see_each_other) {
   ComponentMultigrid multigrid(laplacians(12, MPI_COMM_SELF).rows);
   const std::size_t n = 12 * 12 * 12;
