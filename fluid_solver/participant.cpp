@@ -319,7 +319,6 @@ void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
   write_state(file, fluid_->state());
   fluid_->solvers().save(file);
   // Writing changes nothing.
-  io::Archive(file).common("largest-speed", fluid_->solvers().largest_speed());
   if (statistics_) const_cast<RunningStatistics<D>&>(*statistics_).visit(io::Archive(file));
 }
 
@@ -328,7 +327,6 @@ void FluidParticipant<D>::load(io::CheckpointReader& file) {
   file.on(mesh_);
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   fluid_->solvers().load(file);
-  io::Archive(file).common("largest-speed", fluid_->solvers().largest_speed());
   if (statistics_) statistics_->visit(io::Archive(file));
 }
 

@@ -232,6 +232,7 @@ struct State : History<D> {
   /// Identifies u among all computed states, to avoid recomputing derived data; 0 if not computed.
   std::uint64_t number = 0;
   EnergyLedger ledger;
+  double largest_speed = 0;  ///< of u so far [m/s]
 
   Vectors<D> u;           ///< u^n per local cell, ghosts current [m/s]
   Vectors<D> w;           ///< given velocity per boundary face at t^n [m/s]

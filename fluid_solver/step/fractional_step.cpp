@@ -250,7 +250,7 @@ void FractionalStep<D>::commit(State<D>& s) {
     level_ = correct();
     judgement_ = judge(s);
   }
-  speed_scale_ = std::max(speed_scale_, judgement_.speed);
+  s.largest_speed = std::max(s.largest_speed, judgement_.speed);
   s.ledger = judgement_.energy.ledger;
   static_cast<History<D>&>(s) = step_.by;
   for (const auto& term : projection_.terms()) term->commit(projected_, s);
@@ -309,8 +309,8 @@ typename FractionalStep<D>::Outcome FractionalStep<D>::judge(const State<D>& fro
 /// True if the flow is much faster than all previous and given speeds, and crosses a cell in the step. Motion
 /// starting in a fluid at rest except for round-off is no divergence.
 template <int D>
-bool FractionalStep<D>::too_fast() const {
-  if (!(speed_scale_ > 0) || !(judgement_.speed > explosion * std::max(speed_scale_, judgement_.given_speed)))
+bool FractionalStep<D>::too_fast(double so_far) const {
+  if (!(so_far > 0) || !(judgement_.speed > explosion * std::max(so_far, judgement_.given_speed)))
     return false;
   bool crosses = false;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
@@ -322,7 +322,7 @@ bool FractionalStep<D>::too_fast() const {
 template <int D>
 void FractionalStep<D>::check(const State<D>& from) {
   const bool finite = std::isfinite(judgement_.speed);
-  const bool fast = too_fast();
+  const bool fast = too_fast(from.largest_speed);
   const bool created = judgement_.energy.out_of_bounds && scene_.obstacles->is_in_budget();
   if (finite && !fast && !created) return;
   const LargestCell worst = find_largest(mesh_, *step_.to, [&](Index c) {

@@ -107,9 +107,6 @@ class FractionalStep {
   const Placement<D>& to() const { return *step_.to; }
   /// Points at the end of the step; empty if the mesh is at rest.
   const std::vector<Vec3>& points() const { return step_.points; }
-  /// Largest speed of the accepted steps [m/s].
-  double largest_speed() const { return speed_scale_; }
-  double& largest_speed() { return speed_scale_; }
   /// True if the mesh is not orthogonal or may become so.
   bool oblique() const { return scene_.oblique; }
 
@@ -127,7 +124,7 @@ class FractionalStep {
   double splitting_error(const PressureLevel<D>& now, double enough);
   EnergyStep<D> energy_step(const State<D>& from) const;
   Outcome judge(const State<D>& from) const;
-  bool too_fast() const;
+  bool too_fast(double so_far) const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);
   void mark(double time);
@@ -149,7 +146,6 @@ class FractionalStep {
   std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; nullptr after project()
   Outcome judgement_;                        // of level_
   std::uint64_t states_ = 0;                 // number of states so far
-  double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
 };
 
 }  // namespace couplet::fluid
