@@ -28,6 +28,7 @@ struct FaceRows {
   std::vector<Index> of_flux;                         ///< all others: phi = w.S
   std::vector<Index> of_mesh;      ///< those of of_flux where w is the normal velocity of the mesh
   std::vector<Index> of_velocity;  ///< the rest of of_flux
+  std::vector<Index> of_mirror;    ///< those of of_flux without friction: symmetry planes and slip walls
   std::vector<char> with_mesh;     ///< per boundary face: w is the normal velocity of the mesh
 
   explicit FaceRows(Index count = 0)
@@ -44,7 +45,9 @@ struct FaceRows {
   void sort() {
     for (Index b = 0; b < static_cast<Index>(pressure.size()); ++b) {
       (pressure[b] > 0 ? of_pressure : of_flux).push_back(b);
-      if (pressure[b] == 0) (with_mesh[b] ? of_mesh : of_velocity).push_back(b);
+      if (pressure[b] > 0) continue;
+      (with_mesh[b] ? of_mesh : of_velocity).push_back(b);
+      if (slip_length[b] == no_friction) of_mirror.push_back(b);
     }
   }
 

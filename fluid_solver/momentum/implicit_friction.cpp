@@ -114,7 +114,8 @@ void ViscousSolver<D>::set_diagonal(std::span<const double> added) {
   const FaceRows& given = boundary_.rows();
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior;
-    const double a = beta_ * at.conductance[f], t = given.friction(at, b, f);
+    const double a = (beta_ + (added.empty() ? 0 : added[f])) * at.conductance[f],
+                 t = given.friction(at, b, f);
     inverse_diagonal_[mesh_.owner[f]] += a;
     boundary_rows_.push_back(
         {mesh_.owner[f], a * t, a * (1 - given.pressure[b] - t), at.area[f].normalized()});
@@ -279,7 +280,7 @@ void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, con
   set_carried(from, a);
   solver_.prepare(step_.to, a * scene_.fluid.nu * step_.dt, added_, carried_);
   guess(from, rates, a, side, u);
-  damp(from, side);
+  damp(from, w, side);
   carry(from, side);
   if (scene_.oblique)
     solve_in_passes(w, a, side, u);
@@ -291,16 +292,22 @@ void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, con
 /// modified Crank-Nicolson an extrapolated rate becomes that scheme, and nu_t does not limit the step. In
 /// thin cells, a few times the molecular viscosity would require a thousandth of the convective step.
 template <int D>
-void ImplicitFriction<D>::damp(const State<D>& from, Vectors<D>& side) const {
+void ImplicitFriction<D>::damp(const State<D>& from, const Vectors<D>& w, Vectors<D>& side) const {
+  if (added_.empty()) return;
   const double ratio = step_.ratio();
   const auto ahead = [&](Index c) {
     return ratio > 0 ? Vec<D>((1 + ratio) * from.u[c] - ratio * from.u_old[c]) : from.u[c];
   };
-  for (Index f = 0; f < static_cast<Index>(added_.size()); ++f) {
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const Vec<D> part = added_[f] * step_.to->conductance[f] * (ahead(n) - ahead(p));
     side[p] -= part;
     side[n] += part;
+  }
+  for (const Index b : scene_.boundary.rows().of_mirror) {
+    const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+    const Vec<D> normal = step_.to->area[f].normalized();
+    side[p] -= added_[f] * step_.to->conductance[f] * (w[b] - ahead(p)).dot(normal) * normal;
   }
 }
 

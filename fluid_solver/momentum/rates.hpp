@@ -58,6 +58,14 @@ Vec<D> eddy_stress(const Placement<D>& at, const std::vector<double>& eddy, cons
          (at.conductance[f] * change + mean * at.oblique_of(f) + mean.transpose() * area + normal * area);
 }
 
+/// The same at a face of a symmetry plane or a slip wall with the velocity `outside`, beyond which the flow is mirrored.
+template <int D>
+Vec<D> mirrored_eddy_stress(const Placement<D>& at, double eddy, const Vec<D>& inside, const Vec<D>& outside,
+                            Index f) {
+  const Vec<D> normal = at.area[f].normalized();
+  return 2 * eddy * at.conductance[f] * (outside - inside).dot(normal) * normal;
+}
+
 /// Optional part of the momentum equation. Every function itself loops over faces or cells, and is collective.
 template <int D>
 class MomentumTerm {
@@ -72,7 +80,7 @@ class MomentumTerm {
   /// Adds to the rates of convection and friction that limit the step, per local cell [m^3/s].
   virtual void add_limits(const State<D>&, Vectors<2>&) const {}
   /// Adds the viscous part of a step whose viscous term has the weight `a` at t^{n+1}: the known one to `rate`, and the
-  /// viscosity times a dt that acts at t^{n+1} to `added`, per interior face [m^2].
+  /// viscosity times a dt that acts at t^{n+1} to `added`, per flux face [m^2].
   virtual void add_implicit(const State<D>&, const Step<D>&, double /*a*/, Vectors<D>& /*rate*/,
                             std::vector<double>& /*added*/) {}
 };
@@ -80,7 +88,8 @@ template <int D>
 using MomentumTerms = std::vector<std::unique_ptr<MomentumTerm<D>>>;
 /// Terms of a case: the dilatation of a compressible fluid, the stress of a turbulence model.
 template <int D>
-MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const FluidParameters& parameters);
+MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                                     const FluidParameters& parameters);
 
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k] at level n on mesh n, with skew-symmetric mid-point u_f
 /// [trias2014]. `split`: the viscous part goes to Rates::viscous. `correct_oblique`: the mesh is not
@@ -199,7 +208,7 @@ class ImplicitFriction {
   double tolerance() const;
   void guess(const State<D>& from, const Rates<D>& rates, double a, const Vectors<D>& side,
              Vectors<D>& u) const;
-  void damp(const State<D>& from, Vectors<D>& side) const;
+  void damp(const State<D>& from, const Vectors<D>& w, Vectors<D>& side) const;
   void set_carried(const State<D>& from, double a);
   void carry(const State<D>& from, Vectors<D>& side) const;
   void solve_in_passes(const Vectors<D>& w, double a, const Vectors<D>& side, Vectors<D>& u);

@@ -12,16 +12,17 @@ constexpr double stress_of_eddies = 2;
 // Below this the flow has no gradient, and WALE's quotient is 0/0 [1/s].
 constexpr double no_gradient = 1e-150;
 
-/// Stress nu_t (grad u + grad u^T) of the unresolved scales, zero on walls.
+/// Stress nu_t (grad u + grad u^T) of the unresolved scales, zero on walls, inlets and outlets.
 template <int D>
 class EddyStress final : public MomentumTerm<D> {
  public:
-  EddyStress(const mesh::Mesh& mesh, const TurbulenceParameters& model) : mesh_(mesh), model_(model) {}
+  EddyStress(const mesh::Mesh& mesh, const FaceRows& boundary, const TurbulenceParameters& model)
+      : mesh_(mesh), boundary_(boundary), model_(model) {}
 
   void add_rate(const State<D>& s, bool split, const typename MomentumTerm<D>::Gradient& gradient,
                 Vectors<D>& rate) override {
     if (split) return;
-    add_stress(*s.placement, s.eddy, s.u, gradient(), rate);
+    add_stress(*s.placement, s.eddy, s.u, s.u_boundary, gradient(), rate);
   }
   void start(State<D>& s) override {
     velocity_gradient<D>(mesh_, *s.placement, s.u, s.u_boundary, gradient_);
@@ -33,6 +34,10 @@ class EddyStress final : public MomentumTerm<D> {
       const double rate = stress_of_eddies * (s.eddy[p] + s.eddy[n]) * s.placement->conductance[f];
       rates[p][1] += rate;
       rates[n][1] += rate;
+    }
+    for (const Index b : boundary_.of_mirror) {
+      const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+      rates[p][1] += stress_of_eddies * s.eddy[p] * s.placement->conductance[f];
     }
   }
   /// Adds the stress of u~ = (1 + r/2) u^n - r/2 u^{n-1} with its own nu_t on the mesh of level n. The nu_t
@@ -51,25 +56,33 @@ class EddyStress final : public MomentumTerm<D> {
     std::vector<double> eddy;
     velocity_gradient<D>(mesh_, at, u, u_boundary, gradient_);
     eddy_viscosity<D>(model_, at, gradient_, eddy);
-    add_stress(at, eddy, u, gradient_, rate);
-    added.resize(mesh_.n_interior, 0);
+    add_stress(at, eddy, u, u_boundary, gradient_, rate);
+    added.resize(mesh_.n_flux_faces(), 0);
     const double factor = stress_of_eddies * a * step.dt;
     for (Index f = 0; f < mesh_.n_interior; ++f)
       added[f] += 0.5 * factor * (eddy[mesh_.owner[f]] + eddy[mesh_.neighbour[f]]);
+    for (const Index b : boundary_.of_mirror)
+      added[mesh_.n_interior + b] += factor * eddy[mesh_.owner[mesh_.n_interior + b]];
   }
 
  private:
   void add_stress(const Placement<D>& at, const std::vector<double>& eddy, const Vectors<D>& u,
-                  const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const {
+                  const Vectors<D>& u_boundary, const std::vector<Tensor<D>>& gradient,
+                  Vectors<D>& rate) const {
     for (Index f = 0; f < mesh_.n_interior; ++f) {
       const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
       const Vec<D> part = eddy_stress<D>(at, eddy, u, gradient, f, p, n);
       rate[p] += part;
       rate[n] -= part;
     }
+    for (const Index b : boundary_.of_mirror) {
+      const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+      rate[p] += mirrored_eddy_stress<D>(at, eddy[p], u[p], u_boundary[b], f);
+    }
   }
 
   const mesh::Mesh& mesh_;
+  const FaceRows& boundary_;
   TurbulenceParameters model_;
   std::vector<Tensor<D>> gradient_;
 };
@@ -125,10 +138,12 @@ template void eddy_viscosity(const TurbulenceParameters&, const Placement<3>&, c
                              std::vector<double>&);
 
 template <int D>
-MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const FluidParameters& parameters) {
+MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                                     const FluidParameters& parameters) {
   MomentumTerms<D> terms;
   if (parameters.is_compressible()) terms.push_back(std::make_unique<Dilatation<D>>(mesh));
-  if (parameters.turbulence) terms.push_back(std::make_unique<EddyStress<D>>(mesh, *parameters.turbulence));
+  if (parameters.turbulence)
+    terms.push_back(std::make_unique<EddyStress<D>>(mesh, boundary.rows(), *parameters.turbulence));
   return terms;
 }
 

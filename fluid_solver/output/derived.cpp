@@ -205,6 +205,12 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
       const int owned = (p < mesh.cells.n_owned()) + (n < mesh.cells.n_owned());
       sums[2] += 0.5 * owned * rho * eddy_stress<D>(at, s.eddy, s.u, gradient, f, p, n).dot(s.u[n] - s.u[p]);
     }
+    for (const Index b : fluid.boundary().rows().of_mirror) {
+      const Index f = mesh.n_interior + b, p = mesh.owner[f];
+      sums[2] +=
+          rho *
+          mirrored_eddy_stress<D>(at, s.eddy[p], s.u[p], s.u_boundary[b], f).dot(s.u_boundary[b] - s.u[p]);
+    }
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh.comm);
   return {sums[0], sums[1], sums[2], sums[3]};

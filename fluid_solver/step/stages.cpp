@@ -89,7 +89,7 @@ Predictor<D>::Predictor(const Scene<D>& scene, const Step<D>& step, const KnownG
       gradient_(gradient),
       out_(result),
       rate_operator_(scene.mesh, scene.boundary, scene.fluid.nu,
-                     make_momentum_terms<D>(scene.mesh, scene.parameters)),
+                     make_momentum_terms<D>(scene.mesh, scene.boundary, scene.parameters)),
       friction_(scene, step, rate_operator_) {}
 
 template <int D>

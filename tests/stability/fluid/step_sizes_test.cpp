@@ -129,10 +129,9 @@ TEST(StepLimit, of_eddy_viscosity_is_that_of_a_more_viscous_fluid) {
   p.viscous = ViscousTreatment::explicit_;
   p.initial_velocity = {{"2"}, {"1"}};
   all_sides(p, 2, boundary(BoundaryType::periodic));
-  const FluidCase<2> c(MPI_COMM_WORLD, raw, p);
-  FluidCase<2> thick(MPI_COMM_WORLD, raw, p);
+  FluidCase<2> c(MPI_COMM_WORLD, raw, p), thick(MPI_COMM_WORLD, raw, p);
   p.turbulence.emplace();
-  const MomentumTerms<2> none, eddies = make_momentum_terms<2>(c.mesh(), p);
+  const MomentumTerms<2> none, eddies = make_momentum_terms<2>(c.mesh(), c.fluid().boundary(), p);
   StepSize<2> sizes(c.mesh(), thick.fluid().boundary(), 0.1, none),
       of_eddies(c.mesh(), thick.fluid().boundary(), 0.1, eddies),
       of_thick(c.mesh(), thick.fluid().boundary(), 0.7, none);

@@ -90,7 +90,7 @@ void check_eddies(BoxCells cells) {
   s.eddy.assign(flow.mesh.cells.n_local(), 0.7);
   FluidParameters p;
   p.turbulence.emplace();
-  RateOperator<D> rates(flow.mesh, flow.boundary_, 0.0, make_momentum_terms<D>(flow.mesh, p));
+  RateOperator<D> rates(flow.mesh, flow.boundary_, 0.0, make_momentum_terms<D>(flow.mesh, flow.boundary_, p));
   Rates<D> got;
   rates.apply(s, false, true, got);
   const std::vector<char> inner = flow.inner();
