@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cube of edge 2 pi, hexahedra.
-DefineConstant[ n = 64 ]; // cells an edge
-l = 2 * Pi;
+// Cube, hexahedra.
+DefineConstant[ n = 64, edge = 2 * Pi ]; // cells an edge; m
+l = edge;
 Point(1) = {0, 0, 0};
 Point(2) = {l, 0, 0};
 Point(3) = {l, l, 0};
