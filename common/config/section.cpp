@@ -57,9 +57,9 @@ Key& Key::size(std::size_t n) {
   declaration_.facts.size = n;
   return *this;
 }
-Key& Key::plausible(double lowest, double highest) {
+Key& Key::unit(std::string_view si_unit, double lowest, double highest) {
   declaration_.facts.plausible.emplace(lowest, highest);
-  return *this;
+  return unit(si_unit);
 }
 Key& Key::any_magnitude(std::string_view reason) {
   declaration_.facts.any_magnitude = reason;

@@ -84,13 +84,13 @@ class Key {
   /// Accepts "5.6 MPa", "0.1 s" and plain numbers in this SI unit, but no plain numbers in K or rad
   /// (base::needs_unit). "K difference" is the unit of a temperature difference.
   Key& unit(std::string_view si_unit);
+  /// The same with usual magnitudes. A value outside gives a warning; 0 is accepted wherever the key allows it.
+  Key& unit(std::string_view si_unit, double lowest, double highest);
   Key& required();
   Key& range(double lowest, double highest);  ///< inclusive
   Key& positive();                            ///< > 0
   Key& not_negative();                        ///< >= 0
   Key& size(std::size_t n);                   ///< of a list of numbers
-  /// Sets usual magnitudes. A value outside gives a warning; 0 is accepted wherever the key allows it.
-  Key& plausible(double lowest, double highest);
   /// States why a key with a unit has no usual magnitudes.
   Key& any_magnitude(std::string_view reason);
   Key& doc(std::string_view text);

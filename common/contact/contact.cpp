@@ -11,15 +11,13 @@ namespace couplet::contact {
 
 void declare(config::Section& s, ContactParameters& c, const char* default_direction) {
   s.value("height", c.height)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc("height of the seat along 'direction', of x, y, z of the structure at rest");
   s.value("gap", c.gap)
       .doc(
           "gap of the coupled fluid whose seat this is: 'height', 'opening' and 'direction' are taken from there");
   s.value("opening", c.opening)
-      .unit("m")
-      .plausible(1e-8, 10)
+      .unit("m", 1e-8, 10)
       .not_negative()
       .doc(
           "opening below which the gap's cells are blocked: the structure lands half of it above the seat, so that they keep "
@@ -31,8 +29,7 @@ void declare(config::Section& s, ContactParameters& c, const char* default_direc
                        default_direction));
   s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
   s.value("stiffness", c.stiffness)
-      .unit("N/m^3")
-      .plausible(1, 1e16)
+      .unit("N/m^3", 1, 1e16)
       .positive()
       .doc("force per area and penetration, instead of (4.33)");
   s.value("starts-inside", c.starts_inside)

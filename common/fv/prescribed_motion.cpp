@@ -23,33 +23,25 @@ std::vector<Expression> expressions(const std::vector<config::ExpressionText>& t
 
 void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   s.value("translation", m.translation)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc("one expression of t [s] per component; default: none");
-  s.value("angle", m.angle)
-      .unit("rad")
-      .plausible(1e-9, 1e4)
-      .doc("angle about 'centre', expression of t [s] in rad");
+  s.value("angle", m.angle).unit("rad", 1e-9, 1e4).doc("angle about 'centre', expression of t [s] in rad");
   s.value("centre", m.centre)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc("center of the rotation and of the radii, in the reference configuration");
   s.value("axis", m.axis).size(3).doc("axis of the rotation, 3-D; a 2-D scene rotates about z");
   s.value("displacement", m.displacement)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc(
           "additional displacement field: one expression of x, y, z [m] in the reference configuration and "
           "t [s] per component");
   if (with_radii) {
     s.value("inner-radius", m.inner_radius)
-        .unit("m")
-        .plausible(1e-9, 1e4)
+        .unit("m", 1e-9, 1e4)
         .not_negative()
         .doc("with outer-radius: everything within this distance of the center moves as a rigid body");
     s.value("outer-radius", m.outer_radius)
-        .unit("m")
-        .plausible(1e-9, 1e4)
+        .unit("m", 1e-9, 1e4)
         .positive()
         .doc(
             "beyond it the mesh is at rest; between the radii the motion decays smoothly; default: the "

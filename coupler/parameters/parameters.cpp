@@ -287,8 +287,7 @@ void declare(config::Section& section, ConvergenceParameters& p) {
           "a step has converged when |r| / |H(x)| is below this; r = H(x) - x, the change of the interface "
           "displacement in one pass");
   section.value("absolute", p.absolute)
-      .unit("m")
-      .plausible(1e-18, 0.1)
+      .unit("m", 1e-18, 0.1)
       .not_negative()
       .doc("or when the root mean square of r over the interface vertices is below this; 0 turns this off");
   section.value("both", p.both)
@@ -326,8 +325,7 @@ void declare(config::Section& section, MappingParameters& p) {
           "force and moment are conserved; surface slopes from neighboring faces (projection) or from a "
           "local interpolant by compact radial functions through more faces (rbf)");
   section.value("tolerance", p.tolerance)
-      .unit("m")
-      .plausible(1e-15, 1)
+      .unit("m", 1e-15, 1)
       .positive()
       .doc("maximum distance of matching vertices; default: a millionth of the interface's extent");
 }

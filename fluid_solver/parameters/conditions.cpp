@@ -11,11 +11,10 @@ namespace couplet::fluid {
 
 void declare_rotation(config::Section& r, RotationParameters& rotation) {
   r.value("speed", rotation.speed)
-      .unit("rad/s")
-      .plausible(1e-6, 1e6)
+      .unit("rad/s", 1e-6, 1e6)
       .required()
       .doc("expression of t [s] in rad/s; a ramp applies to it as well");
-  r.value("centre", rotation.centre).unit("m").plausible(1e-9, 1e4).doc("a point on the axis");
+  r.value("centre", rotation.centre).unit("m", 1e-9, 1e4).doc("a point on the axis");
   r.value("axis", rotation.axis).size(3).doc("3-D; a 2-D scene rotates about z");
   r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
           "axis");
@@ -25,15 +24,13 @@ namespace {
 
 void declare_velocity(config::Section& s, BoundaryParameters& b) {
   s.value("velocity", b.velocity)
-      .unit("m/s")
-      .plausible(1e-9, 1e4)
+      .unit("m/s", 1e-9, 1e4)
       .doc("one expression of x, y, z [m] and t [s] per component");
 }
 
 void declare_ramp(config::Section& s, BoundaryParameters& b) {
   s.value("ramp", b.ramp)
-      .unit("s")
-      .plausible(1e-12, 1e10)
+      .unit("s", 1e-12, 1e10)
       .positive()
       .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; default: no ramp");
 }
@@ -67,8 +64,7 @@ void declare_absorbing(config::Section& s, BoundaryParameters& b) {
 void declare_inlet(config::Section& s, BoundaryParameters& b) {
   declare_velocity(s, b);
   s.value("mean-speed", b.mean_speed)
-      .unit("m/s")
-      .plausible(1e-9, 1e4)
+      .unit("m/s", 1e-9, 1e4)
       .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
       .doc(
@@ -103,7 +99,7 @@ void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
 }
 
 void declare_outlet(config::Section& s, BoundaryParameters& b) {
-  s.value("pressure", b.pressure).unit("Pa").plausible(1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
+  s.value("pressure", b.pressure).unit("Pa", 1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
   s.value("backflow-stabilisation", b.backflow_stabilisation)
       .doc(
           "fluid that enters here comes from rest: 'pressure' is its total pressure, and it enters at a pressure lower by "
@@ -113,8 +109,7 @@ void declare_outlet(config::Section& s, BoundaryParameters& b) {
 
 void declare_partial_slip(config::Section& s, BoundaryParameters& b) {
   s.value("slip-length", b.slip_length)
-      .unit("m")
-      .plausible(1e-10, 10)
+      .unit("m", 1e-10, 10)
       .positive()
       .required()
       .doc("distance behind the wall at which the velocity along it, continued, is zero: u = L du/dn");
@@ -126,8 +121,7 @@ void declare_periodic(config::Section& s, BoundaryParameters& b) {
 
 void declare_interface(config::Section& s, BoundaryParameters& b) {
   s.value("surface-density", b.surface_density)
-      .unit("kg/m^2")
-      .plausible(1e-6, 1e6)
+      .unit("kg/m^2", 1e-6, 1e6)
       .positive()
       .doc(
           "mass per area of the structure behind the wall: the pressure equation then anticipates "

@@ -30,25 +30,22 @@ constexpr GradientField fields[] = {
 void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   s.value("patches", c.patches).required().doc("walls whose forces are summed");
   s.value("speed", c.speed)
-      .unit("m/s")
-      .plausible(1e-9, 1e4)
+      .unit("m/s", 1e-9, 1e4)
       .positive()
       .required()
       .doc("U of the dynamic pressure q = rho U^2 / 2");
   s.value("area", c.area)
-      .unit("m^2")
-      .plausible(1e-14, 1e7)
+      .unit("m^2", 1e-14, 1e7)
       .positive()
       .required()
       .doc("A: force over q A; in 2-D a length times 1 m");
-  s.value("length", c.length).unit("m").plausible(1e-9, 1e4).positive().doc("L: moment over q A L");
+  s.value("length", c.length).unit("m", 1e-9, 1e4).positive().doc("L: moment over q A L");
   s.value("pressure", c.pressure)
-      .unit("Pa")
-      .plausible(1e-9, 1e9)
+      .unit("Pa", 1e-9, 1e9)
       .doc("p_ref of Cp = (p - p_ref) / q at these walls, written where 'surfaces' names them");
   s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
   s.value("lift", c.lift).doc("direction of the second coefficient");
-  s.value("centre", c.centre).unit("m").plausible(1e-9, 1e4).doc("fixed reference point of the moment");
+  s.value("centre", c.centre).unit("m", 1e-9, 1e4).doc("fixed reference point of the moment");
   s.value("axis", c.axis).size(3).doc("axis of the moment; in 2-D z");
   const auto needs_direction = [&s](const char* key, const auto& value) {
     s.check([&value] { return value.norm() > 0 ? "" : "a direction must not be zero"; }, key);
@@ -68,22 +65,14 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
 void declare_sample(config::Section& s, SampleParameters& p) {
   using Type = SampleParameters::Type;
   const auto line = [&p](config::Section& v) {
-    v.value("from", p.from)
-        .unit("m")
-        .plausible(1e-9, 1e4)
-        .required()
-        .doc("first end, in the reference configuration");
-    v.value("to", p.to).unit("m").plausible(1e-9, 1e4).required().doc("other end");
+    v.value("from", p.from).unit("m", 1e-9, 1e4).required().doc("first end, in the reference configuration");
+    v.value("to", p.to).unit("m", 1e-9, 1e4).required().doc("other end");
     v.value("points", p.points).range(2, 100000).doc("number of points, ends included");
     v.check([&p] { return p.from == p.to ? "'from' and 'to' coincide" : ""; }, "to");
   };
   const auto plane = [&p, line](config::Section& v) {
     line(v);
-    v.value("up", p.up)
-        .unit("m")
-        .plausible(1e-9, 1e4)
-        .required()
-        .doc("third corner: the plane is from-to by from-up");
+    v.value("up", p.up).unit("m", 1e-9, 1e4).required().doc("third corner: the plane is from-to by from-up");
     v.value("rows", p.rows).range(2, 10000).doc("number of points along from-up");
     v.check(
         [&p] { return (p.to - p.from).cross(p.up - p.from).norm() > 0 ? "" : "the corners lie on one line"; },
@@ -96,14 +85,12 @@ void declare_sample(config::Section& s, SampleParameters& p) {
 void declare_gap(config::Section& s, GapParameters& gap) {
   s.value("between", gap.between).required().doc("the two walls (patches), a valve and its seat");
   s.value("opening", gap.opening)
-      .unit("m")
-      .plausible(1e-8, 10)
+      .unit("m", 1e-8, 10)
       .positive()
       .required()
       .doc("cells where the walls are closer than this are blocked");
   s.value("height", gap.height)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc(
           "height of the seat, the second wall, along 'direction', of x, y, z at rest: the mesh is refused if its wall is "
           "elsewhere, and the 'contact' of a structure may name the gap; default: read from the mesh");
@@ -163,10 +150,9 @@ void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene has a depth of 1 m");
-  s.value("density", p.density).unit("kg/m^3").plausible(0.01, 25000).positive().required().doc("density");
+  s.value("density", p.density).unit("kg/m^3", 0.01, 25000).positive().required().doc("density");
   s.value("viscosity", p.viscosity)
-      .unit("Pa s")
-      .plausible(1e-6, 1e6)
+      .unit("Pa s", 1e-6, 1e6)
       .not_negative()
       .required()
       .doc("dynamic viscosity");
@@ -178,8 +164,7 @@ void declare_scene(config::Section& s, FluidParameters& p) {
 /// Declares step sizes and tolerances.
 void declare_steps(config::Section& s, FluidParameters& p) {
   s.value("time-step", p.time_step)
-      .unit("s")
-      .plausible(1e-12, 1e10)
+      .unit("s", 1e-12, 1e10)
       .positive()
       .doc(
           "largest step of the fluid itself; a coupling step is divided into equal parts not larger than "
@@ -217,19 +202,16 @@ void declare_steps(config::Section& s, FluidParameters& p) {
 /// Declares the initial state and body forces.
 void declare_start(config::Section& s, FluidParameters& p) {
   s.value("initial-velocity", p.initial_velocity)
-      .unit("m/s")
-      .plausible(1e-9, 1e4)
+      .unit("m/s", 1e-9, 1e4)
       .doc("one expression of x, y, z [m] per component; made divergence-free at the start. Absent: at rest");
   s.value("initial-pressure", p.initial_pressure)
-      .unit("Pa")
-      .plausible(1e-9, 1e11)
+      .unit("Pa", 1e-9, 1e11)
       .doc(
           "expression of x, y, z [m]; an initial guess only, but with `compressibility` the state to start from, beside an "
           "initial velocity that is then taken as it is. Absent: zero, in a moving compressible fluid that of an "
           "incompressible one");
   s.value("body-force", p.body_force)
-      .unit("m/s^2")
-      .plausible(1e-4, 1e6)
+      .unit("m/s^2", 1e-4, 1e6)
       .doc("force per mass, one expression of x, y, z [m] and t [s] per component; default: none");
 }
 
@@ -291,15 +273,13 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
       "bodies", p.bodies,
       [](config::Section& b, BodyParameters& body) {
         b.value("level", body.level)
-            .unit("m")
-            .plausible(1e-9, 1e4)
+            .unit("m", 1e-9, 1e4)
             .required()
             .doc(
                 "expression of x, y, z [m] and t [s]: negative inside, approximately the distance near the "
                 "surface");
         b.value("velocity", body.velocity)
-            .unit("m/s")
-            .plausible(1e-9, 1e4)
+            .unit("m/s", 1e-9, 1e4)
             .doc(
                 "one expression of x, y, z [m] and t [s] per component, the velocity of the motion that "
                 "level describes; default: at rest");
@@ -349,8 +329,7 @@ void declare_models(config::Section& s, FluidParameters& p) {
       "statistics", p.statistics,
       [](config::Section& t, StatisticsParameters& statistics) {
         t.value("start", statistics.start)
-            .unit("s")
-            .plausible(1e-12, 1e10)
+            .unit("s", 1e-12, 1e10)
             .not_negative()
             .doc("start time of the averaging");
       },
@@ -390,7 +369,7 @@ void declare_written(config::Section& s, FluidParameters& p) {
       "probes", p.probes,
       [&p](config::Section& q, ProbeParameters& probe) {
         config::Key point = q.value("point", probe.point);
-        point.unit("m").plausible(1e-9, 1e4).required().doc("position in the reference configuration");
+        point.unit("m", 1e-9, 1e4).required().doc("position in the reference configuration");
         if (p.dimension == 3) point.size(3);
       },
       "probe", "points whose velocity and pressure are written after each step");

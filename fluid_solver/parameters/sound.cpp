@@ -114,27 +114,23 @@ void declare(config::Section& s, CompressibilityParameters& p) {
           "(a finding reports when it rings). "
           "none: incompressible, and judged by the other keys");
   s.value("mean-time", p.mean_time)
-      .unit("s")
-      .plausible(1e-9, 1e6)
+      .unit("s", 1e-9, 1e6)
       .positive()
       .doc(
           "time over which the mean flow and pressure at `absorbing` boundaries are taken; waves of the angular frequency "
           "w are reflected by 1/(2 w mean-time); default: ten times the travel time of sound across the mesh");
   s.value("speed-of-sound", p.speed_of_sound)
-      .unit("m/s")
-      .plausible(10, 2e4)
+      .unit("m/s", 10, 2e4)
       .positive()
       .doc("speed of sound of the fluid");
   s.value("substance", p.substance)
       .doc("alternative: a gas or liquid with known speed of sound: " + base::join(substances()));
   s.value("temperature", p.temperature)
-      .unit("K")
-      .plausible(70, 5000)
+      .unit("K", 70, 5000)
       .positive()
       .doc("temperature of the substance, absolute (20 degC or 293.15 K); default: 20 degC");
   s.value("pressure", p.pressure)
-      .unit("Pa")
-      .plausible(1, 1e10)
+      .unit("Pa", 1, 1e10)
       .positive()
       .doc(
           "alternative: absolute pressure of a gas; the speed of sound is sqrt(heat-capacity-ratio "
@@ -144,8 +140,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .doc(
           "heat capacity ratio of a gas; default: that of the substance, or of the gas with the nearest density");
   s.value("upstream-volume", p.upstream_volume)
-      .unit("m^3")
-      .plausible(1e-15, 1e6)
+      .unit("m^3", 1e-15, 1e6)
       .not_negative()
       .doc(
           "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder), into which flows what the "
@@ -157,14 +152,12 @@ void declare(config::Section& s, CompressibilityParameters& p) {
         using End = UpstreamLineParameters::End;
         l.value("length", line.length)
             .required()
-            .unit("m")
-            .plausible(1e-6, 1e5)
+            .unit("m", 1e-6, 1e5)
             .positive()
             .doc("length of the tube; steps are no longer than a wave takes to its end and back");
         l.value("area", line.area)
             .required()
-            .unit("m^2")
-            .plausible(1e-12, 1e4)
+            .unit("m^2", 1e-12, 1e4)
             .positive()
             .doc(
                 "cross-section of the tube; in 2-D per meter of depth, for a symmetric half that behind this half. Waves are "
@@ -176,7 +169,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
                 "the inlets then prescribe zero. absorbing: the tube goes on, and the pressure and the mean flow that the "
                 "inlets prescribe come through it; of a flow that oscillates, half enters as a wave, because a whole "
                 "wave has its own pressure, too");
-        l.value("pressure", line.pressure).unit("Pa").plausible(1e-6, 1e9).doc("pressure at the far end");
+        l.value("pressure", line.pressure).unit("Pa", 1e-6, 1e9).doc("pressure at the far end");
         l.check(
             [&line] {
               return line.end == End::closed && line.pressure != 0

@@ -10,9 +10,9 @@
 namespace couplet::plate {
 namespace {
 
-config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3").plausible(1, 25000); }
-config::Key& as_modulus(config::Key&& key) { return key.unit("Pa").plausible(1, 2e12); }
-config::Key& as_thickness(config::Key&& key) { return key.unit("m").plausible(1e-7, 10); }
+config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3", 1, 25000); }
+config::Key& as_modulus(config::Key&& key) { return key.unit("Pa", 1, 2e12); }
+config::Key& as_thickness(config::Key&& key) { return key.unit("m", 1e-7, 10); }
 
 /// Declares material and thickness.
 void declare_layers(config::Section& s, Parameters& p) {
@@ -70,10 +70,7 @@ void declare_place(config::Section& s, Parameters& p) {
   s.section(
       "placement",
       [&](config::Section& q) {
-        q.value("origin", p.placement.origin)
-            .unit("m")
-            .plausible(1e-9, 1e4)
-            .doc("position of the mesh origin");
+        q.value("origin", p.placement.origin).unit("m", 1e-9, 1e4).doc("position of the mesh origin");
         q.value("x-axis", p.placement.x).doc("direction of the mesh's x, of any length");
         q.value("y-axis", p.placement.y)
             .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
@@ -128,14 +125,9 @@ void declare_modes(config::Section& s, Parameters& p) {
       "damping", p.damping,
       [](config::Section& d, Damping& v) {
         d.value("ratio", v.ratio).range(0, 1).doc("fraction of critical damping, the same in every mode");
-        d.value("mass", v.mass)
-            .unit("1/s")
-            .plausible(1e-9, 1e9)
-            .not_negative()
-            .doc("Rayleigh coefficient of the mass");
+        d.value("mass", v.mass).unit("1/s", 1e-9, 1e9).not_negative().doc("Rayleigh coefficient of the mass");
         d.value("stiffness", v.stiffness)
-            .unit("s")
-            .plausible(1e-15, 1e4)
+            .unit("s", 1e-15, 1e4)
             .not_negative()
             .doc("Rayleigh coefficient of the stiffness");
       },
@@ -144,20 +136,17 @@ void declare_modes(config::Section& s, Parameters& p) {
 
 void declare_loads(config::Section& s, Parameters& p) {
   s.value("gravity", p.gravity)
-      .unit("m/s^2")
-      .plausible(1e-3, 2000)
+      .unit("m/s^2", 1e-3, 2000)
       .size(3)
       .doc("acceleration of gravity, three numbers");
   s.optional_section<Load>(
       "load", p.load,
       [](config::Section& l, Load& v) {
         l.value("upper-pressure", v.upper)
-            .unit("Pa")
-            .plausible(1e-9, 1e11)
+            .unit("Pa", 1e-9, 1e11)
             .doc("pressure on the side the normal points to (with 'modes.file': +z), of x, y, z, t");
         l.value("lower-pressure", v.lower)
-            .unit("Pa")
-            .plausible(1e-9, 1e11)
+            .unit("Pa", 1e-9, 1e11)
             .doc("pressure on the opposite side (with 'modes.file': -z), of x, y, z, t");
       },
       "pressures acting on the sides, in addition to those of a fluid; a table of a file: 'table(t, "
@@ -242,20 +231,17 @@ void declare(config::Section& s, Parameters& p) {
   declare_modes(s, p);
   declare_loads(s, p);
   s.value("initial-velocity", p.initial_velocity)
-      .unit("m/s")
-      .plausible(1e-9, 1e4)
+      .unit("m/s", 1e-9, 1e4)
       .doc("initial velocity of the whole structure");
   s.value("initial-amplitudes", p.initial_amplitudes)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc("initial amplitudes of the modes: the displacement where each is largest");
   s.map<Watched>(
       "probes", p.probes,
       [](config::Section& q, Watched& v) {
         q.value("point", v.point)
             .required()
-            .unit("m")
-            .plausible(1e-9, 1e4)
+            .unit("m", 1e-9, 1e4)
             .doc(
                 "position on the undeformed surface, or within the thickness or a hundredth of the "
                 "structure's size of it: the nearest point of the surface is used");

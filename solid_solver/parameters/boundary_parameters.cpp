@@ -36,7 +36,7 @@ std::string problem_of_totals(const Texts& texts) {
 void declare_force(config::Section& s, const char* key, Texts& force, bool is_required, const char* doc) {
   {
     config::Key k = s.value(key, force);
-    k.unit("N").plausible(1e-9, 1e12).doc(doc);
+    k.unit("N", 1e-9, 1e12).doc(doc);
     if (is_required) k.required();
   }
   s.check([&] { return problem_of_totals(force); }, key);
@@ -46,8 +46,7 @@ void declare_moment(config::Section& s, Texts& moment, const int& dimension) {
   {
     config::Key key = s.value("moment", moment);
     if (dimension == 2) key.size(1);
-    key.unit("N m")
-        .plausible(1e-9, 1e12)
+    key.unit("N m", 1e-9, 1e12)
         .doc("moment about 'point', one expression of t per component; in 2-D one, positive from x to y");
   }
   s.check([&] { return problem_of_totals(moment); }, "moment");
@@ -67,8 +66,7 @@ void declare_total_force(config::Section& s, TotalLoad& load) {
 
 void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimension) {
   s.value("point", load.point)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .required()
       .doc("point of application of the force, on the patch or away from it");
   declare_force(s, "force", load.force, false,
@@ -89,14 +87,12 @@ void declare_bearing_load(config::Section& s, TotalLoad& load) {
 
 void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int& dimension) {
   s.value("density", load.density)
-      .unit("kg/m^3")
-      .plausible(0.05, 25000)
+      .unit("kg/m^3", 0.05, 25000)
       .positive()
       .required()
       .doc("density of the liquid");
   s.value("gravity", load.gravity)
-      .unit("m/s^2")
-      .plausible(1e-3, 2000)
+      .unit("m/s^2", 1e-3, 2000)
       .required()
       .doc("acceleration of gravity, one number per component");
   s.check(
@@ -110,8 +106,7 @@ void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int
       },
       "gravity");
   s.value("level", load.level)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .required()
       .doc(
           "height of the free surface against gravity, measured from the origin, of t: y of the surface for "
@@ -120,13 +115,12 @@ void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int
 }
 
 void declare(config::Section& s, PointLoad& load, const int& dimension) {
-  s.value("point", load.point).unit("m").plausible(1e-9, 1e4).required().doc("point on the surface");
+  s.value("point", load.point).unit("m", 1e-9, 1e4).required().doc("point on the surface");
   declare_force(s, "force", load.force, false,
                 "force at 'point', one expression of t per component; in 2-D per meter of depth");
   declare_moment(s, load.moment, dimension);
   s.value("radius", load.radius)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .not_negative()
       .doc(
           "faces with their center within this distance of 'point' share the load, as for a remote-load; 0 means "
@@ -150,7 +144,7 @@ void declare_vector(config::Section& s, const char* key, std::vector<config::Exp
                     const char* unit, const char* doc) {
   constexpr std::pair usual_length{1e-9, 1e4}, usual_pressure{1e-9, 1e11};
   const auto [lowest, highest] = std::string_view(unit) == "m" ? usual_length : usual_pressure;
-  s.value(key, texts).unit(unit).plausible(lowest, highest).doc(doc);
+  s.value(key, texts).unit(unit, lowest, highest).doc(doc);
 }
 
 std::string problem_of_components(const SolidCondition& c, int dimension) {
@@ -163,16 +157,14 @@ std::string problem_of_components(const SolidCondition& c, int dimension) {
 
 void declare_displacement(config::Section& s, SolidCondition& c, const int& dimension) {
   s.value("value", c.value)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc("displacement, one expression of x, y, z, t per component");
   s.section(
       "components",
       [&c](config::Section& v) {
         for (int i = 0; i < 3; ++i)
           v.value(base::axis_letters[i], c.components[i])
-              .unit("m")
-              .plausible(1e-9, 1e4)
+              .unit("m", 1e-9, 1e4)
               .doc("displacement along this axis, of x, y, z, t");
       },
       "instead of value: the prescribed components; the others are free. On a part of a patch this holds "
@@ -194,17 +186,13 @@ void declare_roller(config::Section& s, SolidCondition& c) {
   s.value("direction", c.normal).required().doc("direction that is held, any length");
   s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "direction");
-  s.value("value", c.along)
-      .unit("m")
-      .plausible(1e-9, 1e4)
-      .doc("displacement along this direction, of x, y, z, t");
+  s.value("value", c.along).unit("m", 1e-9, 1e4).doc("displacement along this direction, of x, y, z, t");
   declare_vector(s, "traction", c.traction, "Pa", "force per area across this direction");
 }
 
 void declare_spring(config::Section& s, SolidCondition& c) {
   s.value("stiffness", c.stiffness)
-      .unit("N/m^3")
-      .plausible(1, 1e16)
+      .unit("N/m^3", 1, 1e16)
       .required()
       .doc("force per area and displacement, of x, y, z (Winkler foundation)");
   s.choice("direction", c.along_normal, {{"all", false}, {"normal", true}})
@@ -217,15 +205,13 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
   const auto displacement = [&](config::Section& v) { declare_displacement(v, c, dimension); };
   const auto traction = [&](config::Section& v) {
     v.value("value", c.value)
-        .unit("Pa")
-        .plausible(1e-9, 1e11)
+        .unit("Pa", 1e-9, 1e11)
         .required()
         .doc("force per area, one expression of x, y, z, t per component");
   };
   const auto pressure = [&](config::Section& v) {
     v.value("value", c.pressure)
-        .unit("Pa")
-        .plausible(1e-9, 1e11)
+        .unit("Pa", 1e-9, 1e11)
         .required()
         .doc("pressure acting into the solid, of x, y, z, t");
   };

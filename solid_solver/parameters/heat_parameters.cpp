@@ -20,7 +20,7 @@ void declare_property(config::Section& s, const HeatProperty& q, Text& text, boo
                       const char* doc) {
   {
     config::Key key = s.value(q.name, text);
-    key.unit(q.unit).plausible(q.lowest, q.highest).doc(doc);
+    key.unit(q.unit, q.lowest, q.highest).doc(doc);
     if (is_positive) key.positive();
   }
   s.check([&text] { return text ? fv::problem_of_property(*text) : std::string(); }, q.name);
@@ -32,8 +32,7 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
                              const char* doc, double least = -std::numeric_limits<double>::infinity()) {
     v.value(q.name, text)
         .range(least, std::numeric_limits<double>::infinity())
-        .unit(q.unit)
-        .plausible(q.lowest, q.highest)
+        .unit(q.unit, q.lowest, q.highest)
         .required()
         .doc(doc);
   };
@@ -87,13 +86,9 @@ void declare(config::Section& s, HeatParameters& h) {
        {{"euler", Scheme::euler}, {"three-point", Scheme::three_point}, {"trapezoidal", Scheme::trapezoidal}})
       .doc("euler: first order; three-point (backward, variable steps), trapezoidal: second order");
   s.value("initial-temperature", h.initial_temperature)
-      .unit("K")
-      .plausible(70, 5000)
+      .unit("K", 70, 5000)
       .doc("initial temperature, of x, y, z");
-  s.value("source", h.source)
-      .unit("W/m^3")
-      .plausible(1e-6, 1e14)
-      .doc("heat source in the solid, of x, y, z, t");
+  s.value("source", h.source).unit("W/m^3", 1e-6, 1e14).doc("heat source in the solid, of x, y, z, t");
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
       "patch", "patches that are not adiabatic; mechanical symmetry planes are thermal ones as well");
@@ -112,8 +107,7 @@ void declare(config::Section& s, HeatParameters& h) {
 
 void declare(config::Section& s, ThermalExpansion& e) {
   s.value("reference-temperature", e.reference_temperature)
-      .unit("K")
-      .plausible(70, 5000)
+      .unit("K", 70, 5000)
       .doc("temperature of zero thermal strain");
 }
 
@@ -121,10 +115,7 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<HeatParameters>(
       "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
       "heat conduction; each step solves for the temperature before the displacement");
-  s.value("temperature", p.temperature)
-      .unit("K")
-      .plausible(70, 5000)
-      .doc("prescribed temperature, of x, y, z, t");
+  s.value("temperature", p.temperature).unit("K", 70, 5000).doc("prescribed temperature, of x, y, z, t");
   s.optional_section<ThermalExpansion>(
       "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
       "thermal strain; requires 'heat' or 'temperature', and 'expansion' of the material");

@@ -38,14 +38,14 @@ std::string problem_of_constants(const Orthotropic& m) {
 }  // namespace
 
 void declare(config::Section& s, Orthotropic& m) {
-  s.value("youngs-moduli", m.youngs_moduli).unit("Pa").plausible(100, 2e12).required().doc("E1, E2, E3");
+  s.value("youngs-moduli", m.youngs_moduli).unit("Pa", 100, 2e12).required().doc("E1, E2, E3");
   s.check([&m] { return problem_of_numbers(m.youngs_moduli, true, "three (E1, E2, E3)"); }, "youngs-moduli");
   s.value("poissons-ratios", m.poissons_ratios)
       .required()
       .doc("nu12, nu23, nu13; nu12: contraction along 2 under tension along 1, nu21 = nu12 E2 / E1");
   s.check([&m] { return problem_of_numbers(m.poissons_ratios, false, "three (nu12, nu23, nu13)"); },
           "poissons-ratios");
-  s.value("shear-moduli", m.shear_moduli).unit("Pa").plausible(100, 2e12).required().doc("G12, G23, G13");
+  s.value("shear-moduli", m.shear_moduli).unit("Pa", 100, 2e12).required().doc("G12, G23, G13");
   s.check([&m] { return problem_of_numbers(m.shear_moduli, true, "three (G12, G23, G13)"); }, "shear-moduli");
   s.check([&m] { return problem_of_constants(m); }, "poissons-ratios");
   s.value("first-axis", m.first_axis)
@@ -134,7 +134,7 @@ void declare_law(config::Section& s, SolidMaterial& m) {
 }  // namespace
 
 void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
-  s.value("density", m.density).unit("kg/m^3").plausible(1, 25000).positive().required().doc("density");
+  s.value("density", m.density).unit("kg/m^3", 1, 25000).positive().required().doc("density");
   if (is_elastic)
     s.optional_section<Orthotropic>(
         "orthotropic", m.orthotropic, [](config::Section& o, Orthotropic& v) { declare(o, v); },
@@ -144,8 +144,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
     return is_elastic && !m.orthotropic ? key.required() : key;
   };
   needed(s.value("youngs-modulus", m.youngs_modulus)
-             .unit("Pa")
-             .plausible(1, 2e12)
+             .unit("Pa", 1, 2e12)
              .positive()
              .doc("Young's modulus; needed without 'orthotropic'"));
   needed(
@@ -162,8 +161,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
       "orthotropic");
   s.doubt([&m] { return config::doubt_of_wave_speed(m.youngs_modulus, m.density); }, "density");
   s.value("yield-strength", m.yield_strength)
-      .unit("Pa")
-      .plausible(1000, 1e11)
+      .unit("Pa", 1000, 1e11)
       .positive()
       .doc("the run reports where the equivalent stress reaches it; no other effect");
   if (is_elastic) declare_law(s, m);

@@ -66,8 +66,7 @@ void declare(config::Section& s, SolidProbe& p) {
 
 void declare(config::Section& s, SolidQuantity& q, int dimension) {
   s.value("point", q.point)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc("position in the undeformed solid; of an equivalent stress none: where it is largest");
   s.value("patch", q.patch).doc("of a heat flow: the patch through which heat enters the solid");
   s.value("field", q.field)
@@ -94,8 +93,7 @@ void declare(config::Section& s, SolidOutputParameters& o) {
       .doc(
           "reactions.csv also has the moment of each patch's force, of large strain that of the deformed body");
   s.value("moment-centre", o.moment_centre)
-      .unit("m")
-      .plausible(1e-9, 1e4)
+      .unit("m", 1e-9, 1e4)
       .doc("point about which 'moments' are taken; it rests");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
   s.value("spectrum", o.spectrum)
@@ -215,23 +213,20 @@ void declare_loads(config::Section& s, SolidParameters& p) {
       [](config::Section& c, contact::ContactParameters& v) { contact::declare(c, v, "z, in 2-D y"); },
       "a rigid seat without friction that free, loaded and interface faces may meet");
   s.value("body-force", p.body_force)
-      .unit("N/m^3")
-      .plausible(1e-6, 1e11)
+      .unit("N/m^3", 1e-6, 1e11)
       .doc("force per volume, one expression of x, y, z, t per component");
   s.value("gravity", p.gravity)
-      .unit("m/s^2")
-      .plausible(1e-3, 2000)
+      .unit("m/s^2", 1e-3, 2000)
       .doc("acceleration of gravity, one number per component");
   s.value("initial-velocity", p.initial_velocity)
-      .unit("m/s")
-      .plausible(1e-9, 1e4)
+      .unit("m/s", 1e-9, 1e4)
       .doc("initial velocity, one expression of x, y, z per component");
 }
 
 void declare_probe(config::Section& s, SolidProbe& probe, int dimension) {
   {
     config::Key point = s.value("point", probe.point);
-    point.unit("m").plausible(1e-9, 1e4).required().doc("position in the undeformed solid");
+    point.unit("m", 1e-9, 1e4).required().doc("position in the undeformed solid");
     if (dimension == 3) point.size(3);
   }
   declare(s, probe);

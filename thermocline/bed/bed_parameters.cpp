@@ -22,8 +22,7 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
           "axial conduction: 0.7 eps k + 0.5 Re Pr k; eps k; the stagnant bed of Zehner and Schluender "
           "with dispersion; or given");
   s.value("conductivity", p.conductivity)
-      .unit("W/(m K)")
-      .plausible(1e-3, 1e4)
+      .unit("W/(m K)", 1e-3, 1e4)
       .not_negative()
       .doc("conductivity, with conduction: constant");
   s.choice("wall-film", p.wall_film,
@@ -47,8 +46,7 @@ void declare_layer(config::Section& s, BedLayer& l) {
   as_length(s.value("height", l.height)).positive().required().doc("height");
   s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of fluid; 1 if no filler");
   s.value("diameter", l.diameter)
-      .unit("m")
-      .plausible(1e-4, 1)
+      .unit("m", 1e-4, 1)
       .positive()
       .required()
       .doc("effective diameter of the grains");
@@ -69,8 +67,7 @@ void declare_start(config::Section& section, BedParameters& p) {
       .positive()
       .doc("initial temperature of fluid and filler");
   section.value("profile-z", p.profile_z)
-      .unit("m")
-      .plausible(1e-4, 300)
+      .unit("m", 1e-4, 300)
       .doc("heights of an initial profile, instead of one temperature");
   as_temperature(section.value("profile-temperature", p.profile_temperature))
       .doc("temperatures of the profile, piecewise linear");

@@ -192,7 +192,7 @@ std::pair<double, double> usual_of(std::string_view unit) {
 
 void declare_table(config::Section& s, const char* name, const char* unit, std::vector<double>& values,
                    const std::vector<double>& temperature, const char* doc) {
-  s.value(name, values).unit(unit).plausible(usual_of(unit).first, usual_of(unit).second).required().doc(doc);
+  s.value(name, values).unit(unit, usual_of(unit).first, usual_of(unit).second).required().doc(doc);
   s.check([&] { return problem_of(temperature, values, true); }, name);
 }
 
@@ -205,8 +205,7 @@ void declare_custom(config::Section& s, FluidParameters& p) {
   declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
   as_temperature(s.value("lowest", p.lowest)).doc("freezing point, below which the run warns");
   s.value("highest", p.highest)
-      .unit("K")
-      .plausible(70, 1e4)
+      .unit("K", 70, 1e4)
       .doc("boiling or decomposition point, above which the run warns");
 }
 
@@ -222,8 +221,7 @@ void declare(config::Section& section, FluidParameters& p) {
   };
   const auto gas = [&p](config::Section& s) {
     s.value("pressure", p.pressure)
-        .unit("Pa")
-        .plausible(1e4, 1e8)
+        .unit("Pa", 1e4, 1e8)
         .positive()
         .doc("pressure where the gas leaves the bed");
     s.value("reference-temperature", p.reference_temperature)
@@ -251,8 +249,7 @@ void declare(config::Section& section, FluidParameters& p) {
 
 void declare(config::Section& s, Filler& f) {
   s.value("density", f.density)
-      .unit("kg/m^3")
-      .plausible(50, 25000)
+      .unit("kg/m^3", 50, 25000)
       .positive()
       .doc("density of the grains; the defaults are those of quartzite");
   as_specific_heat(s.value("specific-heat", f.specific_heat)).positive().doc("specific heat of the grains");
@@ -262,8 +259,7 @@ void declare(config::Section& s, Filler& f) {
       .range(0.01, 1.5)
       .doc("internal friction angle of the bulk, phi in (5.17)");
   s.value("expansion", f.expansion)
-      .unit("1/K")
-      .plausible(1e-8, 1e-3)
+      .unit("1/K", 1e-8, 1e-3)
       .not_negative()
       .doc("linear thermal expansion of the bulk");
 }
@@ -275,8 +271,7 @@ void declare(config::Section& s, Melting& m) {
       .doc("middle of the melting range");
   s.value("width", m.width).unit("K difference").range(1e-3, 200).doc("width of that range");
   s.value("latent-heat", m.latent_heat)
-      .unit("J/kg")
-      .plausible(1000, 1e7)
+      .unit("J/kg", 1000, 1e7)
       .not_negative()
       .required()
       .doc("latent heat, absorbed evenly over the range");
@@ -288,8 +283,7 @@ void declare(config::Section& section, SteelParameters& p) {
     as_density(s.value("density", p.density)).positive().doc("density");
     s.value("poissons-ratio", p.poissons_ratio).range(0, 0.499).doc("Poisson's ratio");
     s.value("highest", p.highest)
-        .unit("K")
-        .plausible(70, 1e4)
+        .unit("K", 70, 1e4)
         .doc("maximum service temperature of the metal, above which the run warns");
     as_temperature(s.value("temperature", p.temperature))
         .required()

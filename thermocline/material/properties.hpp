@@ -14,18 +14,18 @@
 namespace couplet::thermocline {
 
 // Units and plausible ranges of quantities that several elements use.
-inline config::Key& as_temperature(config::Key&& key) { return key.unit("K").plausible(70, 5000); }
-inline config::Key& as_difference(config::Key&& key) { return key.unit("K difference").plausible(0.1, 500); }
-inline config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3").plausible(0.05, 25000); }
-inline config::Key& as_thickness(config::Key&& key) { return key.unit("m").plausible(1e-4, 30); }
-inline config::Key& as_length(config::Key&& key) { return key.unit("m").plausible(0.01, 100); }
+inline config::Key& as_temperature(config::Key&& key) { return key.unit("K", 70, 5000); }
+inline config::Key& as_difference(config::Key&& key) { return key.unit("K difference", 0.1, 500); }
+inline config::Key& as_density(config::Key&& key) { return key.unit("kg/m^3", 0.05, 25000); }
+inline config::Key& as_thickness(config::Key&& key) { return key.unit("m", 1e-4, 30); }
+inline config::Key& as_length(config::Key&& key) { return key.unit("m", 0.01, 100); }
 inline config::Key& as_tank_length(config::Key&& key) {
-  return key.unit("m").plausible(0.01, 300).positive().required();
+  return key.unit("m", 0.01, 300).positive().required();
 }
-inline config::Key& as_step(config::Key&& key) { return key.unit("s").plausible(0.1, 1e5); }
-inline config::Key& as_specific_heat(config::Key&& key) { return key.unit("J/(kg K)").plausible(10, 1e5); }
-inline config::Key& as_conductivity(config::Key&& key) { return key.unit("W/(m K)").plausible(1e-3, 1e7); }
-inline config::Key& as_film(config::Key&& key) { return key.unit("W/(m^2 K)").plausible(1e-3, 1e7); }
+inline config::Key& as_step(config::Key&& key) { return key.unit("s", 0.1, 1e5); }
+inline config::Key& as_specific_heat(config::Key&& key) { return key.unit("J/(kg K)", 10, 1e5); }
+inline config::Key& as_conductivity(config::Key&& key) { return key.unit("W/(m K)", 1e-3, 1e7); }
+inline config::Key& as_film(config::Key&& key) { return key.unit("W/(m^2 K)", 1e-3, 1e7); }
 
 /// Declares a section by `declare` of its parameters; optional for a std::optional.
 template <class T>

@@ -218,7 +218,7 @@ void look_at_weather(const WeatherParameters& ambient, const std::optional<Insul
 }
 
 void declare_surroundings(config::Section& s, double& initial, WeatherParameters& ambient, const char* what) {
-  s.value("initial-temperature", initial).unit("K").plausible(70, 5000).positive().required().doc(what);
+  s.value("initial-temperature", initial).unit("K", 70, 5000).positive().required().doc(what);
   s.section(
       "ambient", [&ambient](config::Section& q) { declare(q, ambient); }, "weather");
 }

@@ -68,8 +68,7 @@ void declare(config::Section& section, GroundParameters& p) {
       },
       "layers from the tank downwards");
   section.value("cell", p.cell)
-      .unit("m")
-      .plausible(1e-3, 10)
+      .unit("m", 1e-3, 10)
       .positive()
       .doc("maximum height of a cell next to the tank");
   as_step(section.value("step", p.step)).positive().doc("time step of the ground");
@@ -134,8 +133,7 @@ void declare(config::Section& section, TankParameters& p) {
       "output",
       [&p](config::Section& s) {
         s.value("monitor-interval", p.output.monitor_interval)
-            .unit("s")
-            .plausible(0.1, 1e7)
+            .unit("s", 0.1, 1e7)
             .not_negative()
             .doc("time between rows of tank.csv; 0 means each step");
       },

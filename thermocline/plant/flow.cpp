@@ -19,10 +19,9 @@ namespace couplet::thermocline {
 namespace {
 
 void declare_row(config::Section& s, ScheduleRow& r) {
-  s.value("at", r.at).unit("s").plausible(1e-3, 1e11).not_negative().required().doc("start time of the row");
+  s.value("at", r.at).unit("s", 1e-3, 1e11).not_negative().required().doc("start time of the row");
   s.value("mass-flow", r.mass_flow)
-      .unit("kg/s")
-      .plausible(1e-6, 1e5)
+      .unit("kg/s", 1e-6, 1e5)
       .required()
       .doc("upward (discharge) above 0, downward (charge) below 0");
   as_temperature(s.value("inlet-temperature", r.inlet_temperature))
@@ -50,17 +49,11 @@ void declare_schedule(config::Section& s, FlowParameters& p) {
       "repeat", p.repeat,
       [](config::Section& q, ScheduleRepeat& r) {
         q.value("from", r.from)
-            .unit("s")
-            .plausible(1e-3, 1e11)
+            .unit("s", 1e-3, 1e11)
             .not_negative()
             .required()
             .doc("rows at or after this time ...");
-        q.value("every", r.every)
-            .unit("s")
-            .plausible(1, 1e9)
-            .positive()
-            .required()
-            .doc("... repeat with this period");
+        q.value("every", r.every).unit("s", 1, 1e9).positive().required().doc("... repeat with this period");
       },
       "the schedule repeats forever");
   s.check(

@@ -199,8 +199,7 @@ std::vector<std::string> Calendar::doubts() const {
 
 void declare(config::Section& s, PlantParameters& p) {
   s.value("electric-power", p.electric_power)
-      .unit("W")
-      .plausible(1000, 1e10)
+      .unit("W", 1000, 1e10)
       .positive()
       .required()
       .doc("firm output of the power block");
@@ -209,8 +208,7 @@ void declare(config::Section& s, PlantParameters& p) {
       .required()
       .doc("electric power per heat taken");
   s.value("field-area", p.field_area)
-      .unit("m^2")
-      .plausible(1, 1e8)
+      .unit("m^2", 1, 1e8)
       .positive()
       .required()
       .doc("collecting area of the solar field");

@@ -89,13 +89,11 @@ StressHistory::Factor StressHistory::dynamic_factor() const {
 
 void declare(config::Section& s, ReportParameters& p) {
   s.value("run-in", p.run_in)
-      .unit("day")
-      .plausible(1, 1e4)
+      .unit("day", 1, 1e4)
       .not_negative()
       .doc("these first days, in which the cycle becomes periodic, are excluded from the means");
   s.value("profile-day", p.profile_day)
-      .unit("day")
-      .plausible(1, 1e4)
+      .unit("day", 1, 1e4)
       .not_negative()
       .doc("on this day after the start, hourly profiles are written; default: none");
   as_difference(s.value("thickness-margin", p.thickness_margin))
@@ -110,8 +108,7 @@ void declare(config::Section& s, ReportParameters& p) {
       s, "economics", p.economics,
       "prices, in any currency: the summary then includes capital and levelised cost of electricity");
   s.value("dead-state", p.dead_state)
-      .unit("K")
-      .plausible(200, 400)
+      .unit("K", 200, 400)
       .positive()
       .doc("reference temperature of the exergy");
   s.check(

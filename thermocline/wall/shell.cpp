@@ -169,12 +169,11 @@ void declare(config::Section& section, ShellParameters& p) {
       "plates", p.plates,
       [](config::Section& s, Plate& l) {
         as_length(s.value("height", l.height)).positive().required().doc("height");
-        s.value("thickness", l.thickness).unit("m").plausible(1e-4, 1).positive().required().doc("thickness");
+        s.value("thickness", l.thickness).unit("m", 1e-4, 1).positive().required().doc("thickness");
       },
       "from the bottom up; the last one continues to the top");
   section.value("roof-pressure", p.roof_pressure)
-      .unit("Pa")
-      .plausible(1, 1e6)
+      .unit("Pa", 1, 1e6)
       .not_negative()
       .doc("weight of the roof per roof area");
   section.check([&p] { return p.plates.empty() ? "at least one plate is needed" : ""; }, "plates");

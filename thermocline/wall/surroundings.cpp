@@ -156,10 +156,7 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
 }
 
 void declare(config::Section& section, UllageParameters& p) {
-  section.value("gauge-pressure", p.gauge_pressure)
-      .unit("Pa")
-      .plausible(1, 1e6)
-      .doc("gauge pressure of the gas");
+  section.value("gauge-pressure", p.gauge_pressure).unit("Pa", 1, 1e6).doc("gauge pressure of the gas");
   section.value("emissivity-liquid", p.emissivity_liquid)
       .range(0.01, 1)
       .doc("emissivity of the liquid's surface");

@@ -231,8 +231,7 @@ void declare_smooth_days(config::Section& s, WeatherParameters& p) {
       .required()
       .doc("latitude of the site, north positive; it determines the length of the days");
   s.value("daily-sums", d.daily_sums)
-      .unit("J/m^2")
-      .plausible(1e5, 5e7)
+      .unit("J/m^2", 1e5, 5e7)
       .required()
       .doc("mean daily direct normal irradiation of the 12 months, for example 7.2 kWh/m^2");
   s.value("form-n", d.n).doc("n of (1 - |2 t/T|^n)^p, one value or 12: 1 is a peak, 2 is round, 9 is a box");

@@ -22,10 +22,9 @@ void declare_fields(config::Section& s, io::FieldChoice& f) {
   s.optional_section<io::FieldChoice::Box>(
       "box", f.box,
       [](config::Section& b, io::FieldChoice::Box& box) {
-        b.value("from", box.from).unit("m").plausible(1e-9, 1e4).required().doc("lowest corner");
+        b.value("from", box.from).unit("m", 1e-9, 1e4).required().doc("lowest corner");
         b.value("to", box.to)
-            .unit("m")
-            .plausible(1e-9, 1e4)
+            .unit("m", 1e-9, 1e4)
             .required()
             .doc("highest corner; in two dimensions the third number is ignored");
         b.check(
@@ -53,8 +52,7 @@ void declare_files(config::Section& section, SimulationParameters& p) {
             },
             "folder");
         s.value("interval", p.output_interval)
-            .unit("s")
-            .plausible(1e-12, 1e10)
+            .unit("s", 1e-12, 1e10)
             .not_negative()
             .doc("time between field outputs; 0 for start and end only");
         s.value("steps", p.output_steps)
@@ -66,8 +64,7 @@ void declare_files(config::Section& section, SimulationParameters& p) {
       "checkpoint",
       [&](config::Section& s) {
         s.value("interval", p.checkpoint_interval)
-            .unit("s")
-            .plausible(1e-12, 1e10)
+            .unit("s", 1e-12, 1e10)
             .not_negative()
             .doc("time between checkpoints; 0 means only at the end of the run");
         s.value("keep", p.checkpoints_kept).range(1, 1000000).doc("number of latest checkpoints to keep");
@@ -80,14 +77,12 @@ void declare_files(config::Section& section, SimulationParameters& p) {
 void declare(config::Section& section, SimulationParameters& p) {
   section.value("name", p.name).doc("name of the case, shown at the start of a run");
   section.value("end-time", p.end_time)
-      .unit("s")
-      .plausible(1e-10, 1e11)
+      .unit("s", 1e-10, 1e11)
       .positive()
       .required()
       .doc("end time of the run");
   section.value("time-step", p.time_step)
-      .unit("s")
-      .plausible(1e-13, 1e8)
+      .unit("s", 1e-13, 1e8)
       .positive()
       .required()
       .doc("time step of the run; in a coupled run the coupling step, which a participant may subdivide");
@@ -115,8 +110,7 @@ void declare(config::Section& section, SimulationParameters& p) {
           "estimate the error due to mesh, time step and tolerances at the end of the run and report which "
           "dominates; off: nothing is collected for it");
   section.value("hang-timeout", p.hang_timeout)
-      .unit("s")
-      .plausible(1, 1e6)
+      .unit("s", 1, 1e6)
       .not_negative()
       .doc(
           "the job ends and names the culprit when one of its processes shows no sign of life for this long "

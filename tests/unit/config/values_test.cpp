@@ -18,18 +18,18 @@ struct Quantities {
 };
 
 void declare(config::Section& s, Quantities& q) {
-  s.value("temperature", q.temperature).unit("K").plausible(70, 5000);
-  s.value("difference", q.difference).unit("K difference").plausible(0.1, 500);
+  s.value("temperature", q.temperature).unit("K", 70, 5000);
+  s.value("difference", q.difference).unit("K difference", 0.1, 500);
   s.value("angle", q.angle).unit("rad").any_magnitude("it turns for ever");
   s.value("speed", q.speed).unit("rad/s");
   s.value("rate", q.rate).unit("1/s");
-  s.value("density", q.density).unit("kg/m^3").plausible(1, 25000).positive();
-  s.value("modulus", q.modulus).unit("Pa").plausible(1e3, 2e12).positive();
-  s.value("gravity", q.gravity).unit("m/s^2").plausible(1e-3, 2000);
-  s.value("lengths", q.lengths).unit("m").plausible(1e-3, 10);
-  s.value("load", q.load).unit("Pa").plausible(1, 1e9);
-  s.value("hot", q.hot).unit("K").plausible(70, 5000);
-  s.value("traction", q.traction).unit("Pa").plausible(1, 1e9);
+  s.value("density", q.density).unit("kg/m^3", 1, 25000).positive();
+  s.value("modulus", q.modulus).unit("Pa", 1e3, 2e12).positive();
+  s.value("gravity", q.gravity).unit("m/s^2", 1e-3, 2000);
+  s.value("lengths", q.lengths).unit("m", 1e-3, 10);
+  s.value("load", q.load).unit("Pa", 1, 1e9);
+  s.value("hot", q.hot).unit("K", 70, 5000);
+  s.value("traction", q.traction).unit("Pa", 1, 1e9);
   s.doubt([&q] { return config::doubt_of_wave_speed(q.modulus, q.density); }, "density");
 }
 
