@@ -33,11 +33,11 @@ class IterationGrowth final : public CouplingDiagnostic {
         scales_[i] = residuals[i].scale(), growth_.start_step();
     if (!std::ranges::all_of(residuals,
                              [&](const Residual& r) { return converged(r, view_.parameters.convergence); }))
-      growth_.pass(largest(residuals, scales_), omega, is_constant());
+      growth_.pass(largest(residuals, scales_), omega, view_.parameters.acceleration.type);
   }
   std::optional<app::StepFailure> suspects() const override {
     const double omega = view_.parameters.acceleration.initial_relaxation;
-    if (const auto grew = growth_.suspects(is_constant() ? omega : 0))
+    if (const auto grew = growth_.suspects(is_constant() ? omega : 0, predictor_order_of(view_.parameters)))
       return app::StepFailure(*grew, !is_constant());
     return {};
   }
@@ -189,7 +189,7 @@ class AddedMass final : public CouplingDiagnostic {
 
 }  // namespace
 
-void ResidualGrowth::pass(double residual, double omega, bool constant) {
+void ResidualGrowth::pass(double residual, double omega, AccelerationParameters::Type type) {
   ++passes_;
   if (passes_ == 1) first_ = residual;
   if (passes_ > 1 && residual > last_) {
@@ -202,25 +202,27 @@ void ResidualGrowth::pass(double residual, double omega, bool constant) {
   if (!grows()) return;
   const bool ran_away = residual > too_far * first_;
   if (growing_ < patience && !ran_away) return;
-  if (constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
+  using Type = AccelerationParameters::Type;
+  if (type == Type::constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
   throw SolveFailure(
       "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
-      "one. If smaller steps do not help, `acceleration.type: iqn-ils` handles several modes at once; the "
-      "participants' own tolerances may be too loose for it.",
-      factor(), growing_, omega);
+      "one. If smaller steps do not help, {}.",
+      factor(), growing_, omega,
+      type == Type::aitken ? "`acceleration.type: iqn-ils` handles several modes at once"
+                           : "the participants' own tolerances may be too loose for quasi-Newton");
 }
 
 bool ResidualGrowth::grows() const { return growing_ > 0 && last_ > 2 * at_turn_; }
 
 double ResidualGrowth::factor() const { return std::pow(last_ / at_turn_, 1. / growing_); }
 
-std::optional<std::string> ResidualGrowth::suspects(double relaxation) const {
+std::optional<std::string> ResidualGrowth::suspects(double relaxation, int predictor) const {
   if (!grows()) return {};
   if (relaxation > 0) return too_much_added_mass(factor(), growing_, relaxation);
   return fmt::format(
       "the coupling diverges: the residual grew by {:.3g} per pass before a participant failed. Use a lower "
-      "`acceleration.initial-relaxation`, or `predictor.order: 0` for the first steps.",
-      factor());
+      "`acceleration.initial-relaxation`{}.",
+      factor(), predictor > 0 ? ", or `predictor.order: 0` for the first steps" : "");
 }
 
 std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view) {

@@ -29,11 +29,12 @@ class ResidualGrowth {
   /// relaxation diverges due to added mass; each mode's error has the factor 1 - omega (1 + r) [Causin,
   /// Gerbeau and Nobile 2005], so smaller steps do not help. Throws SolveFailure if an accelerated residual
   /// grows over `patience` passes or by `too_far` in total.
-  void pass(double residual, double omega, bool constant);
+  void pass(double residual, double omega, AccelerationParameters::Type type);
 
   /// Call after a pass that a participant could not answer. Returns a reason if the residual was growing: a
   /// diverging motion folds a mesh before `patience` passes are over. `relaxation`: the constant one, or 0.
-  std::optional<std::string> suspects(double relaxation) const;
+  /// `predictor`: its order.
+  std::optional<std::string> suspects(double relaxation, int predictor) const;
 
   static constexpr int patience = 5;
   static constexpr double too_far = 1e6;

@@ -74,7 +74,7 @@ bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen, doubl
   if (count_ == most)
     throw SolveFailure(
         "After {} renewed predictions, friction that depends on the motion of the wall is still off by {:.2g} % of the load "
-        "(limit {:g} %): the structure is too light for semi-implicit steps. Try `coupling.scheme: implicit`.",
+        "(limit {:g} %): the structure yields too much to it for semi-implicit steps. Try `coupling.scheme: implicit`.",
         most, 100 * unseen, 100 * largest_unseen_share);
   move_guess(comm, w);
   passes_ = 1;

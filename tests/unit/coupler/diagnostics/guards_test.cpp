@@ -12,17 +12,18 @@ using namespace coupler;
 
 using testing::HasSubstr;
 using Place = Interface::Place;
+using Type = AccelerationParameters::Type;
 
 // -- residuals of one step --------------------------------------------------------------------------------
 /// Passes until the guard throws; 0 if it never does.
-int thrown_at(const std::function<double(int)>& residual, bool constant, std::string* text = nullptr) {
+int thrown_at(const std::function<double(int)>& residual, Type type, std::string* text = nullptr) {
   ResidualGrowth guard;
   guard.start_step();
   for (int k = 1; k <= 60; ++k) try {
-      guard.pass(residual(k), 1, constant);
+      guard.pass(residual(k), 1, type);
     } catch (const SolveFailure& failure) {
       if (text) *text = failure.what();
-      EXPECT_EQ(dynamic_cast<const SchemeFailure*>(&failure) != nullptr, constant);
+      EXPECT_EQ(dynamic_cast<const SchemeFailure*>(&failure) != nullptr, type == Type::constant);
       return k;
     }
   return 0;
@@ -30,26 +31,33 @@ int thrown_at(const std::function<double(int)>& residual, bool constant, std::st
 
 TEST(ResidualGrowth, growth_is_named_within_a_few_passes_with_the_added_mass_behind_it) {
   std::string text;
-  EXPECT_EQ(thrown_at([](int k) { return std::pow(2., k); }, true, &text), ResidualGrowth::patience + 1);
+  EXPECT_EQ(thrown_at([](int k) { return std::pow(2., k); }, Type::constant, &text),
+            ResidualGrowth::patience + 1);
   // |1 - (1 + r)| = 2
   EXPECT_THAT(text, HasSubstr("an added mass of about 2 times the structure's"));
   EXPECT_THAT(text, HasSubstr("only relaxations below 0.667 converge"));
 }
 
 TEST(ResidualGrowth, a_run_away_is_named_before_patience_ends) {
-  EXPECT_EQ(thrown_at([](int k) { return k == 1 ? 1. : std::pow(1e4, k); }, false), 2);
+  EXPECT_EQ(thrown_at([](int k) { return k == 1 ? 1. : std::pow(1e4, k); }, Type::aitken), 2);
 }
 
 TEST(ResidualGrowth, an_accelerated_iteration_that_grows_may_still_be_halved) {
-  EXPECT_GT(thrown_at([](int k) { return std::pow(1.5, k); }, false), 0);
+  std::string text;
+  const auto growing = [](int k) { return std::pow(1.5, k); };
+  EXPECT_GT(thrown_at(growing, Type::aitken, &text), 0);
+  EXPECT_THAT(text, HasSubstr("iqn-ils"));
+  EXPECT_GT(thrown_at(growing, Type::iqn_ils, &text), 0);
+  EXPECT_THAT(text, Not(HasSubstr("iqn-ils")));
 }
 
 TEST(ResidualGrowth, aitkens_first_overshoots_and_slow_convergence_pass) {
   // From relaxation 1 at a mass ratio of 50: one jump, then down with bumps.
   const double bumpy[] = {1, 50, 3, 4, 5, 2, 2.5, 1, 0.2, 0.3, 0.31, 0.32, 0.05};
-  EXPECT_EQ(thrown_at([&](int k) { return k <= 13 ? bumpy[k - 1] : 0.05 * std::pow(0.9, k); }, false), 0);
-  EXPECT_EQ(thrown_at([](int k) { return std::pow(0.99, k); }, true), 0);
-  EXPECT_EQ(thrown_at([](int) { return 1.; }, true), 0) << "a plateau is for max-iterations";
+  EXPECT_EQ(thrown_at([&](int k) { return k <= 13 ? bumpy[k - 1] : 0.05 * std::pow(0.9, k); }, Type::aitken),
+            0);
+  EXPECT_EQ(thrown_at([](int k) { return std::pow(0.99, k); }, Type::constant), 0);
+  EXPECT_EQ(thrown_at([](int) { return 1.; }, Type::constant), 0) << "a plateau is for max-iterations";
 }
 
 // -- motion from step to step -----------------------------------------------------------------------------
