@@ -11,7 +11,11 @@ namespace couplet::linalg {
 
 namespace {
 
-constexpr Index largest_coarsest = 60;
+constexpr GlobalIndex largest_coarsest = 60;
+// The coarsest level has at least this many rows per rank, since a rank would send fewer to nearly all others.
+constexpr GlobalIndex fewest_of_rank = 16;
+// Largest coarsest level that is factorized.
+constexpr GlobalIndex largest_dense = 1000;
 // A neighbor is strong if |a_ij| is at least this fraction of the largest in either row.
 constexpr float strong = 0.5F;
 // Damping of the prolongation smoother: 4/3 over the largest eigenvalue of D^-1 A, which is below 2.
@@ -84,7 +88,8 @@ template <class Number>
 bool AggregationMultigrid<Number>::coarsen() {
   Level& fine = levels_.back();
   const GlobalIndex rows = parallel::sum(comm_, GlobalIndex(fine.a.size()));
-  if (rows <= largest_coarsest) return false;
+  if (rows <= std::clamp(fewest_of_rank * parallel::comm_size(comm_), largest_coarsest, largest_dense))
+    return false;
   const std::vector<std::uint8_t> is_strong = strong_entries(fine.a);
   Index n_coarse = 0;
   const std::vector<Index> of = aggregate(fine.a, is_strong, n_coarse);
@@ -249,8 +254,6 @@ auto AggregationMultigrid<Number>::galerkin(const Level& fine, Index n_coarse, c
 namespace {
 
 constexpr std::size_t most_levels = 12;
-// Largest coarsest level that is factorized.
-constexpr GlobalIndex largest_dense = 1000;
 /// Sorts neighbors by insertion, since rows are short and nearly sorted.
 template <class Rows>
 void sort_rows(Rows& a) {
@@ -311,21 +314,23 @@ void AggregationMultigrid<Number>::factor_coarsest() {
   const GlobalIndex n = parallel::sum(comm_, GlobalIndex(a.size()));
   if (n > largest_dense && comm_ == MPI_COMM_SELF)
     return;  // cannot be coarsened, so only smoothing is applied
-  first_coarsest_ = static_cast<Index>(parallel::exclusive_scan(comm_, a.size()));
+  coarsest_rows_ = parallel::GatheredRows(comm_, a.size(), sizeof(Lanes));
+  const Index first = coarsest_rows_.first();
   struct Entry {
     Index row, column;
     Lanes value;
   };
   std::vector<Entry> entries;
   for (Index i = 0; i < a.size(); ++i) {
-    entries.push_back({first_coarsest_ + i, first_coarsest_ + i, a.diagonal[i]});
+    entries.push_back({first + i, first + i, a.diagonal[i]});
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
-      entries.push_back({first_coarsest_ + i,
+      entries.push_back({first + i,
                          static_cast<Index>(level.map ? level.map->global(a.index[e]) : a.index[e]),
                          a.value[e]});
   }
   entries = parallel::all_gather(comm_, entries);
   if (n > largest_dense) return gather_coarsest(entries);
+  whole_.resize(n);
   for (int l = 0; l < lanes; ++l) {
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
     for (const Entry& e : entries)  // a pure Neumann problem is singular
@@ -354,19 +359,19 @@ void AggregationMultigrid<Number>::gather_coarsest(const Entries& entries) {
 }
 
 template <class Number>
-void AggregationMultigrid<Number>::solve_coarsest(Level& level) const {
+void AggregationMultigrid<Number>::solve_coarsest(Level& level) {
   if (coarsest_.empty() && !gathered_) {
     smooth_forward(level);
     level.update_ghosts();
     smooth_backward(level);
     return;
   }
-  std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : parallel::all_gather(comm_, level.b);
+  std::vector<Lanes>& right = gathered_ ? gathered_->levels_.front().b : whole_;
+  coarsest_rows_.gather(level.b.data(), right.data());
   if (gathered_) {
-    Level& all = gathered_->levels_.front();
-    all.b.swap(right);
     gathered_->cycle();
-    std::copy_n(all.x.begin() + first_coarsest_, level.a.size(), level.x.begin());
+    std::copy_n(gathered_->levels_.front().x.begin() + coarsest_rows_.first(), level.a.size(),
+                level.x.begin());
     return;
   }
   Eigen::VectorXd b(std::ssize(right));
@@ -376,7 +381,7 @@ void AggregationMultigrid<Number>::solve_coarsest(Level& level) const {
     b = coarsest_[l].solve(b).eval();
     if (closed_) b.array() -= b.mean();
     for (Index i = 0; i < level.a.size(); ++i)
-      set_lane(level.x[i], l, static_cast<float>(b[first_coarsest_ + i]));
+      set_lane(level.x[i], l, static_cast<float>(b[coarsest_rows_.first() + i]));
   }
 }
 

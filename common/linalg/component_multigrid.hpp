@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/parallel/gathered_rows.hpp"
 #include "common/parallel/index_map.hpp"
 
 namespace couplet::linalg {
@@ -80,7 +81,7 @@ class AggregationMultigrid {
   void factor_coarsest();
   template <class Entries>
   void gather_coarsest(const Entries& entries);
-  void solve_coarsest(Level& level) const;
+  void solve_coarsest(Level& level);
   static void smooth_forward(Level& level);
   void restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const;
   static void smooth_backward(Level& level);
@@ -91,7 +92,8 @@ class AggregationMultigrid {
   std::vector<Level> levels_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one per component, of the rows of all ranks
   std::unique_ptr<AggregationMultigrid> gathered_;     // of these rows, where they are too many
-  Index first_coarsest_ = 0;                           // first row of this rank among them
+  parallel::GatheredRows coarsest_rows_;
+  std::vector<Lanes> whole_;  // right-hand side of all of them
 };
 
 using ComponentMultigrid = AggregationMultigrid<FourFloats>;

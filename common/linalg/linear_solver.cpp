@@ -11,7 +11,7 @@
 #include "common/linalg/matrix.hpp"
 #include "common/linalg/petsc.hpp"
 #include "common/log/progress.hpp"
-#include "common/parallel/collective.hpp"
+#include "common/parallel/gathered_rows.hpp"
 
 namespace couplet::linalg {
 namespace {
@@ -34,25 +34,67 @@ void choose_petsc_factors(PC pc, bool symmetric) {
   petsc_check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
 }
 
-// Replicates the factorization of small systems on every rank. It has less latency than a distributed solve
-// and gives reproducible bits, whereas MUMPS sums in order of message arrival.
-void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
+GlobalIndex rows_of(const SparseMatrix& matrix) {
   PetscInt rows = 0;
   petsc_check(MatGetSize(matrix.petsc(), &rows, nullptr));
-  if (rows > largest_for_petsc) {
-    petsc_check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-    petsc_check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-    return;
-  }
-  if (parallel::comm_size(matrix.comm()) == 1) return choose_petsc_factors(pc, symmetric);
-  petsc_check(PCSetType(pc, PCREDUNDANT));
-  KSP whole = nullptr;
-  PC factors = nullptr;
-  petsc_check(PCRedundantSetNumber(pc, parallel::comm_size(matrix.comm())));
-  petsc_check(PCRedundantGetKSP(pc, &whole));
-  petsc_check(KSPGetPC(whole, &factors));
-  choose_petsc_factors(factors, symmetric);
+  return rows;
 }
+
+void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
+  if (rows_of(matrix) <= largest_for_petsc) return choose_petsc_factors(pc, symmetric);
+  petsc_check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  petsc_check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+/// Factors of a small matrix on every rank. They have less latency than a distributed solve and give reproducible bits,
+/// whereas MUMPS sums in order of message arrival.
+class FactorsEverywhere {
+ public:
+  FactorsEverywhere(const SparseMatrix& matrix, bool symmetric)
+      : matrix_(matrix),
+        rows_(matrix.comm(), static_cast<Index>(matrix.n_owned_rows()), sizeof(double)),
+        right_(rows_.count()),
+        left_(rows_.count()) {
+    petsc_check(PCCreate(PETSC_COMM_SELF, &pc_));
+    choose_petsc_factors(pc_, symmetric);
+    petsc_check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, rows_.count(), right_.data(), &b_));
+    petsc_check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, rows_.count(), left_.data(), &x_));
+  }
+  ~FactorsEverywhere() {
+    PCDestroy(&pc_);
+    MatDestroy(&whole_);
+    VecDestroy(&b_);
+    VecDestroy(&x_);
+  }
+  FactorsEverywhere(const FactorsEverywhere&) = delete;
+  FactorsEverywhere& operator=(const FactorsEverywhere&) = delete;
+
+  /// Factorizes the current values. Throws SolveFailure. Collective.
+  void factorise() {
+    petsc_check(MatCreateRedundantMatrix(matrix_.petsc(), parallel::comm_size(matrix_.comm()), MPI_COMM_NULL,
+                                         whole_ ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &whole_));
+    petsc_check(PCSetOperators(pc_, whole_, whole_));
+    petsc_check(PCSetUp(pc_));
+    PCFailedReason reason = PC_NOERROR;
+    petsc_check(PCGetFailedReason(pc_, &reason));
+    if (reason != PC_NOERROR)
+      throw SolveFailure("A matrix could not be factorized: {}.", PCFailedReasons[reason]);
+  }
+  /// Collective.
+  void solve(std::span<const double> b, std::span<double> x) {
+    rows_.gather(b.data(), right_.data());
+    petsc_check(PCApply(pc_, b_, x_));
+    std::copy_n(left_.begin() + rows_.first(), x.size(), x.begin());
+  }
+
+ private:
+  const SparseMatrix& matrix_;
+  parallel::GatheredRows rows_;
+  std::vector<double> right_, left_;  // b_ and x_
+  Mat whole_ = nullptr;
+  PC pc_ = nullptr;
+  ::Vec b_ = nullptr, x_ = nullptr;
+};
 
 // Smoothed aggregation with one symmetric SOR sweep, the best packaged preconditioner for FV Laplacians: ML or, in
 // builds of PETSc without it (Debian 13), GAMG. Setups must not depend on earlier ones, or a restarted run would
@@ -138,6 +180,14 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp_, &pc));
   choose_method(ksp_, pc, matrix, options.method);
+  if ((is_direct(options.method) || options.method == LinearMethod::cg_direct) &&
+      parallel::comm_size(matrix.comm()) > 1 && rows_of(matrix) <= largest_for_petsc) {
+    const auto factors = std::make_shared<FactorsEverywhere>(matrix, options.method != LinearMethod::direct);
+    set_preconditioner([factors] {
+      factors->factorise();
+      return [factors](std::span<const double> r, std::span<double> z) { factors->solve(r, z); };
+    });
+  }
   if (options.as_preconditioner) petsc_check(KSPSetNormType(ksp_, KSP_NORM_NONE));
   if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
   petsc_check(MatCreateVecs(matrix.petsc(), &x_, &b_));

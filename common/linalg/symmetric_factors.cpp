@@ -41,12 +41,13 @@ SymmetricFactors::SymmetricFactors(Mat a) {
     factorise(a);
     return;
   }
-  petsc_check(MatGetOwnershipRange(a, &first_, nullptr));
-  petsc_check(VecScatterCreateToAll(b_, &to_all_, &whole_b_));
-  petsc_check(VecDuplicate(whole_b_, &whole_x_));
+  PetscInt here = 0;
+  petsc_check(MatGetLocalSize(a, &here, nullptr));
+  gathered_ = parallel::GatheredRows(PetscObjectComm(reinterpret_cast<PetscObject>(a)), here, sizeof(double));
   Mat whole = nullptr;
   petsc_check(MatCreateRedundantMatrix(a, ranks, MPI_COMM_NULL, MAT_INITIAL_MATRIX, &whole));
   petsc_check(MatSetOption(whole, MAT_SYMMETRIC, PETSC_TRUE));
+  petsc_check(MatCreateVecs(whole, &whole_x_, &whole_b_));
   factorise(whole);
   petsc_check(MatDestroy(&whole));
 }
@@ -74,20 +75,21 @@ void SymmetricFactors::factorise(Mat a) {
 SymmetricFactors::~SymmetricFactors() {
   if (std::uncaught_exceptions() > 0) return;
   MatDestroy(&factors_);
-  VecScatterDestroy(&to_all_);
   for (::Vec* v : {&b_, &x_, &whole_b_, &whole_x_}) VecDestroy(v);
 }
 
 void SymmetricFactors::solve(std::span<const double> b, std::span<double> x) const {
   petsc_check(VecPlaceArray(b_, b.data()));
   petsc_check(VecPlaceArray(x_, x.data()));
-  if (to_all_) {
-    petsc_check(VecScatterBegin(to_all_, b_, whole_b_, INSERT_VALUES, SCATTER_FORWARD));
-    petsc_check(VecScatterEnd(to_all_, b_, whole_b_, INSERT_VALUES, SCATTER_FORWARD));
+  if (whole_b_) {
+    double* right = nullptr;
+    petsc_check(VecGetArray(whole_b_, &right));
+    gathered_.gather(b.data(), right);
+    petsc_check(VecRestoreArray(whole_b_, &right));
     petsc_check(MatSolve(factors_, whole_b_, whole_x_));
     const double* all = nullptr;
     petsc_check(VecGetArrayRead(whole_x_, &all));
-    std::copy_n(all + first_, x.size(), x.begin());
+    std::copy_n(all + gathered_.first(), x.size(), x.begin());
     petsc_check(VecRestoreArrayRead(whole_x_, &all));
   } else {
     petsc_check(MatSolve(factors_, b_, x_));

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/linalg/matrix.hpp"
+#include "common/parallel/gathered_rows.hpp"
 
 namespace couplet::linalg {
 
@@ -31,10 +32,9 @@ class SymmetricFactors {
   void factorise(Mat matrix);
 
   Mat factors_ = nullptr;
-  ::Vec b_ = nullptr, x_ = nullptr;  // of the owned rows
-  VecScatter to_all_ = nullptr;      // for a matrix replicated on every rank
-  ::Vec whole_b_ = nullptr, whole_x_ = nullptr;
-  PetscInt first_ = 0;  // of the owned rows
+  ::Vec b_ = nullptr, x_ = nullptr;              // of the owned rows
+  ::Vec whole_b_ = nullptr, whole_x_ = nullptr;  // of all rows, for a matrix replicated on every rank
+  parallel::GatheredRows gathered_;
   GlobalIndex negative_ = 0;
 };
 
