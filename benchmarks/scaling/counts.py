@@ -78,12 +78,12 @@ def steps_of(folder, fewer):
     return found
 
 
-def difference(short, long, extra):
-    """Returns the work of one rank per step."""
+def difference(short, long, extra, programs):
+    """Returns the work of one rank per step; neighbors are those of its own program. `programs`: of each rank of the job."""
     peers = {p: (n - short["peers"].get(p, 0)) / extra for p, n in long["peers"].items()}
     kinds = {k: (n - short["collectives"].get(k, 0)) / extra for k, n in long["collectives"].items()}
     each = {k: (long[k] - short[k]) / extra for k in ("bytes", "waited", "in_collectives")}
-    return {**each, "messages": sum(peers.values()), "neighbours": sum(n > 0 for n in peers.values()),
+    return {**each, "messages": sum(peers.values()), "neighbours": sum(n > 0 and programs[int(p)] == long["program"] for p, n in peers.items()),
             "most_to_one": max(peers.values(), default=0), "collectives": {k: n for k, n in kinds.items() if n}}
 
 
@@ -112,8 +112,9 @@ def measure(name, scene, ranks, build, scratch):
     if len(runs[0]) != len(runs[1]) or len(runs[1]) < ranks:
         raise RuntimeError(f"{name} on {ranks} ranks: {len(runs[0])} and {len(runs[1])} ranks wrote their counts")
     by_program = {}
+    programs = [tally["program"] for tally in runs[1]]
     for short, long in zip(*runs):
-        by_program.setdefault(long["program"], []).append(difference(short, long, extra))
+        by_program.setdefault(long["program"], []).append(difference(short, long, extra, programs))
     of = {case.participants[n]["program"]: n for n in names}
     return [row_of(name, program, len(tallies), tallies, *reported.get(of.get(program), (0, 0))) for program, tallies in by_program.items()]
 

@@ -10,6 +10,7 @@ here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parents[1] / "client/python"))
 import couplet  # noqa: E402
 
+
 def budget(folder):
     """Time and height of the peak of -dk/dt, and of the energy lost: the part that the pressure takes, the part that
     viscosity, eddies and pressure leave unexplained."""

@@ -63,7 +63,7 @@ def lift(run, point=1, start=START):
 
 def crests(t, z):
     """Where the lift is the largest within 8 ms, which is not yet half a cycle."""
-    return np.array([i for i in range(1, len(t) - 1) if t[i] + 8e-3 <= t[-1] and z[i] >= z[np.abs(t - t[i]) <= 8e-3].max()])
+    return np.array([i for i in range(1, len(t) - 1) if t[i] + 8e-3 <= t[-1] and z[i] >= z[np.abs(t - t[i]) <= 8e-3].max()], dtype=int)
 
 
 def off(value, right):
@@ -75,6 +75,8 @@ def settling(job):
     run = valve(job, (*SOURCE, *meshed(SMALL), "simulation.end-time=200 ms"))  # half an hour
     t, z = lift(run, 2)
     tops = crests(t, z)
+    if len(tops) < 2:
+        return "no two crests", False
     f, late = 1 / (t[tops[1]] - t[tops[0]]), z[t > t[-1] - 1 / 56.3]
     swing = np.ptp(late) / 2 / late.mean()
     return (f"{f:.1f} Hz ({off(f, 56.3)}), {1e3 * lift(run, 1)[1].max():.2f} mm at point 1; swings by {100 * swing:.1f} % of {1e3 * late.mean():.2f} mm at point 2 in the last cycle of "
