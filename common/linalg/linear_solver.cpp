@@ -50,8 +50,9 @@ void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
 /// whereas MUMPS sums in order of message arrival.
 class FactorsEverywhere {
  public:
-  FactorsEverywhere(const SparseMatrix& matrix, bool symmetric)
-      : matrix_(matrix),
+  FactorsEverywhere(std::string what, const SparseMatrix& matrix, bool symmetric)
+      : what_(std::move(what)),
+        matrix_(matrix),
         rows_(matrix.comm(), static_cast<Index>(matrix.n_owned_rows()), sizeof(double)),
         right_(rows_.count()),
         left_(rows_.count()) {
@@ -78,7 +79,7 @@ class FactorsEverywhere {
     PCFailedReason reason = PC_NOERROR;
     petsc_check(PCGetFailedReason(pc_, &reason));
     if (reason != PC_NOERROR)
-      throw SolveFailure("A matrix could not be factorized: {}.", PCFailedReasons[reason]);
+      throw SolveFailure("The matrix of {} could not be factorized: {}.", what_, PCFailedReasons[reason]);
   }
   /// Collective.
   void solve(std::span<const double> b, std::span<double> x) {
@@ -88,6 +89,7 @@ class FactorsEverywhere {
   }
 
  private:
+  std::string what_;
   const SparseMatrix& matrix_;
   parallel::GatheredRows rows_;
   std::vector<double> right_, left_;  // b_ and x_
@@ -182,7 +184,8 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   choose_method(ksp_, pc, matrix, options.method);
   if ((is_direct(options.method) || options.method == LinearMethod::cg_direct) &&
       parallel::comm_size(matrix.comm()) > 1 && rows_of(matrix) <= largest_for_petsc) {
-    const auto factors = std::make_shared<FactorsEverywhere>(matrix, options.method != LinearMethod::direct);
+    const auto factors =
+        std::make_shared<FactorsEverywhere>(what_, matrix, options.method != LinearMethod::direct);
     set_preconditioner([factors] {
       factors->factorise();
       return [factors](std::span<const double> r, std::span<double> z) { factors->solve(r, z); };

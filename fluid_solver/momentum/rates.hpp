@@ -176,7 +176,7 @@ class ViscousSolver {
   const Boundary<D>& boundary_;
   std::shared_ptr<const Placement<D>> at_;
   double beta_ = 0;
-  bool has_more_ = false;           // than beta_ at interior faces
+  bool has_more_ = false;           // than beta_ at faces
   bool carries_ = false;            // has implicit convection: A is not symmetric
   std::unique_ptr<ViscousRows> a_;  // D^(-1/2) A D^(-1/2) without boundary_rows_
   std::vector<ViscousBoundaryRow<D>> boundary_rows_;
@@ -221,8 +221,7 @@ class ImplicitFriction {
   ViscousSolver<D> solver_;
   int iterations_ = 0;  // total so far
   Vectors<D> oblique_rate_, right_side_, before_, u_boundary_;
-  std::vector<double>
-      added_;  // by terms: viscosity times a dt per interior face [m^2]; empty if there is none
+  std::vector<double> added_;  // by terms: viscosity times a dt per flux face [m^2]; empty if there is none
   Vectors<D> added_rate_;
   std::vector<double>
       carried_;  // a (dt phi - dV) per flux face with implicit convection; empty if none has [m^3]

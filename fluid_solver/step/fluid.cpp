@@ -285,7 +285,7 @@ void Fluid<D>::check_wall_velocity() const {
       where = b;
     }
   }
-  const double limit = accepted_.largest_speed > 0 ? most_times_faster * accepted_.largest_speed : most_speed;
+  const double limit = level().largest_speed > 0 ? most_times_faster * level().largest_speed : most_speed;
   if (!parallel::any(mesh_.comm, !(std::sqrt(worst) <= limit))) return;
   struct {
     double value;
