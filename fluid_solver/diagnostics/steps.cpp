@@ -89,7 +89,9 @@ class PlaceOnTheMap final : public diagnostics::Diagnostic {
     if (view_.step.number == 0 && !view_.parameters().time_step) return;
     const StepLimiter by = view_.sizes.limiter(view_.fluid.state());
     if (!std::isfinite(by.limit)) return;
-    const double size = view_.step.dt / std::max(1, view_.fluid.statistics().sub_steps);
+    double size = view_.step.dt / std::max(1, view_.fluid.statistics().sub_steps);
+    // Sub-steps that the run chooses follow a limit that fell during the step.
+    if (!view_.parameters().time_step) size = std::min(size, by.limit);
     const double rate = rate_of(view_.mesh, view_.fluid, by.cell, by.friction);
     report.position.push_back({by.friction ? "nu dt/h^2" : "Courant number", size * rate, by.limit * rate,
                                by.friction ? "fluid-diffusion" : "fluid-convection"});
