@@ -16,7 +16,8 @@ def job(scratch, ranks, *words):
 
 
 def row(short, long, extra=6):
-    return counts.row_of("known", "known", len(long), [counts.difference(a, b, extra) for a, b in zip(short, long)], 1, 0.1)
+    programs = [tally["program"] for tally in long]
+    return counts.row_of("known", "known", len(long), [counts.difference(a, b, extra, programs) for a, b in zip(short, long)], 1, 0.1)
 
 
 def check(name, got, wanted):
