@@ -151,4 +151,14 @@ TEST(LinearSolver, a_failed_solve_says_what_and_why) {
               testing::AllOf(testing::HasSubstr("pressure"), testing::HasSubstr("DIVERGED_ITS")));
 }
 
+TEST(LinearSolver, factors_of_a_singular_matrix_fail_by_name_on_any_number_of_ranks) {
+  Poisson nothing(8, true);
+  std::ranges::fill(nothing.value, 0.0);
+  const SparseMatrix matrix = nothing.matrix();
+  std::vector<double> b(nothing.last - nothing.first, 1.0), x(b.size(), 0.0);
+  LinearSolver solver("displacement", matrix, {.method = LinearMethod::direct});
+  EXPECT_THAT(support::error_of<SolveFailure>([&] { solver.solve(b, x); }),
+              testing::HasSubstr("displacement"));
+}
+
 }  // namespace couplet::linear_solver_test
