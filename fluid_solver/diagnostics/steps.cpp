@@ -19,16 +19,15 @@ namespace {
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
 
-/// A prescribed step is used even if it is too long for the implicit term on cells with few faces (StepSize).
-/// Checked at each new longest step; with a varying limit (moving cells, eddy viscosity) also every few steps
-/// and at the end.
+/// A prescribed step is used even if it is too long for convection, or for the implicit term on cells with few
+/// faces (StepSize). Checked at each new longest step, every few steps and at the end, since the limit follows
+/// the flow.
 template <int D>
 class GivenStep final : public diagnostics::Diagnostic {
  public:
   explicit GivenStep(const FluidView<D>& view) : view_(view) {}
   void observe(diagnostics::Report& report) override {
-    if (!view_.fluid.state().implicit) return;
-    if (view_.fluid.moving() || view_.parameters().turbulence) ++steps_unseen_;
+    ++steps_unseen_;
     if (size() <= longest_ && steps_unseen_ < steps_between_looks) return;
     longest_ = std::max(longest_, size());
     doubt(report);
@@ -42,16 +41,22 @@ class GivenStep final : public diagnostics::Diagnostic {
   double size() const { return view_.step.dt / view_.fluid.statistics().sub_steps; }
   void doubt(diagnostics::Report& report) {
     steps_unseen_ = 0;
+    const bool implicit = view_.fluid.state().implicit;
     const StepLimiter by = view_.sizes.limiter(view_.fluid.state());
-    if (!by.friction || size() <= far_above * by.limit) return;
+    if (!(size() > far_above * by.limit)) return;
     report.findings.push_back(
         {.id = "given-step",
          .number = size() / by.limit,
          .limit = far_above,
-         .sentence = fmt::format(
-             "time-step: sub-steps of {:.3g} s are {:.1f} times the limit of an implicit viscous term in cell {} at "
-             "({:.4g}, {:.4g}, {:.4g}) m: pressures and forces grow spuriously",
-             size(), size() / by.limit, by.cell, by.place.x(), by.place.y(), by.place.z()),
+         .sentence =
+             fmt::format("time-step: sub-steps of {:.3g} s are {:.1f} times the limit of {} in cell {} at "
+                         "({:.4g}, {:.4g}, {:.4g}) m: {} grow from step to step",
+                         size(), size() / by.limit,
+                         !by.friction ? "convection"
+                         : implicit   ? "an implicit viscous term"
+                                      : "an explicit viscous term",
+                         by.cell, by.place.x(), by.place.y(), by.place.z(),
+                         by.friction ? "pressures and forces" : "disturbances"),
          .advice = fmt::format("remove 'time-step', or set at most {:.3g} s", by.limit)});
   }
 

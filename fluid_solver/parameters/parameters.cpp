@@ -417,6 +417,34 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
           "it");
 }
 
+/// Rules for what no scheme combines.
+void declare_conflicts(config::Section& s, const FluidParameters& p) {
+  const bool bodies = !p.bodies.empty(), frame = p.rotating_frame.has_value(), waves = p.is_compressible(),
+             stages = p.scheme == ExplicitScheme::runge_kutta,
+             implicit = p.viscous == ViscousTreatment::implicit;
+  const struct {
+    const char* key;
+    bool applies;
+    const char* message;
+  } refused[] = {
+      {"rotating-frame", frame && bodies, "immersed bodies do not support it; remove 'bodies'"},
+      {"rotating-frame", frame && stages,
+       "its forces are extrapolated from step to step: use 'scheme: adams-bashforth'"},
+      {"gaps", bodies && !p.gaps.empty(),
+       "not supported together with immersed bodies; remove 'gaps' or 'bodies'"},
+      {"viscous", bodies && implicit, "immersed bodies act on the explicit step; use 'explicit'"},
+      {"viscous", stages && implicit,
+       "runge-kutta treats the viscous term explicitly; use 'explicit' or 'scheme: adams-bashforth'"},
+      {"compressibility", waves && bodies,
+       "not supported together with immersed bodies; remove 'bodies', or set 'scheme: none'"},
+      {"compressibility", waves && frame,
+       "not supported together with a rotating frame; remove 'rotating-frame', or set 'scheme: none'"},
+      {"compressibility", waves && stages,
+       "not supported together with the stages of runge-kutta; remove 'scheme: runge-kutta', or set 'scheme: none'"}};
+  for (const auto& [key, applies, message] : refused)
+    s.check([told = applies ? message : ""] { return told; }, key);
+}
+
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, b] : parameters.boundaries)
@@ -432,6 +460,7 @@ void declare(config::Section& s, FluidParameters& p) {
   declare_moving_parts(s, p);
   declare_models(s, p);
   declare_written(s, p);
+  declare_conflicts(s, p);
 }
 
 }  // namespace couplet::fluid

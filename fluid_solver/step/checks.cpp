@@ -18,14 +18,13 @@ namespace couplet::fluid {
 
 namespace {
 
-/// Refuses effects that no scheme combines. The first one that applies is told.
+/// Refuses what no scheme combines with this mesh or its motion. The first one that applies is told.
 template <int D>
 void check_effects(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
                    bool moving) {
   const bool bodies = !parameters.bodies.empty(), gaps = !parameters.gaps.empty(),
              frame = parameters.rotating_frame.has_value(), waves = parameters.is_compressible(),
-             stages = parameters.scheme == ExplicitScheme::runge_kutta,
-             implicit = parameters.viscous == ViscousTreatment::implicit;
+             stages = parameters.scheme == ExplicitScheme::runge_kutta;
   const bool cut = bodies && parameters.bodies.begin()->second.surface == BodySurface::cut;
   bool across = false;
   const Vec3 axis =
@@ -41,31 +40,16 @@ void check_effects(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Fl
        "mesh mover."},
       {frame && !boundary.interface_patches().empty(),
        "rotating-frame: no structure supports a rotating frame: boundaries of type interface are not allowed."},
-      {frame && bodies, "rotating-frame: immersed bodies do not support it; remove 'bodies'."},
-      {frame && stages,
-       "rotating-frame: its forces are extrapolated from step to step: use 'scheme: adams-bashforth'."},
       {frame && parallel::any(mesh.comm, across),
        "rotating-frame: the centrifugal force differs between periodic patches that are not shifted along the axis."},
-      {bodies && gaps, "gaps: not supported together with immersed bodies; remove 'gaps' or 'bodies'."},
       {bodies && boundary.closed(),
        "bodies: a fluid with immersed bodies needs an outlet, because they may displace fluid."},
       {cut && parameters.projection == Projection::incremental,
        "projection: incremental does not support cells that bodies cut; use flux-memory, or on a mesh at rest "
        "'surface: steps' of the bodies."},
-      {bodies && implicit,
-       "viscous: implicit is not possible with immersed bodies, which act on the explicit step."},
-      {waves && bodies,
-       "compressibility: not supported together with immersed bodies; remove 'bodies', or set 'scheme: none'."},
-      {waves && frame,
-       "compressibility: not supported together with a rotating frame; remove 'rotating-frame', or set 'scheme: none'."},
-      {waves && stages,
-       "compressibility: not supported together with the stages of runge-kutta; remove 'scheme: runge-kutta', or set "
-       "'scheme: none'."},
       {gaps && boundary.closed() && !waves,
        "gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their fluid."},
-      {stages && moving, "scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover."},
-      {stages && implicit,
-       "scheme: runge-kutta treats the viscous term explicitly; use 'viscous: explicit' or adams-bashforth."}};
+      {stages && moving, "scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover."}};
   for (const auto& [applies, message] : refused)
     if (applies) throw Error("{}", message);
 }

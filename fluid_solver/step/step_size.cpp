@@ -214,25 +214,6 @@ double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
   return round_down(std::min(parallel::min(mesh_.comm, least), frame_limit()));
 }
 
-/// The limit is at most that of the negative real axis, and a cell's diffusion at least that of one of its
-/// faces.
-template <int D>
-bool StepSize<D>::explicit_viscous_limit_is_below(double size, const State<D>& s) {
-  const Placement<D>& at = *s.placement;
-  const auto stiffness = [&](Index f) {
-    if (s.blocked && (*s.blocked)[mesh_.owner[f]]) return 0.0;
-    return 2 * nu_ * at.conductance[f] / at.volume[mesh_.owner[f]];
-  };
-  const double highest = explicit_limit(0, scheme_);
-  if (parallel::any(mesh_.comm, stiff_face_ >= 0 && highest < 0.999 * size * stiffness(stiff_face_)))
-    return true;
-  stiff_face_ = -1;
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    if (mesh_.owner[f] < mesh_.cells.n_owned() && (stiff_face_ < 0 || stiffness(f) > stiffness(stiff_face_)))
-      stiff_face_ = f;
-  return explicit_viscous_limit(s) < size;
-}
-
 template <int D>
 StepLimits StepSize<D>::limits(const State<D>& s) {
   const double largest = add_rates(s, true);
@@ -315,8 +296,7 @@ void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>&
   bool implicit = begin.implicit;
   if (parameters_.time_step) {
     const double own = dt_ / parts(dt_, *parameters_.time_step);
-    implicit = size_.explicit_viscous_limit_is_below(own * (implicit ? 1.3 : 1.0) / parameters_.safety_factor,
-                                                     level);
+    implicit = size_.explicit_viscous_limit(level) < own * (implicit ? 1.3 : 1.0) / parameters_.safety_factor;
   } else {
     const double with_explicit = parts(dt_, parameters_.safety_factor * limits_.explicit_viscous);
     const double with_implicit =

@@ -51,14 +51,12 @@ class StepSize {
   StepLimits limits(const State<D>& state);
   /// Cell that limits one treatment of the viscous term. Loops over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
-  /// Returns StepLimits::explicit_viscous < `size`. Stops at the first face that is stiff enough to decide.
-  /// Collective.
-  bool explicit_viscous_limit_is_below(double size, const State<D>& state);
+  /// StepLimits::explicit_viscous alone. Collective.
+  double explicit_viscous_limit(const State<D>& state);
   /// Largest cell Peclet number |phi|/(nu g) of the last limits(), over all ranks.
   double largest_peclet() const { return peclet_; }
 
  private:
-  double explicit_viscous_limit(const State<D>& state);
   double add_rates(const State<D>& state, bool peclet);
   template <class Use>
   void for_rates(const State<D>& state, const Use& use) const;
@@ -75,7 +73,6 @@ class StepSize {
   std::vector<std::uint8_t> few_faces_;  // per owned cell: it has fewer faces than a box
   Vectors<2> rates_;                     // rates of convection and diffusion
   std::vector<double> peclet_of_;
-  Index stiff_face_ = -1;  // face with the largest g/V of the last ones examined
   double peclet_ = 0;
 };
 

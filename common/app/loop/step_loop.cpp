@@ -247,8 +247,9 @@ std::string StepLoop::run(const StepActions& actions) {
                               .is_last = plan_.is_last()};
     if (const auto failure = actions.attempt(step)) {
       if (failure->reason.empty()) return "";  // the participants have ended the run by themselves
-      log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
-                failure->reason);
+      if (parallel::comm_rank(comm_) == 0)
+        log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
+                  failure->reason);
       if (!failure->halving_helps) return give_up(actions, step, *failure);
       if (first_failure_.second.empty()) first_failure_ = {step.dt, failure->reason};
       ++halvings_;

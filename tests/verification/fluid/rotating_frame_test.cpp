@@ -231,9 +231,6 @@ TEST(RotatingFrame, what_does_not_go_with_it_is_refused_by_name) {
   p.boundaries["xmin"] = boundary(BoundaryType::interface);
   EXPECT_THAT(refusal(p), ::testing::HasSubstr("boundaries of type interface"));
   p = good;
-  p.scheme = ExplicitScheme::runge_kutta;
-  EXPECT_THAT(refusal(p), ::testing::HasSubstr("use 'scheme: adams-bashforth'"));
-  p = good;
   p.rotating_frame->speed.text = "x";
   EXPECT_THAT(refusal(p), ::testing::HasSubstr("rotating-frame.speed: it may depend on t only"));
   p = good;

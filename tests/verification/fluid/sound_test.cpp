@@ -390,9 +390,6 @@ TEST(Sound, what_does_not_go_with_it_is_refused) {
   p.compressibility->upstream_line = line(1, UpstreamLineParameters::End::closed);
   EXPECT_THAT(told(p), ::testing::HasSubstr("the 'upstream-line' behind this inlet"));
   p = air();
-  p.scheme = ExplicitScheme::runge_kutta;
-  EXPECT_THAT(told(p), ::testing::HasSubstr("runge-kutta"));
-  p = air();
   p.compressibility->speed_of_sound.reset();
   p.density = 100;
   EXPECT_THAT(told(p), ::testing::HasSubstr("no known gas or liquid"));

@@ -44,7 +44,7 @@ def verdict(results, names):
     word = "useless" if any(f["severity"] == "wrong" for f in found) else f"{len(ids)} warning{'s' if len(ids) > 1 else ''}" if ids else "no warning"
     lines = [f"Verdict: {word}; {judge.get('error', 'the error is not estimated')}"]
     if ids:
-        lines += [f"  {textwrap.shorten(', '.join(ids), 56, placeholder=' and more')} (docs/findings.md)"]
+        lines += [f"  {textwrap.shorten(', '.join(ids), 56, placeholder=' and more', break_on_hyphens=False)} (docs/findings.md)"]
     following = judge.get("next", "")
     following = following.rpartition(", for")[0] if len(following) > 70 else following
     return lines + ([f"  next: {following}"] if 0 < len(following) <= 70 else [])
