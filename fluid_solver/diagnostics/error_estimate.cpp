@@ -136,10 +136,10 @@ struct Differences {
   const Vec<D>* carried;       ///< rates by convection, times the volume; nullptr for other schemes
 };
 /// Sums over the volume of the squares of u, its rate, the change of that and the change of that, the volume, and the squares of
-/// what is left; outflow is added later; of what is carried.
+/// what is left; outflow is added later; of what is carried; the power of the pressure's filter is added later.
 template <int D>
-COUPLET_PROCESSOR_CLONES std::array<double, 8> renew(const Differences<D>& d) {
-  std::array<double, 8> sums{};
+COUPLET_PROCESSOR_CLONES std::array<double, 9> renew(const Differences<D>& d) {
+  std::array<double, 9> sums{};
   for (std::size_t c = 0; c < d.volume.size(); ++c) {
     const double volume = d.volume[c];
     const Vec<D> rate = (d.now[c] - d.u[c]) * d.per_step, change = (rate - d.rate[c]) * d.per_apart;
@@ -194,7 +194,8 @@ class EnergyMeans {
 
 /// Shares of the error in the velocity over its size, as norms over the volume. Collective.
 ///   mesh    difference of u from a linear fit through the neighbors of each cell, h^2/4 times the Laplacian
-///           of u on equal cells (recovery of the values)
+///           of u on equal cells (recovery of the values); and the share that the pressure's filter took:
+///           the sum of its power dt/(2 E), which decays as the step's errors do
 ///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams-Bashforth, see StepErrors; k^-3 each with k
 ///           sub-steps. Errors decay with outflow over volume and with dissipation, (W' - E')/(2 E). In a
 ///           driven flow (Driving) with a linear response, errors cancel within half a period, so the vector
@@ -211,7 +212,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override { report.errors = parts(); }
   void visit(io::Archive& archive) override {
     archive.common("numbers", seen_, dt_old_, energy_, left_of_late_, carried_, changed_, largest_, steps_,
-                   drift_);
+                   drift_, filtered_);
     for (const auto& [name, vectors] :
          {std::pair{"left", &left_}, {"rate", &rate_}, {"rate-change", &rate_change_}}) {
       const std::span<const double> numbers = flat<D>(*vectors);
@@ -240,7 +241,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
                  step = dt * sub_step * sub_step;
     const double held = energy_.friction(), less = state.implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
     const Vectors<D>& carried = state.rates_old.rate;
-    std::array<double, 8> squares = renew(Differences<D>{
+    std::array<double, 9> squares = renew(Differences<D>{
         std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
         rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
         knows_third && !left_.empty() ? left_.data() : nullptr, less * driven_error * step / apart,
@@ -250,6 +251,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
         squares[6] += std::max(0., view_.fluid.state().phi[f]);
       if (driving_.is_possible() && has_waves()) squares[6] += waves_out();
+      squares[8] = filter_power();
       MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
@@ -260,6 +262,9 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       // Errors leave with the outflow and the waves, and are dissipated by friction.
       const double forgotten = energy_.friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
       for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
+      if (squares[0] > 0)
+        filtered_ += dt * std::max(0., squares[8]) / (view_.parameters().density * squares[0]);
+      filtered_ *= std::exp(-forgotten * dt);
       const double faded = std::exp(-dt / (window * energy_.time()));
       left_of_late_ = std::max(mean(5), left_of_late_ * faded);
       carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
@@ -301,6 +306,19 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     }
     return p.sound_speed() * area;
   }
+  /// Power that cell velocities lose to the pressure beyond its work at the boundaries, of this rank [W]; 0 if
+  /// the fluid stores energy.
+  double filter_power() const {
+    const State<D>& s = view_.fluid.state();
+    const PressureLevel<D>* latest = s.pressure[0].get();
+    if (!latest || view_.parameters().is_compressible()) return 0;
+    double sum = 0;
+    for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c)
+      sum += s.placement->volume[c] * latest->gradient[c].dot(s.u[c]);
+    for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
+      sum -= latest->boundary[f - view_.mesh.n_interior] * s.phi[f];
+    return sum;
+  }
   diagnostics::ErrorParts parts() {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
@@ -315,7 +333,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       return parts;
     }
     const double scale = diagnostics::scale_of(std::max(speed, largest_), falls);
-    parts.mesh = recovered_difference() / scale;
+    parts.mesh = (recovered_difference() + filtered_ * speed) / scale;
     parts.step = step_part() * steps_.size() / scale;
     parts.too_few_steps = std::isnan(parts.step);
     // The trapezoidal rule also knows the divergence before.
@@ -419,6 +437,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
   double left_of_late_ = 0;  // norm, the largest of late
   double largest_ = 0;       // mean speed of the run [m/s]
+  double filtered_ = 0;      // share of the velocity that the pressure's filter took
   double across_ = 0;        // largest extent of the mesh at rest [m]; 0 if not known
   double carried_ = 0,
          changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]

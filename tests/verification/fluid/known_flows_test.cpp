@@ -7,6 +7,8 @@
 #include "common/time/step_errors.hpp"
 #include "fluid_case.hpp"
 #include "fluid_solver/diagnostics/phase_drift.hpp"
+#include "fluid_solver/participant.hpp"
+#include "tests/support/observed_run.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::fluid::test::taylor_green_test {
@@ -110,6 +112,34 @@ INSTANTIATE_TEST_SUITE_P(
                       Variant{ViscousTreatment::explicit_, Projection::incremental, "explicit_incremental"},
                       Variant{ViscousTreatment::implicit, Projection::incremental, "implicit_incremental"}),
     [](const auto& info) { return info.param.name; });
+
+/// Coarse cells in which the pressure's filter weakens the vortices more and more; with the incremental projection they
+/// are as accurate as their differences.
+TEST(TaylorGreenEstimate, knows_what_the_filter_of_the_pressure_has_taken) {
+  for (const Projection projection : {Projection::flux_memory, Projection::incremental}) {
+    constexpr double little = 0.01, end = 40;
+    FluidParameters p = parameters({ViscousTreatment::automatic, projection, ""}, 1e-8);
+    p.viscosity = little * p.density;
+    FluidParticipant<2> fluid(mesh::distribute(MPI_COMM_WORLD, box(12)), p, FluidContext{}, MotionLink{});
+    const auto run = support::observe(fluid, 400, end / 400);
+    const State<2>& s = fluid.fluid().state();
+    double off = 0, size = 0;
+    for (Index c = 0; c < fluid.fluid().mesh().cells.n_owned(); ++c) {
+      const Vec<2> at = s.placement->centre[c],
+                   start(std::sin(at.x()) * std::cos(at.y()), -std::cos(at.x()) * std::sin(at.y()));
+      off += (s.u[c] - std::exp(-2 * little * end) * start).squaredNorm(), size += start.squaredNorm();
+    }
+    const double truth = std::sqrt(parallel::sum(MPI_COMM_WORLD, off) / parallel::sum(MPI_COMM_WORLD, size));
+    const double estimate = run.diagnostics().errors().mesh;
+    if (projection == Projection::flux_memory) {
+      EXPECT_GT(truth, 0.05);
+      EXPECT_NEAR(std::log2(estimate / truth), 0, 0.5) << truth;
+    } else {
+      EXPECT_LT(truth, 0.02);
+      EXPECT_LT(estimate, 0.02);
+    }
+  }
+}
 
 }  // namespace couplet::fluid::test::taylor_green_test
 
