@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fluids without an outlet, whose moving walls may change the volume.
+// Walls that the mesh moves although they rest, and fluids without an outlet, whose walls may change the volume.
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -14,6 +15,10 @@ namespace {
 // round-off. A chord of a twentieth of a turn misses 1.6 % of what lies between it and the center.
 constexpr double largest_leftover = 0.02, round_off = 1e-12;
 constexpr double allowed = 1e-10;  // change of volume that remains
+
+// Largest normal part of the motion of points that slide along a wall at rest, and the one over the face's size
+// that is round-off.
+constexpr double slides = 0.3, least_motion = 1e-6;
 
 // Largest share of an interface's area that faces one way for it to enclose a body; above, it is a cavity
 // wall.
@@ -47,6 +52,34 @@ double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
 }
 
 }  // namespace
+
+template <int D>
+void check_walls_at_rest(const Fluid<D>& fluid, std::span<const Vec3> points, double time, bool coupled) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  for (const mesh::Patch& patch : mesh.patches) {
+    const Condition& condition = condition_of(fluid.parameters().boundaries.at(patch.name));
+    const bool rests =
+        condition.velocity == GivenBy::rest || (condition.velocity == GivenBy::structure && !coupled);
+    if (!condition.wall || !rests) continue;
+    double along = 0, most = 0, deep = 0;  // [m], the last one over the face's size
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      Vec3 moved = Vec3::Zero();
+      for (const Index v : mesh.face_points[f]) {
+        moved += (points[v] - fluid.points_at_rest()[v]) / double(mesh.face_points[f].size());
+        most = std::max(most, (points[v] - fluid.points_at_rest()[v]).norm());
+      }
+      const Vec<D>& area = fluid.state().placement->area[f];
+      const double off = std::abs(moved.template head<D>().dot(area)) / area.norm();
+      along = std::max(along, off), deep = std::max(deep, off / std::pow(area.norm(), 1. / (D - 1)));
+    }
+    along = parallel::max(mesh.comm, along), most = parallel::max(mesh.comm, most);
+    if (along > slides * most && parallel::any(mesh.comm, deep > least_motion))
+      throw Error(
+          "boundaries.{0}: at t = {1:.6g} s the mesh has moved this wall along its normal by {2:.3g} m, but 'type: {3}' stays "
+          "at rest, so that the fluid would pass through it: use 'type: body', which moves with the mesh.",
+          patch.name, time, along, condition.name);
+  }
+}
 
 template <int D>
 void keep_volume(const Fluid<D>& fluid, std::vector<Vec3>& points, double time) {
@@ -150,6 +183,8 @@ std::vector<double> inflow_shares(const Fluid<D>& fluid, const std::vector<Index
   return shares;
 }
 
+template decltype(check_walls_at_rest<2>) check_walls_at_rest<2>;
+template decltype(check_walls_at_rest<3>) check_walls_at_rest<3>;
 template decltype(keep_volume<2>) keep_volume<2>;
 template decltype(keep_volume<3>) keep_volume<3>;
 template void check_cavity(const Fluid<2>&, coupling::Scheme);

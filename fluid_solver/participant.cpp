@@ -232,6 +232,7 @@ std::vector<Vec3> FluidParticipant<D>::receive_points() {
   } else {
     return {};
   }
+  check_walls_at_rest<D>(*fluid_, points, end, step_.scheme != coupling::Scheme::standalone);
   if (!interface_) keep_volume(*fluid_, points, end);
   return points;
 }
@@ -382,9 +383,8 @@ void FluidParticipant<D>::tell_sub_steps() {
     log::info(
         "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m limits them to "
         "{:.3g} s, of which {:.0f} % are used",
-        end, now, step_.dt / now, limiter.friction ? "friction" : "convection", limiter.cell,
-        limiter.place.x(), limiter.place.y(), limiter.place.z(), limiter.limit,
-        100 * fluid_->parameters().safety_factor);
+        end, now, step_.dt / now, limiter.cause(), limiter.cell, limiter.place.x(), limiter.place.y(),
+        limiter.place.z(), limiter.limit, 100 * fluid_->parameters().safety_factor);
 }
 
 template class FluidParticipant<2>;

@@ -96,6 +96,11 @@ class FluidParticipant final : public coupling::Participant {
   int told_sub_steps_ = 1;  // number of sub-steps last logged
 };
 
+/// Throws Error if the mesh at these points has moved a wall along its normal whose type keeps the fluid there at
+/// rest. Collective.
+template <int D>
+void check_walls_at_rest(const Fluid<D>& fluid, std::span<const Vec3> points, double time, bool coupled);
+
 /// Compares what all walls of a closed incompressible fluid have swept by these points: throws Error if they have changed its
 /// volume, beyond the error of faces that stand for curved walls. Sets the walls back along their normals by that error, unless
 /// a structure moves them. Collective.

@@ -15,7 +15,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// Factor above the limit at which a prescribed step certainly fails.
+// Factor above the limit at which errors may grow so fast that they spoil a short run; below, they are noted.
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
 
@@ -41,22 +41,21 @@ class GivenStep final : public diagnostics::Diagnostic {
   double size() const { return view_.step.dt / view_.fluid.statistics().sub_steps; }
   void doubt(diagnostics::Report& report) {
     steps_unseen_ = 0;
-    const bool implicit = view_.fluid.state().implicit;
     const StepLimiter by = view_.sizes.limiter(view_.fluid.state());
-    if (!(size() > far_above * by.limit)) return;
+    if (!(size() > by.limit)) return;
     report.findings.push_back(
         {.id = "given-step",
+         .severity = size() > far_above * by.limit ? base::Severity::warning : base::Severity::note,
          .number = size() / by.limit,
          .limit = far_above,
-         .sentence =
-             fmt::format("time-step: sub-steps of {:.3g} s are {:.1f} times the limit of {} in cell {} at "
-                         "({:.4g}, {:.4g}, {:.4g}) m: {} grow from step to step",
-                         size(), size() / by.limit,
-                         !by.friction ? "convection"
-                         : implicit   ? "an implicit viscous term"
-                                      : "an explicit viscous term",
-                         by.cell, by.place.x(), by.place.y(), by.place.z(),
-                         by.friction ? "pressures and forces" : "disturbances"),
+         .sentence = fmt::format(
+             "time-step: sub-steps of {:.3g} s are {:.1f} times the limit of {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m: "
+             "disturbances of velocity and pressure may grow from step to step",
+             size(), size() / by.limit,
+             !by.friction                   ? by.cause()
+             : view_.fluid.state().implicit ? "an implicit viscous term"
+                                            : "an explicit viscous term",
+             by.cell, by.place.x(), by.place.y(), by.place.z()),
          .advice = fmt::format("remove 'time-step', or set at most {:.3g} s", by.limit)});
   }
 

@@ -419,9 +419,14 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
 
 /// Rules for what no scheme combines.
 void declare_conflicts(config::Section& s, const FluidParameters& p) {
-  const bool bodies = !p.bodies.empty(), frame = p.rotating_frame.has_value(), waves = p.is_compressible(),
-             stages = p.scheme == ExplicitScheme::runge_kutta,
-             implicit = p.viscous == ViscousTreatment::implicit;
+  const bool bodies = !p.bodies.empty(), gaps = !p.gaps.empty(), frame = p.rotating_frame.has_value(),
+             waves = p.is_compressible(), stages = p.scheme == ExplicitScheme::runge_kutta,
+             implicit = p.viscous == ViscousTreatment::implicit, motion = p.motion.has_value(),
+             fourth = p.face_values == FaceValues::fourth_order;
+  const bool cut =
+      std::ranges::any_of(p.bodies, [](const auto& b) { return b.second.surface == BodySurface::cut; });
+  const bool coupled = std::ranges::any_of(
+      p.boundaries, [](const auto& b) { return b.second.type == BoundaryType::interface; });
   const struct {
     const char* key;
     bool applies;
@@ -430,11 +435,20 @@ void declare_conflicts(config::Section& s, const FluidParameters& p) {
       {"rotating-frame", frame && bodies, "immersed bodies do not support it; remove 'bodies'"},
       {"rotating-frame", frame && stages,
        "its forces are extrapolated from step to step: use 'scheme: adams-bashforth'"},
-      {"gaps", bodies && !p.gaps.empty(),
-       "not supported together with immersed bodies; remove 'gaps' or 'bodies'"},
+      {"rotating-frame", frame && motion,
+       "the mesh is at rest in the frame; move the rotation to 'motion' (angle), or remove 'motion'"},
+      {"rotating-frame", frame && coupled,
+       "no structure supports it: boundaries of type interface are not allowed"},
+      {"gaps", bodies && gaps, "not supported together with immersed bodies; remove 'gaps' or 'bodies'"},
       {"viscous", bodies && implicit, "immersed bodies act on the explicit step; use 'explicit'"},
       {"viscous", stages && implicit,
        "runge-kutta treats the viscous term explicitly; use 'explicit' or 'scheme: adams-bashforth'"},
+      {"scheme", stages && motion,
+       "runge-kutta needs a mesh at rest; use 'adams-bashforth', or remove 'motion'"},
+      {"face-values", fourth && (bodies || gaps || motion),
+       "fourth-order is not supported together with 'bodies', 'gaps' or 'motion'; use second-order"},
+      {"projection", cut && p.projection == Projection::incremental,
+       "incremental does not support cells that bodies cut; use flux-memory, or 'surface: steps' of the bodies"},
       {"compressibility", waves && bodies,
        "not supported together with immersed bodies; remove 'bodies', or set 'scheme: none'"},
       {"compressibility", waves && frame,

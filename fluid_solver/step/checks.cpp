@@ -38,8 +38,6 @@ void check_effects(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Fl
       {frame && moving,
        "rotating-frame: the mesh is at rest in the frame. Move the rotation to 'motion' (angle), or remove 'motion' and the "
        "mesh mover."},
-      {frame && !boundary.interface_patches().empty(),
-       "rotating-frame: no structure supports a rotating frame: boundaries of type interface are not allowed."},
       {frame && parallel::any(mesh.comm, across),
        "rotating-frame: the centrifugal force differs between periodic patches that are not shifted along the axis."},
       {bodies && boundary.closed(),

@@ -253,6 +253,7 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
     found = {limit, mesh_.cell_id[c], Vec3::Zero(), friction};
     found.place.template head<D>() = s.placement->centre[c];
   });
+  if (frame_limit() < found.limit) found.limit = frame_limit(), found.friction = false, found.frame = true;
   const std::vector<StepLimiter> all = parallel::all_gather(mesh_.comm, std::vector<StepLimiter>{found});
   return *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
     return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;
@@ -260,9 +261,8 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
 }
 
 std::string in_words(const StepLimiter& by) {
-  return fmt::format("{} in cell {} at ({:.6g}, {:.6g}, {:.6g}) m limits them to this size.",
-                     by.friction ? "Friction" : "The velocity", by.cell, by.place.x(), by.place.y(),
-                     by.place.z());
+  return fmt::format("In cell {} at ({:.6g}, {:.6g}, {:.6g}) m, {} limits them to this size.", by.cell,
+                     by.place.x(), by.place.y(), by.place.z(), by.cause());
 }
 
 template class StepSize<2>;

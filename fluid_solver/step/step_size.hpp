@@ -24,8 +24,10 @@ struct StepLimiter {
   GlobalIndex cell = -1;
   Vec3 place = Vec3::Zero();  ///< [m]
   bool friction = false;      ///< true if friction has the larger share in its rate, else convection
+  bool frame = false;         ///< true if the Coriolis force limits the step in all cells
+  const char* cause() const { return frame ? "the Coriolis force" : friction ? "friction" : "convection"; }
 };
-/// For example: "The velocity in cell 3 at (0.75, 0.75, 0) m allows no longer ones."
+/// For example: "In cell 3 at (0.75, 0.75, 0) m, convection limits them to this size."
 std::string in_words(const StepLimiter& limiter);
 
 /// Compares Gershgorin bounds of the eigenvalues per cell with the stability regions of the schemes (AB2,

@@ -100,7 +100,7 @@ TEST(EnergyGuard, fluxes_out_of_all_bounds_are_named_by_field_cell_and_place) {
 TEST(EnergyGuard, too_many_sub_steps_are_named_by_cause_cell_and_place) {
   const std::string text = said("t > 0.015 && y > 0.13 && y < 0.24 ? 1e9 : 1", 0.01);
   EXPECT_THAT(text, HasSubstr("more than 100000 sub-steps"));
-  EXPECT_THAT(text, HasSubstr("The velocity in cell 8 at (0.0625, 0.1875, 0) m limits them to this size"));
+  EXPECT_THAT(text, HasSubstr("In cell 8 at (0.0625, 0.1875, 0) m, convection limits them to this size"));
   EXPECT_EQ(said("t > 0.015 && y > 0.13 && y < 0.24 ? 2 : 1", 0.01), "");
 }
 

@@ -228,9 +228,6 @@ TEST(RotatingFrame, what_does_not_go_with_it_is_refused_by_name) {
   p.motion.emplace();
   EXPECT_THAT(refusal(p), ::testing::HasSubstr("rotating-frame: the mesh is at rest in the frame"));
   p = good;
-  p.boundaries["xmin"] = boundary(BoundaryType::interface);
-  EXPECT_THAT(refusal(p), ::testing::HasSubstr("boundaries of type interface"));
-  p = good;
   p.rotating_frame->speed.text = "x";
   EXPECT_THAT(refusal(p), ::testing::HasSubstr("rotating-frame.speed: it may depend on t only"));
   p = good;
