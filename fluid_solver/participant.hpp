@@ -96,8 +96,8 @@ class FluidParticipant final : public coupling::Participant {
   int told_sub_steps_ = 1;  // number of sub-steps last logged
 };
 
-/// Throws Error if the mesh at these points has moved a wall along its normal whose type keeps the fluid there at
-/// rest. Collective.
+/// Throws Error if a step to these points moves a wall along its normal whose type keeps the fluid there at rest.
+/// Collective.
 template <int D>
 void check_walls_at_rest(const Fluid<D>& fluid, std::span<const Vec3> points, double time, bool coupled);
 

@@ -136,7 +136,7 @@ struct Differences {
   const Vec<D>* carried;       ///< rates by convection, times the volume; nullptr for other schemes
 };
 /// Sums over the volume of the squares of u, its rate, the change of that and the change of that, the volume, and the squares of
-/// what is left; outflow is added later; of what is carried; the power of the pressure's filter is added later.
+/// what is left; outflow (added later), of what is carried, and the power of the pressure's filter (added later).
 template <int D>
 COUPLET_PROCESSOR_CLONES std::array<double, 9> renew(const Differences<D>& d) {
   std::array<double, 9> sums{};
@@ -171,6 +171,8 @@ class EnergyMeans {
     energy_ += share * (held - energy_);
     work_ = ledger.work, held_ = held;
   }
+  /// [J]
+  double energy() const { return energy_; }
   /// Time of the steps added [s].
   double time() const { return time_; }
   /// Dissipation rate of the work [1/s], without the flow's own decay, which reduces errors and solution
@@ -195,7 +197,7 @@ class EnergyMeans {
 /// Shares of the error in the velocity over its size, as norms over the volume. Collective.
 ///   mesh    difference of u from a linear fit through the neighbors of each cell, h^2/4 times the Laplacian
 ///           of u on equal cells (recovery of the values); and the share that the pressure's filter took:
-///           the sum of its power dt/(2 E), which decays as the step's errors do
+///           the sum of its power dt/(2 E) with the recent mean of E, which decays as the step's errors do
 ///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams-Bashforth, see StepErrors; k^-3 each with k
 ///           sub-steps. Errors decay with outflow over volume and with dissipation, (W' - E')/(2 E). In a
 ///           driven flow (Driving) with a linear response, errors cancel within half a period, so the vector
@@ -262,8 +264,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       // Errors leave with the outflow and the waves, and are dissipated by friction.
       const double forgotten = energy_.friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
       for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
-      if (squares[0] > 0)
-        filtered_ += dt * std::max(0., squares[8]) / (view_.parameters().density * squares[0]);
+      if (energy_.energy() > 0) filtered_ += dt * squares[8] / (2 * energy_.energy());
       filtered_ *= std::exp(-forgotten * dt);
       const double faded = std::exp(-dt / (window * energy_.time()));
       left_of_late_ = std::max(mean(5), left_of_late_ * faded);
@@ -306,17 +307,20 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     }
     return p.sound_speed() * area;
   }
-  /// Power that cell velocities lose to the pressure beyond its work at the boundaries, of this rank [W]; 0 if
-  /// the fluid stores energy.
+  /// Power that cell velocities lose to the pressure beyond its work at the boundaries, of this rank [W]; 0 where it is not
+  /// known, because the fluid stores energy or bodies are immersed.
   double filter_power() const {
     const State<D>& s = view_.fluid.state();
     const PressureLevel<D>* latest = s.pressure[0].get();
-    if (!latest || view_.parameters().is_compressible()) return 0;
+    const FluidParameters& p = view_.parameters();
+    if (!latest || p.is_compressible() || !p.bodies.empty()) return 0;
     double sum = 0;
+    const auto flows = [&s](Index c) { return !s.blocked || !(*s.blocked)[c]; };
     for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c)
-      sum += s.placement->volume[c] * latest->gradient[c].dot(s.u[c]);
+      if (flows(c)) sum += s.placement->volume[c] * latest->gradient[c].dot(s.u[c]);
     for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
-      sum -= latest->boundary[f - view_.mesh.n_interior] * s.phi[f];
+      if (flows(view_.mesh.owner[f]))
+        sum -= (latest->boundary[f - view_.mesh.n_interior] - s.ledger.level) * s.phi[f];
     return sum;
   }
   diagnostics::ErrorParts parts() {
@@ -333,7 +337,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       return parts;
     }
     const double scale = diagnostics::scale_of(std::max(speed, largest_), falls);
-    parts.mesh = (recovered_difference() + filtered_ * speed) / scale;
+    parts.mesh = (recovered_difference() + std::max(0., filtered_) * speed) / scale;
     parts.step = step_part() * steps_.size() / scale;
     parts.too_few_steps = std::isnan(parts.step);
     // The trapezoidal rule also knows the divergence before.

@@ -15,7 +15,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// Factor above the limit at which errors may grow so fast that they spoil a short run; below, they are noted.
+// Factor above the limit at which a prescribed step is reported: disturbances grow slowly below, and often not at all.
 constexpr double far_above = 2;
 constexpr int steps_between_looks = 10;
 
@@ -42,10 +42,9 @@ class GivenStep final : public diagnostics::Diagnostic {
   void doubt(diagnostics::Report& report) {
     steps_unseen_ = 0;
     const StepLimiter by = view_.sizes.limiter(view_.fluid.state());
-    if (!(size() > by.limit)) return;
+    if (!(size() > far_above * by.limit)) return;
     report.findings.push_back(
         {.id = "given-step",
-         .severity = size() > far_above * by.limit ? base::Severity::warning : base::Severity::note,
          .number = size() / by.limit,
          .limit = far_above,
          .sentence = fmt::format(
@@ -92,7 +91,7 @@ class PlaceOnTheMap final : public diagnostics::Diagnostic {
     // The first step could not be limited by the motion that it starts.
     if (view_.step.number == 0 && !view_.parameters().time_step) return;
     const StepLimiter by = view_.sizes.limiter(view_.fluid.state());
-    if (!std::isfinite(by.limit)) return;
+    if (by.frame || !std::isfinite(by.limit)) return;
     double size = view_.step.dt / std::max(1, view_.fluid.statistics().sub_steps);
     // Sub-steps that the run chooses follow a limit that fell during the step.
     if (!view_.parameters().time_step) size = std::min(size, by.limit);

@@ -40,8 +40,6 @@ void check_effects(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Fl
        "mesh mover."},
       {frame && parallel::any(mesh.comm, across),
        "rotating-frame: the centrifugal force differs between periodic patches that are not shifted along the axis."},
-      {bodies && boundary.closed(),
-       "bodies: a fluid with immersed bodies needs an outlet, because they may displace fluid."},
       {cut && parameters.projection == Projection::incremental,
        "projection: incremental does not support cells that bodies cut; use flux-memory, or on a mesh at rest "
        "'surface: steps' of the bodies."},

@@ -202,19 +202,6 @@ void StepSize<D>::for_rates(const State<D>& s, const Use& use) const {
 }
 
 template <int D>
-double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
-  add_rates(s, false);
-  double least = base::infinity;
-  for_rates(s, [&](Index, double convection, double diffusion) {
-    const double lowest = lowest_limit(convection, diffusion, scheme_),
-                 square = convection * convection + diffusion * diffusion;
-    if (lowest * lowest < least * least * square)
-      least = std::min(least, explicit_limit(std::atan2(convection, diffusion), scheme_) / std::sqrt(square));
-  });
-  return round_down(std::min(parallel::min(mesh_.comm, least), frame_limit()));
-}
-
-template <int D>
 StepLimits StepSize<D>::limits(const State<D>& s) {
   const double largest = add_rates(s, true);
   const double lowest_implicit = std::max(implicit_table().least(), courant_);
@@ -296,7 +283,8 @@ void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>&
   bool implicit = begin.implicit;
   if (parameters_.time_step) {
     const double own = dt_ / parts(dt_, *parameters_.time_step);
-    implicit = size_.explicit_viscous_limit(level) < own * (implicit ? 1.3 : 1.0) / parameters_.safety_factor;
+    implicit =
+        size_.limits(level).explicit_viscous < own * (implicit ? 1.3 : 1.0) / parameters_.safety_factor;
   } else {
     const double with_explicit = parts(dt_, parameters_.safety_factor * limits_.explicit_viscous);
     const double with_implicit =

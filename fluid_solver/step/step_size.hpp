@@ -53,8 +53,6 @@ class StepSize {
   StepLimits limits(const State<D>& state);
   /// Cell that limits one treatment of the viscous term. Loops over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
-  /// StepLimits::explicit_viscous alone. Collective.
-  double explicit_viscous_limit(const State<D>& state);
   /// Largest cell Peclet number |phi|/(nu g) of the last limits(), over all ranks.
   double largest_peclet() const { return peclet_; }
 

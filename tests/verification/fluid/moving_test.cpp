@@ -226,13 +226,6 @@ TEST(ImmersedBody, has_the_load_of_a_linear_pressure_and_of_the_shear_beside_it)
   EXPECT_LT((rubbed - Vec<2>(16 * 1e-3, 0)).norm(), 1e-12);
 }
 
-TEST(ImmersedBody, without_an_outlet_is_refused) {
-  FluidParameters p = channel_with("y-0.1");
-  p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::no_slip);
-  EXPECT_THAT([&] { FluidCase<2>(MPI_COMM_SELF, channel_mesh(), p); },
-              ::testing::ThrowsMessage<Error>(::testing::HasSubstr("needs an outlet")));
-}
-
 // Pressure and velocity live in the same cells: the mode that alternates from cell to cell must stay out of
 // the pressure, and what that takes from the kinetic energy is told by the energy budget.
 
