@@ -240,11 +240,12 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
     found = {limit, mesh_.cell_id[c], Vec3::Zero(), friction};
     found.place.template head<D>() = s.placement->centre[c];
   });
-  if (frame_limit() < found.limit) found.limit = frame_limit(), found.friction = false, found.frame = true;
   const std::vector<StepLimiter> all = parallel::all_gather(mesh_.comm, std::vector<StepLimiter>{found});
-  return *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
+  found = *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
     return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;
   });
+  if (frame_limit() < found.limit) found.limit = frame_limit(), found.friction = false, found.frame = true;
+  return found;
 }
 
 std::string in_words(const StepLimiter& by) {
