@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of diagnostics, and those without memory.
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
