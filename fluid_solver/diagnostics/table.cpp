@@ -12,6 +12,7 @@
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
+#include "fluid_solver/momentum/rates.hpp"
 #include "fluid_solver/output/derived.hpp"
 
 namespace couplet::fluid {
@@ -45,22 +46,30 @@ double hydraulic_diameter(const Fluid<D>& fluid) {
   return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Largest cell Reynolds number of the rotation, |rot u| h^2/nu. Collective.
+/// Largest Reynolds number of the shear within a cell, S h^2/nu. S is the smaller of the rates of strain and of rotation, because a
+/// stagnating flow does not rotate and a turning one is not strained. h is the size of the cell along which the velocity varies. Collective.
 template <int D>
-double largest_rotation(const FluidView<D>& view) {
+double largest_shear(const FluidView<D>& view) {
   const mesh::Mesh& mesh = view.mesh;
   const State<D>& s = view.fluid.state();
-  std::vector<Vec3> circulation(std::size_t(mesh.cells.n_local()), Vec3::Zero());
+  const Placement<D>& at = *s.placement;
+  std::vector<Tensor<D>> gradient;
+  velocity_gradient<D>(mesh, at, s.u, s.u_boundary, gradient);
+  Vectors<D> across(std::size_t(mesh.cells.n_local()),
+                    Vec<D>::Zero());  // area of a cell across each axis, twice
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const Index p = mesh.owner[f], n = f < mesh.n_interior ? mesh.neighbour[f] : p;
-    Vec3 u = Vec3::Zero(), area = Vec3::Zero();
-    u.head<D>() = 0.5 * (s.u[p] + s.u[n]), area.head<D>() = s.placement->area[f];
-    circulation[p] += area.cross(u);
-    if (n != p) circulation[n] -= area.cross(u);
+    across[mesh.owner[f]] += at.area[f].cwiseAbs();
+    if (f < mesh.n_interior) across[mesh.neighbour[f]] += at.area[f].cwiseAbs();
   }
   double largest = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    largest = std::max(largest, circulation[c].norm() * std::pow(s.placement->volume[c], 2. / D - 1));
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const Tensor<D>& g = gradient[c];  // du_i/dx_j
+    const double strain = (g + g.transpose()).norm(), rotation = (g - g.transpose()).norm(), size = g.norm();
+    if (!(size > 0)) continue;
+    const Vec<D> extent = 2 * at.volume[c] * across[c].cwiseInverse();
+    const double change = (g * extent.asDiagonal()).norm() / size;
+    largest = std::max(largest, std::min(strain, rotation) / std::sqrt(2.) * change * change);
+  }
   return parallel::max(mesh.comm, largest) / view.parameters().kinematic_viscosity();
 }
 
@@ -100,28 +109,29 @@ double eddy_viscosity(const FluidView<D>& view) {
 }  // namespace
 
 // Free layers are as thin as at their origin. A mesh that resolves the wall layers (y+ up to 1) also resolves
-// those shed from them, and the cell Reynolds number outside says little. Flow that remains laminar near
-// walls needs no turbulence model; other mesh errors are in the estimated error.
-diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds) {
+// those shed from them. Flow that remains laminar near walls needs no turbulence model; other mesh errors are in the estimated error.
+diagnostics::EffectFinding unresolved_layers(int dimension, double shear, double yplus, double reynolds) {
   const double limit = yplus > 0 && yplus <= 1 ? 250 : 50;
   diagnostics::EffectFinding e{
       .effect = "turbulence model",
-      .number = peclet,
+      .number = shear,
       .limit = limit,
-      .what = fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", peclet, yplus),
+      .what = fmt::format("max Reynolds number of the shear within a cell = {:.3g}, max y+ = {:.3g}", shear,
+                          yplus),
       .advice =
           dimension == 2
               ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence', "
                 "'dimension: 3' and many cells in each direction"
               : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is "
                 "turbulent"};
-  if (peclet > limit && reynolds < laminar_below) {
+  if (shear > limit && reynolds < laminar_below) {
     e.number = reynolds, e.limit = laminar_below, e.share = 0;
-    e.what = fmt::format("Reynolds number (max speed, hydraulic diameter) = {:.3g}: laminar; {}", reynolds,
-                         e.what);
+    e.what = fmt::format(
+        "Reynolds number (max speed; hydraulic diameter or layers since the start) = {:.3g}: laminar; {}",
+        reynolds, e.what);
   } else {
     // The thickness of the layer scales with the inverse root of the number, which gives the share that a coarse mesh misses.
-    e.share = peclet > limit ? 1 - std::sqrt(limit / peclet) : 0;
+    e.share = shear > limit ? 1 - std::sqrt(limit / shear) : 0;
   }
   return e;
 }
@@ -147,11 +157,11 @@ diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
   return e;
 }
 
-diagnostics::EffectFinding unresolved_walls(double yplus, double peclet) {
+diagnostics::EffectFinding unresolved_walls(double yplus) {
   return {.effect = "resolved walls",
           .number = yplus,
           .limit = 2,
-          .what = fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}", yplus, peclet),
+          .what = fmt::format("max y+ = {:.3g}", yplus),
           .advice = "there is no wall function: refine at the walls to y+ of about 1",
           .left_out = false};
 }
@@ -162,10 +172,13 @@ std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const FluidParameters& p = view.parameters();
   const int dimension = is_plane(view) ? 2 : 3;
   if (p.turbulence && dimension == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
-  const double reynolds = p.density * largest_speed(view) * hydraulic_diameter(view.fluid) / p.viscosity;
-  double peclet = view.sizes.largest_peclet(view.fluid.state());
-  if (std::isnan(reynolds)) peclet = std::min(peclet, largest_rotation(view));  // no wall makes a layer
-  return diagnostics::finding_of(unresolved_layers(dimension, peclet, largest_yplus(view), reynolds));
+  if (!(p.viscosity > 0)) return {};
+  // At the walls of a flow that starts, layers are as thick as friction has reached: below U^2 t/nu = 9e4 (a displacement thickness of
+  // 520 nu/U), no disturbance of them grows [Schlichting]. Two of them fill this width.
+  const double nu = p.kinematic_viscosity(), reached = 11.5 * std::sqrt(nu * (view.step.time + view.step.dt));
+  const double reynolds = largest_speed(view) * std::min(hydraulic_diameter(view.fluid), reached) / nu;
+  return diagnostics::finding_of(
+      unresolved_layers(dimension, largest_shear(view), largest_yplus(view), reynolds));
 }
 
 template <int D>
@@ -177,8 +190,7 @@ std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<D>&
 template <int D>
 std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view) {
   if (!view.parameters().turbulence) return {};
-  return diagnostics::finding_of(
-      unresolved_walls(largest_yplus(view), view.sizes.largest_peclet(view.fluid.state())));
+  return diagnostics::finding_of(unresolved_walls(largest_yplus(view)));
 }
 
 template <int D>

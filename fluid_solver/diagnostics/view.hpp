@@ -15,13 +15,13 @@ namespace couplet::fluid {
 
 // Judges effects of turbulence and compressibility by results of a run.
 
-/// Layers that the mesh does not resolve. `peclet`: largest cell Reynolds number. `yplus`: largest y+ at
-/// the walls, 0 without walls. `reynolds`: Reynolds number of the largest speed and the hydraulic diameter.
-diagnostics::EffectFinding unresolved_layers(int dimension, double peclet, double yplus, double reynolds);
+/// Layers that the mesh does not resolve. `shear`: largest Reynolds number of the shear within a cell. `yplus`: largest y+ at
+/// the walls, 0 without walls. `reynolds`: of the largest speed and the width of the flow, NaN without walls.
+diagnostics::EffectFinding unresolved_layers(int dimension, double shear, double yplus, double reynolds);
 /// Eddy viscosity of a turbulence model relative to the molecular one.
 diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity);
 /// Resolution of walls under a turbulence model.
-diagnostics::EffectFinding unresolved_walls(double yplus, double peclet);
+diagnostics::EffectFinding unresolved_walls(double yplus);
 
 /// `speed`: largest [m/s].
 diagnostics::EffectFinding mach_number(double speed, const Sound& sound);

@@ -32,8 +32,8 @@ const std::array cards{
         "turbulence model", "`turbulence` in three dimensions",
         [](const S& s) { return when(s.parameters.turbulence && s.parameters.dimension == 3, "turbulence"); },
         "an eddy viscosity per cell, a velocity gradient per step",
-        "max cell Reynolds number, 50, or 250 with resolved walls (y+ up to 1); beyond that the flow's own by the hydraulic "
-        "diameter, 3450: laminar below"},
+        "max Reynolds number of the shear within a cell, 50, or 250 with resolved walls (y+ up to 1); beyond that the flow's own by "
+        "the hydraulic diameter, 3450: laminar below"},
     FluidCard{
         "eddy viscosity in two dimensions", "`turbulence` in two dimensions, where it models no turbulence",
         [](const S& s) { return when(s.parameters.turbulence && s.parameters.dimension == 2, "turbulence"); },

@@ -151,15 +151,14 @@ std::vector<double> StepSize<D>::fast_cells(const State<D>& s, double size) {
 }
 
 /// sum |phi - dV/dt|/2 and 2 nu sum g of each cell; with `peclet` also the largest |phi - dV/dt|/(nu g) of
-/// its faces. Returns the largest on this rank.
+/// its faces.
 template <int D>
-double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
+void StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   const Placement<D>& at = *s.placement;
   rates_.assign(mesh_.cells.n_local(), Vec<2>::Zero());
   peclet_of_.assign(peclet ? mesh_.cells.n_local() : 0, 0.0);
   const bool moving = !s.mesh_flux.empty();
   const auto flux_of = [&](Index f) { return std::abs(s.phi[f] - (moving ? s.mesh_flux[f] : 0.0)); };
-  double largest = 0;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const double flux = flux_of(f), g = at.conductance[f];
@@ -168,7 +167,6 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
     rates_[n] += part;
     if (!peclet) continue;
     const double number = nu_ > 0 ? flux / (nu_ * g) : base::infinity;
-    largest = std::max(largest, number);
     peclet_of_[p] = std::max(peclet_of_[p], number);
     peclet_of_[n] = std::max(peclet_of_[n], number);
   }
@@ -181,7 +179,6 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
     for (double& number : peclet_of_) number *= fourth_convection;
   }
   for (const auto& term : terms_) term->add_limits(s, rates_);
-  return largest;
 }
 
 /// Limit by the Coriolis force on uniform motion, which friction does not damp.
@@ -203,9 +200,9 @@ void StepSize<D>::for_rates(const State<D>& s, const Use& use) const {
 
 template <int D>
 StepLimits StepSize<D>::limits(const State<D>& s) {
-  const double largest = add_rates(s, true);
+  add_rates(s, true);
   const double lowest_implicit = std::max(implicit_table().least(), courant_);
-  double least[3] = {base::infinity, base::infinity, -largest};
+  double least[2] = {base::infinity, base::infinity};
   for_rates(s, [&](Index c, double convection, double diffusion) {
     const double size = std::sqrt(convection * convection + diffusion * diffusion),
                  lowest = lowest_limit(convection, diffusion, scheme_);
@@ -216,9 +213,8 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
     if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], convective_limit(c) / convection);
   });
-  MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
-  peclet_ = -least[2];
-  for (double& limit : std::span(least, 2)) limit = std::min(limit, frame_limit());
+  MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_DOUBLE, MPI_MIN, mesh_.comm);
+  for (double& limit : least) limit = std::min(limit, frame_limit());
   return {round_down(least[0]), round_down(least[1])};
 }
 
@@ -325,12 +321,6 @@ double SubStepSize<D>::next(const State<D>& level, bool implicit, int done, doub
                                 : in_words(size_.limiter(level, implicit)));
   last = n == 1;
   return remaining / n;
-}
-
-template <int D>
-double SubStepSize<D>::largest_peclet(const State<D>& state) {
-  size_.limits(state);
-  return size_.largest_peclet();
 }
 
 template class SubStepSize<2>;

@@ -53,11 +53,9 @@ class StepSize {
   StepLimits limits(const State<D>& state);
   /// Cell that limits one treatment of the viscous term. Loops over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
-  /// Largest cell Peclet number |phi|/(nu g) of the last limits(), over all ranks.
-  double largest_peclet() const { return peclet_; }
 
  private:
-  double add_rates(const State<D>& state, bool peclet);
+  void add_rates(const State<D>& state, bool peclet);
   template <class Use>
   void for_rates(const State<D>& state, const Use& use) const;
   double frame_limit() const;
@@ -73,7 +71,6 @@ class StepSize {
   std::vector<std::uint8_t> few_faces_;  // per owned cell: it has fewer faces than a box
   Vectors<2> rates_;                     // rates of convection and diffusion
   std::vector<double> peclet_of_;
-  double peclet_ = 0;
 };
 
 /// Largest c dt of AB2 with implicit diffusion if a wave exp(i theta) sees c sin(theta) and q c (1 -
@@ -104,8 +101,6 @@ class SubStepSize {
   }
   /// Limits at the start of the last step; not computed if nothing depends on them.
   const StepLimits& limits() const { return limits_; }
-  /// Largest cell Reynolds number |phi|/(nu g) of a state. Collective.
-  double largest_peclet(const State<D>& state);
   /// Cell that limits the steps after a state. Collective.
   StepLimiter limiter(const State<D>& state) { return size_.limiter(state, state.implicit); }
 

@@ -169,8 +169,8 @@ TEST(FluidFindings, on_layers_turn_at_their_limits) {
   EXPECT_FALSE(sound(fluid::unresolved_layers(3, 56, 1.01, 3500)));
   EXPECT_NEAR(fluid::unresolved_layers(2, 500, 0, turbulent).share, 1 - std::sqrt(0.1), 1e-12);
   EXPECT_THAT(fluid::unresolved_layers(2, 500, 0, turbulent).advice, HasSubstr("'dimension: 3'"));
-  EXPECT_TRUE(sound(fluid::unresolved_walls(1.9, 1)));
-  EXPECT_FALSE(sound(fluid::unresolved_walls(2.1, 1)));
+  EXPECT_TRUE(sound(fluid::unresolved_walls(1.9)));
+  EXPECT_FALSE(sound(fluid::unresolved_walls(2.1)));
 }
 
 TEST(FluidFindings, on_eddies_say_that_they_could_be_omitted_or_model_nothing_in_two_dimensions) {
