@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
@@ -15,8 +16,7 @@ namespace couplet::fluid {
 
 namespace {
 
-// Fewer steps only show the start of a motion; a smaller share of the mean square is round-off.
-constexpr int judged_steps = 10;
+// A smaller share of the mean square is round-off.
 constexpr double rounding = 1e-9;
 
 template <int D>
@@ -66,7 +66,6 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
     if (const auto range = pressure_range(view_))
       add(report, change_of_density(false, density(), *range, largest_speed(view_), sound_));
   }
-  /// Evaluates means only at the end, because pressures dominate before walls have moved.
   void conclude(diagnostics::Report& report) override {
     if (view_.parameters().is_compressible()) return;
     const ComplianceMeans::Walls mine = means_.walls();
@@ -77,12 +76,14 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
         view_.mesh.comm, prescribed_rate(
                              view_.parameters(), [&](const std::string& name) { return some_places(name); },
                              view_.step.time + view_.step.dt, view_.step.dt));
-    if (walls[0] > 0) {
+    // Less than a period shows the start of a motion, in which pressures come before displacements.
+    const double of_walls = walls[0] > 0 ? std::sqrt(walls[1] / walls[0]) : 0;
+    if (of_walls * means_.time() > 2 * std::numbers::pi) {
       const ComplianceMeans::Totals totals = means_.totals();
       // A plate in the fluid sweeps the same volume on both sides.
       const double stroke = std::max(totals.swept, 0.5 * walls[2]);
       add(report, compliance(density(), stroke, totals.pressure_volume, sound_));
-      rate = std::max(rate, std::sqrt(walls[1] / walls[0]));
+      rate = std::max(rate, of_walls);
     }
     if (rate > 0) add(report, wave_time(rate, size, sound_));
   }
@@ -160,7 +161,7 @@ void ComplianceMeans::add(double dt, const std::vector<double>& swept, const Tot
 
 ComplianceMeans::Walls ComplianceMeans::walls() const {
   Walls w;
-  if (steps_ < judged_steps) return w;
+  if (!(time_ > 0)) return w;
   for (std::size_t i = 0; i < sum_.size(); ++i) {
     const double mean = sum_[i] / time_, square = square_[i] / time_, variance = square - mean * mean;
     if (variance <= rounding * square) continue;

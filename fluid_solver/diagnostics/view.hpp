@@ -53,6 +53,7 @@ class ComplianceMeans {
     double square = 0, rate = 0, size = 0;
   };
   Walls walls() const;
+  double time() const { return time_; }  ///< [s]
   /// Root mean squares about the means.
   Totals totals() const;
 
