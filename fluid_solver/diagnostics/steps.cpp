@@ -17,52 +17,57 @@ namespace couplet::fluid {
 
 namespace {
 
-// Factor above the limit at which a prescribed step is reported: disturbances grow slowly below, and often not at all.
-constexpr double far_above = 2;
+// Factor above the limit at which a prescribed step is reported, since the limits are bounds; below, once its disturbances show.
+constexpr double far_above = 3, shown = 0.1;
 constexpr int steps_between_looks = 10;
 
 /// A prescribed step is used even if it is too long for convection, or for the implicit term on cells with few
-/// faces (StepSize). Checked at each new longest step, every few steps and at the end, since the limit follows
-/// the flow.
+/// faces (StepSize). Checked every few steps and at the end, since the limit follows the flow, and reported once.
 template <int D>
 class GivenStep final : public diagnostics::Diagnostic {
  public:
   explicit GivenStep(const FluidView<D>& view) : view_(view) {}
   void observe(diagnostics::Report& report) override {
-    ++steps_unseen_;
-    if (size() <= longest_ && steps_unseen_ < steps_between_looks) return;
-    longest_ = std::max(longest_, size());
-    doubt(report);
+    if (++steps_ % steps_between_looks == 1 || grows()) doubt(report);
   }
-  void conclude(diagnostics::Report& report) override {
-    if (steps_unseen_ > 0) doubt(report);
+  void conclude(diagnostics::Report& report) override { doubt(report); }
+  void visit(io::Archive& archive) override {
+    archive.common("steps", steps_, is_told_, sound_.limit, sound_.cell, sound_.place, sound_.friction,
+                   sound_.frame);
   }
-  void visit(io::Archive& archive) override { archive.common("steps", longest_, steps_unseen_); }
 
  private:
-  double size() const { return view_.step.dt / view_.fluid.statistics().sub_steps; }
+  bool grows() const {
+    const EnergyLedger& ledger = view_.fluid.state().ledger;
+    return ledger.is_judged() && ledger.excess > shown * ledger.reference;
+  }
   void doubt(diagnostics::Report& report) {
-    steps_unseen_ = 0;
-    const StepLimiter by = view_.sizes.limiter(view_.fluid.state());
-    if (!(size() > far_above * by.limit)) return;
+    if (is_told_) return;
+    // Disturbances that have grown lower the limit.
+    const StepLimiter by = grows() && sound_.cell >= 0 ? sound_ : view_.sizes.limiter(view_.fluid.state());
+    const double size = view_.step.dt / view_.fluid.statistics().sub_steps;
+    if (!grows()) sound_ = by;
+    if (!(size > (grows() ? 1 : far_above) * by.limit)) return;
+    is_told_ = true;
     report.findings.push_back(
         {.id = "given-step",
-         .number = size() / by.limit,
-         .limit = far_above,
+         .number = size / by.limit,
+         .limit = 1,
          .sentence = fmt::format(
              "time-step: sub-steps of {:.3g} s are {:.1f} times the limit of {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m: "
-             "disturbances of velocity and pressure may grow from step to step",
-             size(), size() / by.limit,
+             "disturbances of velocity and pressure {} from step to step",
+             size, size / by.limit,
              !by.friction                   ? by.cause()
              : view_.fluid.state().implicit ? "an implicit viscous term"
                                             : "an explicit viscous term",
-             by.cell, by.place.x(), by.place.y(), by.place.z()),
+             by.cell, by.place.x(), by.place.y(), by.place.z(), grows() ? "grow" : "may grow"),
          .advice = fmt::format("remove 'time-step', or set at most {:.3g} s", by.limit)});
   }
 
   FluidView<D> view_;
-  double longest_ = 0;    // of the given sub-steps seen [s]
-  int steps_unseen_ = 0;  // whose limit may have changed
+  long steps_ = 0;
+  bool is_told_ = false;
+  StepLimiter sound_;  // of the last look without growth; cell -1 before the first
 };
 
 /// Courant rate sum |phi - dV/dt|/(2 V) of a cell, or with `friction` sum nu g/(2 D V), which is nu/h^2 of a
