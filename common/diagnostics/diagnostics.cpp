@@ -108,10 +108,16 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
   f.effect = fmt::format("{}{}", e.effect, e.left_out ? " neglected" : "");
   f.share = e.share;
   if (e.left_out && !std::isnan(e.share)) {
+    // As an error; 1 is a share that may be any above. What is assumed or holds at one place only is bounded by 1.
     f.number = e.share, f.limit = share_limit();
-    f.severity = f.number < f.limit ? Severity::note : Severity::warning;
+    f.severity = f.number < f.limit                    ? Severity::note
+                 : f.number > as_large_as_the_solution ? Severity::wrong
+                                                       : Severity::warning;
     f.sentence = fmt::format("{}: {}; share of the result {:.2g} (limit {:.2g}): {}", f.effect, e.what,
-                             f.number, f.limit, f.severity == Severity::note ? "justified" : "matters");
+                             f.number, f.limit,
+                             f.severity == Severity::note      ? "justified"
+                             : f.severity == Severity::warning ? "matters"
+                                                               : "not reliable");
     return f;
   }
   const bool is_sound = e.number <= e.limit || e.is_spare;

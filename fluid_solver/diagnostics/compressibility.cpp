@@ -184,15 +184,15 @@ ComplianceMeans::Totals ComplianceMeans::totals() const {
 // Density changes scale with half the squared Mach number: 5 % at 0.3.
 diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
   const double mach = speed / sound.speed;
-  return {
-      .effect = "compressibility",
-      .number = mach,
-      .what = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)", speed,
-                          mach, sound.of, sound.speed),
-      .advice =
-          "density would change by more than 5 %: use a compressible solver; if the speed of sound "
-          "differs, set it in 'compressibility'",
-      .share = mach < 0.9 ? 1 / std::sqrt(1 - mach * mach) - 1 : 1};  // of pressures [Prandtl and Glauert]
+  return {.effect = "compressibility",
+          .number = mach,
+          .what = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)", speed,
+                              mach, sound.of, sound.speed),
+          .advice =
+              "density would change by more than 5 %: use a compressible solver; if the speed of sound "
+              "differs, set it in 'compressibility'",
+          .share =
+              1 / std::sqrt(1 - std::pow(std::min(mach, 0.9), 2)) - 1};  // of pressures [Prandtl and Glauert]
 }
 
 // If flow is stopped or driven faster than waves cross the domain, the pressure rises as rho c du or rho L
@@ -218,7 +218,9 @@ diagnostics::EffectFinding change_of_density(bool is_compressible, double densit
 // incompressible fluid would push this share of the stroke through the openings.
 diagnostics::EffectFinding compliance(double density, double stroke, double pressure_volume,
                                       const Sound& sound) {
-  const double share = pressure_volume / (density * sound.speed * sound.speed) / std::max(stroke, 1e-300);
+  // Where walls hardly move the fluid leaves by its openings.
+  const double volume = pressure_volume / (density * sound.speed * sound.speed),
+               share = volume > stroke ? 1 : volume / stroke;
   return {.effect = "waves of pressure",
           .number = share,
           .what = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),

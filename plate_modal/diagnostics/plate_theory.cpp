@@ -81,14 +81,14 @@ class PlateTheory final : public diagnostics::Diagnostic {
   bool moves_freely() const { return view_.surface.omega().front() == 0; }
 
   // A free body may translate far but not rotate far: a mode moves it along the tangent, so that 0.25 rad
-  // stretch it by 1/cos, 3 %. A clamped strip with a tip deflection of a quarter of its length has rotated
+  // stretch it by 3 %. A clamped strip with a tip deflection of a quarter of its length has rotated
   // there by about 20 degrees; the neglected foreshortening is 0.6 x 0.25^2 of the length, 4 %.
   void look_at_rotation(diagnostics::Report& report, double displacement) const {
     if (moves_freely())
       report_neglected(report, "large rotation", rotation_,
                        fmt::format("rigid rotation = {:.2g} rad", rotation_),
                        "linear modes move a body along its tangent: use a program for finite strain",
-                       1 / std::max(0.1, std::cos(rotation_)) - 1);
+                       std::hypot(1, rotation_) - 1);
     else
       report_neglected(
           report, "large rotation", displacement,
@@ -97,15 +97,18 @@ class PlateTheory final : public diagnostics::Diagnostic {
           0.6 * displacement * displacement);
   }
 
-  // Stretch stiffens a plate with held edges by about 1 + 0.5 (w/h)^2, depending on the edges.
+  // Stretch stiffens a plate with held edges by about 1 + 0.5 (w/h)^2, depending on the edges: of the linear deflection w it
+  // leaves the part x with x + 0.5 (w/h)^2 x^3 = 1.
   void look_at_stretch(diagnostics::Report& report, double deflection) const {
     const double stiffening = 0.5 * deflection * deflection;
+    double x = 1;
+    for (int k = 0; k < 60; ++k) x -= (x + stiffening * x * x * x - 1) / (1 + 3 * stiffening * x * x);
     report_neglected(
         report, "stretch of the mid-surface", deflection,
         fmt::format("held on opposite sides: max deflection / thickness = {:.2g}", deflection),
         "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for "
         "finite strain",
-        stiffening / (1 + stiffening));
+        stiffening * x * x);
   }
 
   /// Largest part of loads and base motion in the plane, to which bending modes do not respond, over that across it.
@@ -127,7 +130,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
                     p.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
         "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a "
         "volume model",
-        share);
+        std::min(share, 1.));
   }
 
   // Mindlin's plate compared with Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5
@@ -140,8 +143,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
       softening += moved * 16 * std::pow(thickness_over_wave(omega[m]), 4);
       all += moved;
     }
-    const double share =
-        all > 0 ? std::sqrt(softening / all) : 4 * std::pow(thickness_over_wave(omega.back()), 2);
+    const double share = all > 0 ? std::sqrt(softening / all) : unknown;  // nothing moves
     report_neglected(
         report, "shear and rotary inertia", share,
         fmt::format("by the thickness over half the wavelength of the modes they add {:.2g} to the motion",

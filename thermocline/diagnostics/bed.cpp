@@ -150,7 +150,7 @@ class Gas final : public TankDiagnostic {
                                       "J/(kg K), a difference of {:.2g} from the constant",
                                       mean, error),
                   .advice = fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", mean),
-                  .share = error});
+                  .share = std::min(error, 1.)});  // of another gas
   }
 
  private:

@@ -38,7 +38,7 @@ class WallStrength final : public TankDiagnostic {
           .number = share,
           .what = fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", share),
           .advice = "the wall would yield: its stress and that of the grains are those of an elastic wall",
-          .share = std::max(0., share - 1)});
+          .share = std::clamp(share - 1, 0., 1.)});  // of the temperatures it changes nothing
     if (share_.shell > 0)
       tell(report,
            {.effect = "bending of the wall",

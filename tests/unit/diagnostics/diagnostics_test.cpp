@@ -143,6 +143,8 @@ TEST(Findings, on_neglected_effects_turn_at_the_share_that_matters) {
   EXPECT_EQ(with_share(0.049).severity, Severity::note);
   EXPECT_EQ(with_share(0.05).severity, Severity::warning);
   EXPECT_EQ(with_share(0.05, 1e-9).severity, Severity::warning);
+  EXPECT_EQ(with_share(1).severity, Severity::warning);
+  EXPECT_EQ(with_share(1.01).severity, Severity::wrong);
   diagnostics::share_limit() = 0.2;
   EXPECT_EQ(with_share(0.19).severity, Severity::note);
   EXPECT_EQ(with_share(0.21).limit, 0.2);
