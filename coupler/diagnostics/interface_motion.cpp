@@ -125,9 +125,7 @@ std::string StepOscillation::told(double growth, coupling::Scheme scheme) const 
 double StepOscillation::pair(std::size_t i) const { return sizes_[i] + sizes_[i + 1]; }
 
 // Each jump is four amplitudes over the step.
-double StepOscillation::share() const {
-  return largest_ > 0 ? 0.125 * pair(sizes_.size() - 2) * dt_ / largest_ : 0;
-}
+double StepOscillation::share() const { return largest_.share(0.125 * pair(sizes_.size() - 2) * dt_, 0); }
 
 bool StepOscillation::counts() const {
   return share() > std::max(tolerance_, floor) && pair(sizes_.size() - 2) > 1.5 * before_;
@@ -144,7 +142,9 @@ std::optional<std::string> StepOscillation::accepted(const std::vector<double>& 
   }
   const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
   speed_.push_back(norm(comm_, velocity));
-  largest_ = std::max(largest_, norm(comm_, x));
+  // What led to a step that was halved is no measure of later oscillations.
+  if (dt < (1 - 1e-9) * dt_) largest_.forget(), before_ = 0;
+  largest_.add(norm(comm_, x), dt);
   if (speed_.size() > 4) speed_.pop_front();
   // The motion reverses: most of its shape equals the last one with opposite sign.
   const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;

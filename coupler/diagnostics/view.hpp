@@ -13,6 +13,7 @@
 #include "common/app/loop/step_loop.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/diagnostics.hpp"
+#include "common/diagnostics/reference.hpp"
 #include "common/parallel/index_map.hpp"
 #include "coupler/acceleration/unknown.hpp"
 #include "coupler/output/record.hpp"
@@ -83,7 +84,8 @@ class StepOscillation {
   bool counts() const;   // the swings are part of the answer and larger than all before
 
   MPI_Comm comm_;
-  double tolerance_, largest_ = 0;  // largest: norm of x over the run
+  double tolerance_;
+  diagnostics::Reference largest_{"coupling: motion of the interface"};  // norm of x
   std::vector<double> x_, velocity_, jump_;
   int turns_ = 0, levels_ = 0;  // levels: number of known accepted states
   std::vector<double> sizes_;   // of the differences since the oscillation began

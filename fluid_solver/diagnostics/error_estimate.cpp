@@ -10,6 +10,7 @@
 
 #include "common/base/processor_clones.hpp"
 #include "common/diagnostics/error_parts.hpp"
+#include "common/diagnostics/reference.hpp"
 #include "common/fv/expression.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
@@ -257,7 +258,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
-      largest_ = std::max(largest_, mean(0));
+      if (dt < (1 - 1e-9) * dt_old_) largest_.forget();
+      largest_.add(mean(0), dt);
       energy_.add(dt, state.ledger);
       drift_.add(dt, std::max(0., state.ledger.energy), mean(1), mean(2),
                  adams_bashforth_error * sub_step * sub_step);
@@ -291,7 +293,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     if (!p.is_compressible()) return false;
     if (across_ == 0)
       across_ = mesh::extent_of(view_.mesh.comm, view_.fluid.points_at_rest()).size().maxCoeff();
-    return changed_ * across_ > quasi_steady * largest_ * p.sound_speed();
+    return changed_ * across_ > quasi_steady * largest_.value() * p.sound_speed();
   }
   /// Volume of a compressible fluid that waves leave in a second through absorbing boundaries of this rank [m^3/s].
   double waves_out() const {
@@ -326,17 +328,18 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   diagnostics::ErrorParts parts() {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
-    const double speed = size(view_.fluid.state().u);
+    const double speed = root_mean_square(view_.fluid.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;
     const double falls = std::sqrt(largest_pressure() / view_.parameters().density);
     const double across = std::pow(double(view_.mesh.cells.n_global()), 1. / D);
     // A fluid at rest is so within the tolerance of its pressure; what moves then is no solution.
     const double left = view_.parameters().pressure_tolerance * std::sqrt(across) * falls;
-    if (std::max(speed, largest_) < left) {
+    const double size = std::max(speed, largest_.value());
+    if (size < left) {
       parts.mesh = parts.step = parts.linear = 0;
       return parts;
     }
-    const double scale = diagnostics::scale_of(std::max(speed, largest_), falls);
+    const double scale = diagnostics::scale_of(size, falls);
     parts.mesh = (recovered_difference() + std::max(0., filtered_) * speed) / scale;
     parts.step = step_part() * steps_.size() / scale;
     parts.too_few_steps = std::isnan(parts.step);
@@ -356,7 +359,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     return parallel::max(view_.mesh.comm, most);
   }
   /// Root mean square over the volume; per local cell.
-  double size(const Vectors<D>& values) const {
+  double root_mean_square(const Vectors<D>& values) const {
     const std::vector<double>& volume = view_.fluid.state().placement->volume;
     double squares = 0, whole = 0;
     for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c) {
@@ -398,7 +401,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     Vectors<D> gap(mesh.cells.n_local(), Vec<D>::Zero());
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       if (!s.blocked || !(*s.blocked)[c]) gap[c] = fits[c].value() - s.u[c];
-    return size(gap);
+    return root_mean_square(gap);
   }
   double net_outflow() const {
     const State<D>& s = view_.fluid.state();
@@ -440,9 +443,9 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   Driving driving_;
   Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
   double left_of_late_ = 0;  // norm, the largest of late
-  double largest_ = 0;       // mean speed of the run [m/s]
-  double filtered_ = 0;      // share of the velocity that the pressure's filter took
-  double across_ = 0;        // largest extent of the mesh at rest [m]; 0 if not known
+  diagnostics::Reference largest_{"fluid: mean speed"};
+  double filtered_ = 0;  // share of the velocity that the pressure's filter took
+  double across_ = 0;    // largest extent of the mesh at rest [m]; 0 if not known
   double carried_ = 0,
          changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
 };

@@ -68,6 +68,10 @@ void Fluid<D>::restore(State<D> state) {
 
 template <int D>
 void Fluid<D>::begin_step(double time, double dt) {
+  if (time == time_ && dt < dt_) {  // the last one was rejected, and what led to it is no measure
+    accepted_.ledger.largest = std::max(0., accepted_.ledger.energy);
+    accepted_.largest_speed = 0;
+  }
   time_ = time;
   dt_ = dt;
   split_ = false;

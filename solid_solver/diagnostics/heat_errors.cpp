@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/reference.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/view.hpp"
@@ -175,6 +176,11 @@ constexpr int patience = 4;              // turns in a row
 constexpr double turning_cosine = -0.5;  // cosine between the changes of two steps
 constexpr double noticeable = 1e-3;      // root mean square of a step's change over all temperatures seen
 
+/// Change of a temperature of this size that its solver cannot tell from none [K].
+double rounding_of(const Heat& heat, double temperature) {
+  return heat.parameters().linear_tolerance * std::abs(temperature);
+}
+
 /// Detects a temperature that alternates between steps. The trapezoidal rule reverses modes that its step
 /// does not resolve (a shock, a large Fourier number) instead of damping them: amplification (1 - z/2)/(1 +
 /// z/2), towards -1 for z = dt/tau to infinity.
@@ -183,7 +189,7 @@ class HeatSwing final : public diagnostics::Diagnostic {
   explicit HeatSwing(const Heat& heat) : heat_(heat) {}
   void observe(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override {
-    archive.common("swing", lowest_, highest_, turns_, begun_, told_);
+    archive.common("swing", lowest_, highest_, range_, turns_, begun_, told_);
     archive.field(mesh::Entries::owned_cells, "change", change_, 1);
   }
 
@@ -191,7 +197,8 @@ class HeatSwing final : public diagnostics::Diagnostic {
   const Heat& heat_;
   std::vector<double> change_;       // of owned cells in the last step [K]; or empty
   double lowest_ = 0, highest_ = 0;  // that was seen [K]
-  int turns_ = 0;                    // in a row
+  diagnostics::Reference range_{"heat: range of temperature"};
+  int turns_ = 0;  // in a row
   bool begun_ = false;
   bool told_ = false;
 };
@@ -219,21 +226,21 @@ void HeatSwing::observe(diagnostics::Report& report) {
   MPI_Allreduce(MPI_IN_PLACE, range, 2, MPI_DOUBLE, MPI_MAX, mesh.comm);
   highest_ = first ? range[0] : std::max(highest_, range[0]);
   lowest_ = first ? -range[1] : std::min(lowest_, -range[1]);
-  const double size = std::sqrt(sums[0] / sums[3]);
-  const bool turns =
-      sums[2] < turning_cosine * std::sqrt(sums[0] * sums[1]) && size > noticeable * (highest_ - lowest_);
+  range_.add(highest_ - lowest_, heat_.accepted().dt);
+  const double size = std::sqrt(sums[0] / sums[3]), share = range_.share(size, rounding_of(heat_, highest_));
+  const bool turns = sums[2] < turning_cosine * std::sqrt(sums[0] * sums[1]) && share > noticeable;
   turns_ = turns ? turns_ + 1 : 0;
   if (turns_ < patience) return;
   told_ = true;
   report.findings.push_back(
       {.id = "heat-swing",
-       .number = size / (highest_ - lowest_),
+       .number = share,
        .limit = noticeable,
        .sentence = fmt::format(
            "the temperature oscillates from step to step: amplitude {:.3g} K (rms) in a range "
            "of {:.3g} K: 'heat: {{scheme: trapezoidal}}' does not damp unresolved modes. Use 'scheme: "
            "three-point' or 'euler', or shorter steps.",
-           size, highest_ - lowest_)});
+           size, range_.value())});
 }
 
 /// Finds temperatures below absolute zero, which a linear equation yields if more heat is drawn than there is.
@@ -309,7 +316,7 @@ void HeatStorage::look(diagnostics::Report& report) {
   const double stored = m.density * m.specific_heat(level);
   const double range = parallel::max(mesh.comm, high_) - parallel::min(mesh.comm, low_),
                rate = parallel::max(mesh.comm, rate_);
-  if (!(rate > 0)) return;
+  if (!(rate > 0) || !(range > rounding_of(heat_, level))) return;
   // A ramp is followed at the distance of this time, of which the range of temperatures is one.
   const double time = size * size * stored / m.conductivity(level), lag = time * rate / range;
   if (auto finding = diagnostics::finding_of(

@@ -45,10 +45,11 @@ class MissingContact final : public diagnostics::Diagnostic {
     const mesh::Mesh& mesh = view_.body.mesh();
     const std::vector<double> u = view_.fields.point_displacement();
     std::vector<Vec3> moved = view_.body.geometry().points;
-    double motion = 0;
+    double motion = 0, rounding = 0;
     for (std::size_t v = 0; v < moved.size(); ++v) {
       const Vec3 here = elastic::vector_at(u, Index(v), mesh.dim);
       moved[v] += here;
+      rounding = std::max(rounding, std::numeric_limits<double>::epsilon() * moved[v].norm());
       if (Index(v) < mesh.points.n_owned()) motion = std::max(motion, here.norm());
     }
     motion = parallel::max(mesh.comm, motion);
@@ -97,7 +98,8 @@ class MissingContact final : public diagnostics::Diagnostic {
         if (is_inside) depth = std::max(depth, here);
       }
     }
-    return motion > 0 ? parallel::max(mesh.comm, depth) / motion : 0;
+    depth = parallel::max(mesh.comm, depth);
+    return depth > parallel::max(mesh.comm, rounding) ? depth / motion : 0;
   }
 
   /// Distance of a place from the plane of a face, on the side of `middle`.

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "common/csv/csv_reader.hpp"
+#include "common/diagnostics/reference.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
@@ -39,15 +41,18 @@ std::optional<double> largest_expansion(const P& p) {
 
 /// Relative change of a displacement: 0.4 times the squared tip rotation of a cantilever (elastica; the norm
 /// of the gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) for lateral
-/// motion under 1/f of the buckling load.
+/// motion under 1/f of the buckling load. An expansion that tells less than large gradients do holds no longer.
 double share_of_geometry(const Deformation& d, const std::optional<LargeStrainEstimate>& large_strain,
                          double buckling_factor) {
-  constexpr double all = 10;  // of a load beyond the buckling load nothing is left
-  if (large_strain) return large_strain->is_known() ? large_strain->change : all;
   const double strain = std::isnan(d.strain) ? 0 : d.strain;
-  const double share = std::min(1., 0.2 * d.gradient * d.gradient + 0.8 * strain);
+  const double share = 0.2 * d.gradient * d.gradient + 0.8 * strain;
+  if (large_strain) {
+    const double change = large_strain->is_known() ? large_strain->change : 1;
+    return share > 1 ? std::max(change, share) : change;
+  }
   if (std::isnan(buckling_factor)) return share;
-  return std::max(share, buckling_factor > 1 + 1 / all ? 1 / (buckling_factor - 1) : all);
+  constexpr double all = 10;  // of a load beyond the buckling load nothing is left
+  return std::max(share, buckling_factor > 1 ? std::min(1., 1 / (buckling_factor - 1)) : all);
 }
 
 }  // namespace
@@ -133,7 +138,7 @@ Opinion neglected_yielding(double share_of_yield) {
        .number = share_of_yield,
        .what = fmt::format("max equivalent stress / yield strength = {:.2g}", share_of_yield),
        .advice = "the body would yield: the result is that of an elastic body; use a program with plasticity",
-       .share = std::max(0., share_of_yield - 1)});
+       .share = std::clamp(share_of_yield - 1, 0., 1.)});  // of a place
 }
 
 // Metals yield at strains of 0.1 to 0.5 %; plastics and rubber are softer and yield later or not at all.
@@ -178,7 +183,8 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
   if (!deforms(p) || p.expansion) return {};
   const auto own = largest_expansion(p);
   const double coefficient = own.value_or(1e-5), kelvins = own ? std::fmax(range, change) : range,
-               strain = coefficient * kelvins, share = strain / std::max(gradient, 1e-300);
+               strain = coefficient * kelvins,
+               share = gradient == 0 && strain > 0 ? 1 : strain / std::max(gradient, 1e-300);
   return diagnostics::finding_of(
       {.effect = "thermal strain",
        .number = share,
@@ -226,37 +232,38 @@ Opinion thermoelastic_coupling(const P& p, double coupling_number) {
 
 namespace {
 
-/// Inertia of a static run with several steps, from the velocities between them.
+/// Inertia of a static run with several steps, from the velocities between them: its work on the displacement over that of the
+/// loads, because loads whose sum is zero move a body, too.
 class NeglectedInertia final : public diagnostics::Diagnostic {
  public:
   explicit NeglectedInertia(const SolidView& view) : view_(view) {}
 
   void observe(diagnostics::Report&) override {
     const SolidState &now = view_.now(), &before = view_.before();
-    if (before.steps < 1) return;
-    const mesh::Mesh& mesh = view_.body.mesh();
-    Vec3 inertia = Vec3::Zero();
-    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-      for (int a = 0; a < mesh.dim; ++a) {
-        const std::size_t i = std::size_t(c) * mesh.dim + a;
-        inertia[a] += view_.body.density(c) * view_.body.geometry().volume[c] *
-                      (now.cell_v[i] - before.cell_v[i]) / (0.5 * (now.dt + before.dt));
-      }
-    for (int a = 0; a < mesh.dim; ++a) inertia[a] = parallel::sum(mesh.comm, inertia[a]);
-    inertia_ = std::max(inertia_, inertia.norm());
-    load_ = std::max(load_, view_.fields.total_load().norm());
+    const LastSolve& last = view_.stepper.last_solve();
+    if (before.steps < 1 || !last.is_known(view_.comm())) return;
+    const auto dim = std::size_t(view_.body.mesh().dim),
+               n = std::size_t(view_.body.mesh().cells.n_owned()) * dim;
+    double inertia = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      inertia += view_.body.density(Index(i / dim)) * view_.body.geometry().volume[i / dim] *
+                 (now.cell_v[i] - before.cell_v[i]) / (0.5 * (now.dt + before.dt)) * now.cell_u[i];
+    inertia_ = std::max(inertia_, std::abs(parallel::sum(view_.comm(), inertia)));
+    const double work = std::inner_product(last.rhs.begin(), last.rhs.end(), last.unknowns.begin(), 0.);
+    load_.add(std::abs(parallel::sum(view_.comm(), work)), now.dt);
   }
 
   void conclude(diagnostics::Report& report) override {
-    if (load_ > 0 && view_.now().steps > 1)
-      add(report, neglected_inertia(view_.body.parameters(), inertia_ / load_));
+    if (load_.value() > 0 && view_.now().steps > 1)
+      add(report, neglected_inertia(view_.body.parameters(), load_.share(inertia_, 0)));
   }
 
   void visit(io::Archive& archive) override { archive.common("inertia", inertia_, load_); }
 
  private:
   SolidView view_;
-  double inertia_ = 0, load_ = 0;  // largest of the run [N]
+  double inertia_ = 0;  // largest work of the run [J]
+  diagnostics::Reference load_{"solid: work of the loads"};
 };
 
 /// Weight of a body without gravity. By reciprocity, its work on the displacement by the loads over the work of the loads is

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/diagnostics/reference.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/view.hpp"
 
@@ -36,11 +37,12 @@ class Stability final : public diagnostics::Diagnostic {
 
 /// Energy of a dynamic run compared with the energy supplied to it [J]; over all ranks.
 struct EnergyAudit {
-  double held = 0;        ///< kinetic and strain energy
-  double given = 0;       ///< initial energy and work of the loads
-  double scale = 0;       ///< largest energy supplied so far
+  double held = 0;      ///< kinetic and strain energy
+  double given = 0;     ///< initial energy and work of the loads
+  double rounding = 0;  ///< of the strain energy
+  diagnostics::Reference supplied{"solid: energy supplied"};
   bool is_driven = true;  ///< loads did work, which is known only approximately
-  double created() const { return scale > 0 ? (held - given) / scale : 0; }
+  double created() const { return supplied.share(held - given, rounding); }
   /// Limits of energy growth without a cause. In an undriven body, only the motion can be in error.
   static constexpr double most_created = 0.2, most_created_undriven = 0.1;
   /// Limit above which the run ends because the result is unusable.
@@ -58,7 +60,7 @@ struct EnergyAudit {
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(held, given, scale, is_driven);
+    numbers(held, given, rounding, supplied, is_driven);
   }
 };
 
@@ -78,13 +80,16 @@ class EnergyBalance final : public diagnostics::Diagnostic {
 
  private:
   double strain_energy() const;
+  double work_by_vertices() const;
+  double rounding() const;
 
   SolidView view_;
   std::shared_ptr<StrainEnergy> strain_;
   EnergyAudit audit_;
   double by_changes_ = 0;                            // energy that the changes of restarts gave the body [J]
   double largest_kinetic_ = 0, largest_strain_ = 0;  // [J]
-  std::vector<double> rates_ = {0, 0};  // integrals over time of m v^2 and m a^2, this rank [J s], [J/s]
+  // Of this rank: integrals over time of m v^2 and m a^2 [J s], [J/s]; see work_by_vertices() [J].
+  std::vector<double> rates_ = {0, 0, 0};
 };
 
 }  // namespace couplet::solid

@@ -127,6 +127,19 @@ TEST(StepOscillation, swings_below_a_thousandth_or_the_tolerance_of_the_coupling
   }
 }
 
+TEST(StepOscillation, a_blow_up_that_ended_with_a_halved_step_does_not_hide_later_swings) {
+  const auto told = [](double dt) {
+    StepOscillation guard;
+    for (int n = 1; n <= 20; ++n) guard.accepted({1e6 * n}, 0.01, Scheme::implicit);
+    for (int n = 1; n <= 200; ++n)
+      if (guard.accepted({1 + 1e-3 * std::pow(-1.2, n)}, dt, Scheme::implicit)) return n;
+    return 0;
+  };
+  EXPECT_GT(told(0.01), 80);
+  EXPECT_GT(told(0.005), 0);
+  EXPECT_LT(told(0.005), 40);
+}
+
 TEST(StepOscillation, steps_of_another_length_do_not_hide_it) {
   StepOscillation guard;
   std::string text;
