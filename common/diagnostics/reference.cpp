@@ -21,6 +21,7 @@ constexpr double since_rejection = 0.25;  // fraction of the time since a reject
 //   displacement, beside contact      MissingContact; floor: machine epsilon times place; of the accepted state
 constexpr std::array all_references{
     ReferenceEntry{"coupling: motion of the interface", true, "tolerance of the coupling"},
+    ReferenceEntry{"coupling: swings of the interface", true, "none: beside other swings"},
     ReferenceEntry{"fluid: mean speed", true, "pressure tolerance, as a speed"},
     ReferenceEntry{"heat: range of temperature", false, "linear tolerance times temperature"},
     ReferenceEntry{"solid: energy supplied", false, "machine epsilon times modulus times volume"},

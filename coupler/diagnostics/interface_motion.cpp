@@ -128,7 +128,7 @@ double StepOscillation::pair(std::size_t i) const { return sizes_[i] + sizes_[i 
 double StepOscillation::share() const { return largest_.share(0.125 * pair(sizes_.size() - 2) * dt_, 0); }
 
 bool StepOscillation::counts() const {
-  return share() > std::max(tolerance_, floor) && pair(sizes_.size() - 2) > 1.5 * before_;
+  return share() > std::max(tolerance_, floor) && pair(sizes_.size() - 2) > 1.5 * before_.value();
 }
 
 std::optional<std::string> StepOscillation::accepted(const std::vector<double>& x, double dt,
@@ -143,20 +143,22 @@ std::optional<std::string> StepOscillation::accepted(const std::vector<double>& 
   const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
   speed_.push_back(norm(comm_, velocity));
   // What led to a step that was halved is no measure of later oscillations.
-  if (dt < (1 - 1e-9) * dt_) largest_.forget(), before_ = 0;
+  if (dt < (1 - 1e-9) * dt_) largest_.forget(), before_.forget();
   largest_.add(norm(comm_, x), dt);
   if (speed_.size() > 4) speed_.pop_front();
   // The motion reverses: most of its shape equals the last one with opposite sign.
   const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;
+  double before = 0;
   if (turned) {
     if (turns_ == 0) sizes_.assign(1, old_size);
     ++turns_;
     sizes_.push_back(size);
   } else {
-    for (std::size_t i = 0; i + 1 < sizes_.size(); ++i) before_ = std::max(before_, pair(i));
+    for (std::size_t i = 0; i + 1 < sizes_.size(); ++i) before = std::max(before, pair(i));
     turns_ = 0;
     sizes_.clear();
   }
+  before_.add(before, dt);
   levels_ = std::min(levels_ + 1, 3);
   dt_ = dt;
   x_ = x;

@@ -90,7 +90,9 @@ class StepOscillation {
   int turns_ = 0, levels_ = 0;  // levels: number of known accepted states
   std::vector<double> sizes_;   // of the differences since the oscillation began
   std::deque<double> speed_;    // of the last steps
-  double before_ = 0, dt_ = 0;  // largest pair of sizes in the oscillations before; last step
+  diagnostics::Reference before_{
+      "coupling: swings of the interface"};  // pair of sizes in oscillations before
+  double dt_ = 0;                            // last step
 };
 
 /// Compares the work on both sides of the interface, which differs only by the coupling error.
