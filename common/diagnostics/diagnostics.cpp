@@ -16,7 +16,9 @@ namespace {
 using base::Severity;
 
 /// Returns true if a exceeds its limit by more than b. NaN counts as largest.
-bool exceeds(const Finding& a, const Finding& b) { return !(a.number / a.limit <= b.number / b.limit); }
+bool exceeds(const Finding& a, const Finding& b) {
+  return a.limit == b.limit ? !(a.number <= b.number) : !(a.number / a.limit <= b.number / b.limit);
+}
 
 }  // namespace
 
@@ -118,6 +120,12 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
                              f.severity == Severity::note      ? "justified"
                              : f.severity == Severity::warning ? "matters"
                                                                : "not reliable");
+    return f;
+  }
+  // The number rests on a value that the case does not give, such as a direction of gravity.
+  if (std::isinf(e.limit)) {
+    f.severity = Severity::note;
+    f.sentence = fmt::format("{}: {} (for information)", f.effect, e.what);
     return f;
   }
   const bool is_sound = e.number <= e.limit || e.is_spare;

@@ -133,7 +133,7 @@ class Diagnostics {
 struct EffectFinding {
   const char* effect = "";  ///< its name; the finding's id is the name in lower case with hyphens
   double number = 0;        ///< its size; NaN if unknown
-  double limit = 0;         ///< of the number, up to which an included effect is adequate
+  double limit = 0;         ///< of the number, up to which an effect is adequate; infinity: for information
   std::string what;         ///< the number in words, with its unit: "max |grad u| = 0.29"
   std::string advice{};
   bool left_out = true;  ///< false if the scene includes it

@@ -63,15 +63,14 @@ class PlateTheory final : public diagnostics::Diagnostic {
   }
   void conclude(diagnostics::Report& report) override {
     if (!(largest_ > 0)) return;
-    // A weight that acts at once moves a plate at rest to twice its sag.
-    const double inertia = added_ / largest_, weight = (view_.is_dynamic() ? 2 : 1) * sag_ / largest_;
+    const double inertia = added_ / largest_, weight = sag_ / largest_;
     if (!rate_.empty())
       report_neglected(report, "inertia", inertia, fmt::format("inertia / load = {:.2g}", inertia),
                        "use 'analysis: dynamic'", inertia < 0.5 ? inertia / (1 - inertia) : 1);
     if (view_.parameters.gravity.empty() && !moves_freely() && view_.fluid_force.empty())
       report_neglected(report, "gravity", weight,
-                       fmt::format("across the plate its weight would add {:.2g} of the motion", weight),
-                       "if it acts there, use 'gravity'", weight);
+                       fmt::format("across the plate its weight would add {:.2g} of the motion", weight), "",
+                       unknown, no_verdict);
   }
   void visit(io::Archive& archive) override {
     archive.common("largest", displacement_, rotation_, largest_, added_, rate_);

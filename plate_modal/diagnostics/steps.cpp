@@ -37,8 +37,8 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
     const double share = 1 - std::exp(-usual_damping * turns_ / moved_);
     report_neglected(
         report, "damping", share,
-        fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual_damping, share),
-        "use 'damping'", share);
+        fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual_damping, share), "",
+        unknown, no_verdict);
   }
   void visit(io::Archive& archive) override {
     archive.common("energies", mismatch_, largest_, moved_, turns_);

@@ -23,6 +23,9 @@ namespace {
 
 using P = SolidParameters;
 
+/// Limit of a number that rests on a value that the case does not give.
+constexpr double no_verdict = std::numeric_limits<double>::infinity();
+
 bool deforms(const P& p) { return p.analysis != P::Analysis::thermal; }
 
 bool has_interface(const P& p) {
@@ -79,9 +82,8 @@ Opinion neglected_damping(const P& p, double turns) {
   return diagnostics::finding_of(
       {.effect = "damping",
        .number = share,
-       .what = fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual, share),
-       .advice = "use 'damping'",
-       .share = share});
+       .limit = no_verdict,
+       .what = fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual, share)});
 }
 
 // In slow motion, the kinetic energy is (w/w_1)^2 of the strain energy.
@@ -141,7 +143,7 @@ Opinion neglected_yielding(double share_of_yield) {
        .share = std::clamp(share_of_yield - 1, 0., 1.)});  // of a place
 }
 
-// Metals yield at strains of 0.1 to 0.5 %; plastics and rubber are softer and yield later or not at all.
+// Metals yield at strains of 0.1 to 0.9 %; plastics and rubber are softer and yield later or not at all.
 Opinion unknown_yielding(const P& p, double strain) {
   constexpr double soft = 10e9;  // [Pa]
   double stiffest = 0;
@@ -153,7 +155,7 @@ Opinion unknown_yielding(const P& p, double strain) {
   return diagnostics::finding_of(
       {.effect = "yielding",
        .number = strain,
-       .limit = 0.002,
+       .limit = 0.01,
        .what =
            fmt::format("largest stress = {:.2g} of Young's modulus, and no yield strength is given", strain),
        .advice = "give 'yield-strength' in 'material'"});
@@ -177,8 +179,7 @@ Opinion near_incompressibility(const P& p) {
 }
 
 // Free thermal strain relative to the largest displacement gradient. Uses the material's coefficient and the
-// default reference temperature of `thermal-expansion`, otherwise 1e-5 1/K over the range of temperatures,
-// because the stress-free temperature is unknown.
+// default reference temperature of `thermal-expansion`, otherwise, for information, 1e-5 1/K over the range of temperatures.
 Opinion neglected_thermal_strain(const P& p, double gradient, double range, double change) {
   if (!deforms(p) || p.expansion) return {};
   const auto own = largest_expansion(p);
@@ -188,11 +189,12 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
   return diagnostics::finding_of(
       {.effect = "thermal strain",
        .number = share,
+       .limit = no_verdict,
        .what = fmt::format(
            "a temperature {} of {:.3g} K would strain a free body with {:.3g} 1/K by {:.2g}; max |grad u| = {:.2g}",
            own ? "change" : "range", kelvins, coefficient, strain, gradient),
        .advice = "use 'thermal-expansion'",
-       .share = share});
+       .share = own ? share : std::nan("")});
 }
 
 // Metals lose 4 to 6 % of Young's modulus per 100 K; the others differ too much for an estimate.
@@ -207,10 +209,11 @@ Opinion properties_of_temperature(const P& p, double kelvins) {
   const double lost = std::min(0.9, per_kelvin * kelvins);
   return diagnostics::finding_of(
       {.effect = "properties of temperature",
-       .number = kelvins,
-       .what = fmt::format("up to {:.3g} K from the temperature of a room", kelvins),
-       .advice = "if 'youngs-modulus' is that of a room, use 'youngs-modulus-table'",
-       .share = lost / (1 - lost)});
+       .number = lost,
+       .limit = no_verdict,
+       .what = fmt::format(
+           "up to {:.3g} K from the temperature of a room a metal loses about {:.2g} of its modulus", kelvins,
+           lost)});
 }
 
 Opinion thermoelastic_coupling(const P& p, double coupling_number) {
@@ -266,21 +269,22 @@ class NeglectedInertia final : public diagnostics::Diagnostic {
   diagnostics::Reference load_{"solid: work of the loads"};
 };
 
-/// Weight of a body without gravity. By reciprocity, its work on the displacement by the loads over the work of the loads is
-/// the change of the displacement at the loads. It counts in the direction of the axis in which it is largest, and where the strain energy
-/// of the run is largest, which is the work of the loads at rest.
+/// Weight of a body at rest without gravity, for information. By reciprocity, its work on the displacement by the loads over the work
+/// of the loads is the change of the displacement at the loads. It counts along the axis along which it is largest.
 class NeglectedWeight final : public diagnostics::Diagnostic {
  public:
   NeglectedWeight(const SolidView& view, std::shared_ptr<StrainEnergy> strain)
       : view_(view), strain_(std::move(strain)) {}
 
-  void look(diagnostics::Report&) override {
+  void conclude(diagnostics::Report& report) override {
     constexpr double gravity = 9.81;  // [m/s^2]
     const StrainAudit& strain = strain_->now(false);
-    if (!(strain.strain_energy > largest_)) return;
-    largest_ = strain.strain_energy;
     const SolidBody& body = view_.body;
     const mesh::Mesh& mesh = body.mesh();
+    // Without loads a given motion is the answer, and what is below the scale is round-off.
+    if (!(strain.strain_energy > 0) || strain.strain_energy < strain.scale ||
+        !(view_.fields.total_load().norm() > 0))
+      return;
     Vec3 moved = Vec3::Zero();  // mass times displacement
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       for (int a = 0; a < mesh.dim; ++a)
@@ -289,35 +293,19 @@ class NeglectedWeight final : public diagnostics::Diagnostic {
     for (int a = 0; a < mesh.dim; ++a) moved[a] = std::abs(parallel::sum(mesh.comm, moved[a]));
     int axis = 1;  // the only one along which a body of revolution can weigh
     if (!is_axisymmetric(body.parameters())) moved.maxCoeff(&axis);
-    const double work = 2 * strain.strain_energy;
-    // Without loads a given motion is the answer, and what is below the scale is round-off.
-    if (!(work > 0) || strain.strain_energy < strain.scale ||
-        (!body.is_dynamic() && !(view_.fields.total_load().norm() > 0)))
-      return;
-    // A weight that acts at once moves a body at rest to twice its sag.
-    share_ = (body.is_dynamic() ? 2 : 1) * gravity * moved[axis] / work;
-    axis_ = axis;
+    const double share = gravity * moved[axis] / (2 * strain.strain_energy);
+    add(report, diagnostics::finding_of(
+                    {.effect = "gravity",
+                     .number = share,
+                     .limit = no_verdict,
+                     .what = fmt::format(
+                         "along {} the weight would change the displacement under the loads by {:.2g} of it",
+                         "xyz"[axis], share)}));
   }
-  void conclude(diagnostics::Report& report) override {
-    if (largest_ > 0)
-      add(report,
-          diagnostics::finding_of(
-              {.effect = "gravity",
-               .number = share_,
-               .what = fmt::format(
-                   "along {} the weight would change the displacement under the loads by {:.2g} of it",
-                   "xyz"[axis_], share_),
-               .advice = "if it acts there, use 'gravity'",
-               .share = share_}));
-  }
-  void visit(io::Archive& archive) override { archive.common("energy", largest_, share_, axis_); }
 
  private:
   SolidView view_;
   std::shared_ptr<StrainEnergy> strain_;
-  double largest_ = 0;  // [J]
-  double share_ = std::numeric_limits<double>::quiet_NaN();
-  int axis_ = 0;
 };
 
 /// Yielding and volumetric locking.
@@ -389,7 +377,8 @@ diagnostics::Made neglected_inertia(const SolidView& view) {
 
 diagnostics::Made neglected_weight(const SolidView& view, const std::shared_ptr<StrainEnergy>& strain) {
   const P& p = view.body.parameters();
-  if (!strain || !p.gravity.empty() || !p.body_force.empty() || view.body.thermal() || has_interface(p))
+  if (!strain || view.body.is_dynamic() || !p.gravity.empty() || !p.body_force.empty() ||
+      view.body.thermal() || has_interface(p))
     return nullptr;
   return std::make_shared<NeglectedWeight>(view, strain);
 }

@@ -222,9 +222,9 @@ void EnergyBalance::conclude(diagnostics::Report& report) {
         "'output: {spectrum: true}' computes the rate on a coarse mesh of the same kind.");
   const double velocity = parallel::sum(view_.comm(), rates_[0]),
                acceleration = parallel::sum(view_.comm(), rates_[1]);
-  if (velocity > 0)
-    add(report, neglected_damping(view_.body.parameters(), std::sqrt(velocity * acceleration) /
-                                                               std::max(largest_kinetic_, largest_strain_)));
+  // The energies of a heated body are not known.
+  if (const double energy = std::max(largest_kinetic_, largest_strain_); energy > 0)
+    add(report, neglected_damping(view_.body.parameters(), std::sqrt(velocity * acceleration) / energy));
   if (largest_strain_ > 0)
     add(report, spare_inertia(largest_kinetic_ / largest_strain_, double(view_.now().steps)));
 }

@@ -113,7 +113,6 @@ class Pumping final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
   void look(diagnostics::Report& report) override {
-    constexpr double usual_efficiency = 0.7;
     const auto [cold, hot] = range_to_come();
     if (!(seen_->flow > 0) || hot <= cold + 1) return;
     const Fluid& f = view_.fluid();
@@ -123,7 +122,7 @@ class Pumping final : public TankDiagnostic {
     for (const auto& run : bed().grid().runs)
       if (run.layer.porosity < 1)
         loss += run.layer.height * ergun(run.layer, f.viscosity(mean), seen_->flow / bed().area()) / density;
-    const double share = loss / (density * usual_efficiency * f.specific_heat * (hot - cold));
+    const double share = loss / (density * f.specific_heat * (hot - cold));
     tell(report, {.effect = "pressure loss of the bed",
                   .number = share,
                   .what = fmt::format(

@@ -160,12 +160,12 @@ def coupled():
 
 
 def effects_():
-    """Effects of scripts/validation/effects/scenes.yaml are named where they matter, and only there; the weight of a body under heat alone is not judged."""
-    judged = ("damping", "gravity", "inertia", "storage-of-heat", "properties-of-temperature", "resolved-grains", "waves-of-pressure", "shear-and-rotary-inertia")
+    """Effects of scripts/validation/effects/scenes.yaml are named where they matter, and only there."""
+    judged = ("inertia", "storage-of-heat", "resolved-grains", "waves-of-pressure", "shear-and-rotary-inertia")
     with tempfile.TemporaryDirectory() as folder:
         job = types.SimpleNamespace(root=configs.parent, build=programs.parent, scratch=pathlib.Path(folder))
         for name, one in effects.scenes().items():
-            if one["effect"] in judged and "heat bends" not in name:
+            if one["effect"] in judged:
                 share = effects.said(job, name, one)
                 check(f"{name}: {one['truth']:g}", (share is not None) == (one["truth"] >= effects.MATTERS), share)
         pebbles = {**effects.scenes()["bed of pebbles of one temperature each"], "effect": "range-of-the-film-correlation"}
