@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/diagnostics/atmosphere.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/mesh/load.hpp"
 #include "common/modes/modal_model.hpp"
@@ -60,6 +61,10 @@ class PlateTheory final : public diagnostics::Diagnostic {
     if (view_.built.stretch_limit > 0) look_at_stretch(report, displacement_ / view_.parameters.thickness);
     if (!view_.parameters.modes_file && view_.is_dynamic()) look_at_plane(report);
     if (!view_.parameters.modes_file) look_at_shear(report);
+    if (view_.pressure || view_.fluid_force.empty()) return;
+    if (auto found = diagnostics::atmosphere_on_one_side(MPI_COMM_SELF, 3, view_.fluid_force,
+                                                         view_.surface.areas(), view_.surface.centres()))
+      report.findings.push_back(std::move(*found));
   }
   void conclude(diagnostics::Report& report) override {
     if (!(largest_ > 0)) return;

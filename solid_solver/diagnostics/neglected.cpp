@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/csv/csv_reader.hpp"
+#include "common/diagnostics/atmosphere.hpp"
 #include "common/diagnostics/reference.hpp"
 #include "common/elasticity/vector_at.hpp"
 #include "common/io/checkpoint.hpp"
@@ -308,7 +309,7 @@ class NeglectedWeight final : public diagnostics::Diagnostic {
   std::shared_ptr<StrainEnergy> strain_;
 };
 
-/// Yielding and volumetric locking.
+/// Yielding, volumetric locking, and an absolute pressure on one side.
 class NeglectedOfMaterial final : public diagnostics::Diagnostic {
  public:
   explicit NeglectedOfMaterial(const SolidView& view) : view_(view) {}
@@ -319,6 +320,7 @@ class NeglectedOfMaterial final : public diagnostics::Diagnostic {
       report.position.push_back({"Poisson's ratio", locks->number, locks->limit, "solid-nu"});
       add(report, std::move(locks));
     }
+    look_at_interface(report);
   }
 
  private:
@@ -336,6 +338,21 @@ class NeglectedOfMaterial final : public diagnostics::Diagnostic {
       if (const auto& yield = body.materials()[mesh.material_of(mesh.owner[f])].yield_strength)
         share = std::max(share, equivalent_stress(stress[f]) / *yield);
     return parallel::max(mesh.comm, share);
+  }
+  /// A body with a pressure of its own may be loaded on its other side.
+  void look_at_interface(diagnostics::Report& report) const {
+    using Type = SolidCondition::Type;
+    if (std::ranges::any_of(view_.body.parameters().boundaries, [](const auto& one) {
+          return one.second.type == Type::pressure || one.second.type == Type::traction;
+        }))
+      return;
+    const mesh::Mesh& mesh = view_.body.mesh();
+    const mesh::Geometry& geometry = view_.body.geometry();
+    const std::span<const double> force = view_.stepper.last_solve().interface;
+    const std::size_t first = std::size_t(mesh.n_interior), count = force.size() / std::size_t(mesh.dim);
+    add(report, diagnostics::atmosphere_on_one_side(mesh.comm, mesh.dim, force,
+                                                    std::span(geometry.face_area).subspan(first, count),
+                                                    std::span(geometry.face_centre).subspan(first, count)));
   }
 
   SolidView view_;
