@@ -45,15 +45,12 @@ std::optional<double> largest_expansion(const P& p) {
 
 /// Relative change of a displacement: 0.4 times the squared tip rotation of a cantilever (elastica; the norm
 /// of the gradient is sqrt(2) times the rotation), about the strain of a bar, and 1/(f - 1) for lateral
-/// motion under 1/f of the buckling load. An expansion that tells less than large gradients do holds no longer.
+/// motion under 1/f of the buckling load.
 double share_of_geometry(const Deformation& d, const std::optional<LargeStrainEstimate>& large_strain,
                          double buckling_factor) {
   const double strain = std::isnan(d.strain) ? 0 : d.strain;
   const double share = 0.2 * d.gradient * d.gradient + 0.8 * strain;
-  if (large_strain) {
-    const double change = large_strain->is_known() ? large_strain->change : 1;
-    return share > 1 ? std::max(change, share) : change;
-  }
+  if (large_strain) return large_strain->is_known() ? large_strain->change : std::max(1., share);
   if (std::isnan(buckling_factor)) return share;
   constexpr double all = 10;  // of a load beyond the buckling load nothing is left
   return std::max(share, buckling_factor > 1 ? std::min(1., 1 / (buckling_factor - 1)) : all);
