@@ -20,8 +20,16 @@ namespace couplet::config {
 
 namespace {
 
-/// Finds content that yaml-cpp accepts but that later code cannot handle.
-bool is_control(unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c == 127; }
+/// Finds the first control character of a text in UTF-8, which would corrupt messages, file names and terminals.
+/// Values may have line breaks and tabs, unlike names.
+std::size_t find_control(std::string_view text, bool is_name) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if ((c < 32 && (is_name || (c != '\n' && c != '\t'))) || c == 127) return i;
+    if (c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0) return i + 1;
+  }
+  return text.npos;
+}
 
 /// Throws Error for a byte that is not part of UTF-8, as in a file in Latin-1.
 void require_utf8(std::string_view text, const std::string& name) {
@@ -41,6 +49,7 @@ void require_utf8(std::string_view text, const std::string& name) {
   }
 }
 
+/// Finds content that yaml-cpp accepts but that later code cannot handle.
 class Inspection {
  public:
   std::vector<Message> messages;
@@ -54,7 +63,7 @@ class Inspection {
     if (depth > deepest)
       throw Error("{}: nested deeper than {} levels. Does an anchor contain itself?", path.substr(0, 60),
                   deepest);
-    if (node.IsScalar()) check_text(node, path, "value");
+    if (node.IsScalar()) check_text(node, path, false);
     if (node.IsSequence()) {
       std::size_t i = 0;
       for (const YAML::Node& entry : node) look(entry, fmt::format("{}[{}]", path, i++), depth + 1);
@@ -66,14 +75,14 @@ class Inspection {
   static constexpr int deepest = 50;
   static constexpr std::size_t most_messages = 50, most_nodes = 1'000'000, longest_name = 200;
 
-  /// Returns false for control characters, which would corrupt messages, file names and terminals.
-  bool check_text(const YAML::Node& node, const std::string& path, const char* what) {
+  bool check_text(const YAML::Node& node, const std::string& path, bool is_name) {
     const std::string& text = node.Scalar();
-    const auto found = std::find_if(text.begin(), text.end(), is_control);
-    if (found == text.end()) return true;
+    const std::size_t found = find_control(text, is_name);
+    if (found == text.npos) return true;
     messages.push_back(
         {place_of(node), path,
-         fmt::format("this {} contains a control character (code {}); remove it.", what, int(*found))});
+         fmt::format("this {} contains a control character (code {}); remove it.", is_name ? "key" : "value",
+                     int(static_cast<unsigned char>(text[found])))});
     return false;
   }
 
@@ -86,7 +95,7 @@ class Inspection {
       }
       const std::string& name = item.first.Scalar();
       const Place place = place_of(item.first);
-      if (!check_text(item.first, path, "key")) continue;
+      if (!check_text(item.first, path, true)) continue;
       if (name.size() > longest_name) {
         messages.push_back(
             {place, path,
@@ -249,13 +258,16 @@ Document Document::parse(const std::string& text, const std::string& name) {
 
 void Document::set(const std::string& assignment) {
   std::string option = "--set " + assignment;
-  std::replace_if(option.begin(), option.end(), is_control, '?');  // messages must not control a terminal
+  for (std::size_t at; (at = find_control(option, true)) != option.npos;) {
+    if (option[at] < 0) option[at - 1] = '?';
+    option[at] = '?';  // messages must not control a terminal
+  }
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw Error("{}: expected key=value, for example --set simulation.end-time='2 s'.", option);
   require_utf8(assignment, "--set");
   const std::string path(base::trim(assignment.substr(0, equals)));
-  if (std::any_of(path.begin(), path.end(), is_control))
+  if (find_control(path, true) != path.npos)
     throw Error("{}: the key contains a control character; remove it.", option);
   const std::vector<std::string> parts = base::split(path, '.');
   YAML::Node value;

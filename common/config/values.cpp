@@ -219,7 +219,12 @@ std::string list_of(const Facts& facts, const std::string& things) {
   return facts.unit.empty() ? text : fmt::format("{} in {} or with their units", text, facts.unit);
 }
 
-std::string read_text(const YAML::Node& node) { return scalar(node, "a text"); }
+std::string read_text(const YAML::Node& node) {
+  const std::string& text = scalar(node, "a text");
+  if (text.find_first_of("\n\t") != text.npos)
+    throw Error("expected a text in one line, without tabs. It may become part of a file name or a script.");
+  return text;
+}
 
 /// Reads a list of names without repetition, because a wall listed twice would count twice.
 std::vector<std::string> read_texts(const YAML::Node& node, const Facts& facts) {

@@ -27,7 +27,25 @@ TEST(Limits, control_characters_are_refused_with_their_place) {
             "case.yaml:2:1: this key contains a control character (code 7); remove it.");
   EXPECT_THAT(error_of("a: \"\\e[31mred\"\n"),
               HasSubstr("a: this value contains a control character (code 27)"));
-  EXPECT_EQ(error_of("a: \"two\\nlines\\tand a tab\"\n"), "");
+  EXPECT_THAT(error_of("a: \"\\x9b31mred\"\n"),
+              HasSubstr("a: this value contains a control character (code 155)"));
+  EXPECT_EQ(error_of("a: \"two\\nlines\\tand a tab, \xc2\xb5m\"\n"), "");
+}
+
+TEST(Limits, names_are_in_one_line) {
+  EXPECT_EQ(error_of("\"two\\nlines\": 1\n"),
+            "case.yaml:1:1: this key contains a control character (code 10); remove it.");
+  std::string name;
+  std::vector<std::string> names;
+  EXPECT_THAT(
+      config::load(config::Document::parse("name: \"x\\ntouch PWNED\"\nnames: [a, \"b\\tc\"]\n", "case.yaml"),
+                   "",
+                   [&](config::Section& s) {
+                     s.value("name", name);
+                     s.value("names", names);
+                   }),
+      ElementsAre(HasSubstr("name: expected a text in one line"),
+                  HasSubstr("entry 2 of the list: expected a text in one line")));
 }
 
 TEST(Limits, what_is_not_utf8_is_refused_with_its_place) {

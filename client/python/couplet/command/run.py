@@ -11,7 +11,7 @@ import sys
 
 from couplet import places
 from couplet.runs import folder as folders
-from couplet.runs.case import Case, expect, mapping_of
+from couplet.runs.case import CONTROL, Case, expect, mapping_of
 from couplet.runs.job import Job, output_of
 
 RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divided by measured or expected work"
@@ -95,11 +95,13 @@ def build_of(folder):
 
 def batch_script(job, options):
     case, *words = job.case.words(job.alone, job.ranks, job.sets, job.flags, job.played_by)
-    words = [places.command(), "run", case.absolute(), *words]
+    words = [str(word) for word in (places.command(), "run", case.absolute(), *words)]
     # Asks the job to end before its time limit, so that it saves and couplet resume can continue.
     head = {"--job-name": mapping_of(job.case.data.get("simulation")).get("name", job.case.file.stem), "--ntasks": sum(n for n, _ in job.parts), "--signal": "B:TERM@60"}
     head = [f"{name}={value}" for name, value in head.items() if name not in {option.split("=")[0] for option in options}]
-    return "\n".join(["#!/bin/bash", *(f"#SBATCH {shlex.quote(word)}" for word in (*head, *options)), "exec " + shlex.join(map(str, words)), ""])
+    for word in (*head, *options, *words):  # a line break would begin a command
+        expect(not CONTROL.search(word), f"{word!r}: contains a control character; a batch script cannot hold it.")
+    return "\n".join(["#!/bin/bash", *(f"#SBATCH {shlex.quote(word)}" for word in (*head, *options)), "exec " + shlex.join(words), ""])
 
 
 def hand_to_slurm(job, options, only_show):

@@ -3,7 +3,7 @@
 import re
 import xml.parsers.expat
 
-from couplet.runs.case import expect
+from couplet.runs.case import CONTROL, expect
 
 BLANKS = re.compile("[ \t-\r]")
 LARGEST = 4 << 20  # bytes; configurations have a few thousand
@@ -43,6 +43,7 @@ def read(file):
         (stack[-1].children if stack else roots).append(element)
         stack.append(element)
         expect(len(stack) < 64, f"{file}:{element.line}: elements are nested too deeply.")
+        expect(not any(map(CONTROL.search, attributes.values())), f"{file}:{element.line}: <{name}> contains a control character; remove it.")
 
     def document_type(*_):
         expect(False, f"{file}:{parser.CurrentLineNumber}: document types are not read.")

@@ -18,6 +18,7 @@ COUPLER = "coupler"
 OURS = ("coupler", "fluid_solver", "solid_solver", "mesh_mover", "thermocline", "plate_modal")
 
 
+CONTROL = re.compile("[\0-\x1f\x7f-\x9f]")
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -51,11 +52,24 @@ def expect_bounded(text):
         expect(around[-1][1] <= MOST_VALUES, f"more than {MOST_VALUES} values. Do anchors contain each other?")
 
 
+def expect_plain_keys(node):
+    """Rejects control characters in keys, which are names of files and of columns."""
+    if isinstance(node, dict):
+        for key, value in node.items():
+            expect(not CONTROL.search(str(key)), f"the key {str(key)!r} contains a control character; remove it.")
+            expect_plain_keys(value)
+    elif isinstance(node, list):
+        for value in node:
+            expect_plain_keys(value)
+
+
 def load(text, file=None):
     """Content of a YAML text. Errors are reported with file and line."""
     try:
         expect_bounded(text)
-        return yaml.load(text, Loader=LOADER)
+        found = yaml.load(text, Loader=LOADER)
+        expect_plain_keys(found)
+        return found
     except Wrong as problem:
         raise Wrong(f"{file or 'YAML'}:1:1: {problem}") from None
     except yaml.YAMLError as error:
