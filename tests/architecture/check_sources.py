@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Checks the sources: who may include whom and the namespace of each folder (docs/architecture.md), the line budget (budget.csv), which folder sees
-which third-party headers, one reader for each foreign format, an SPDX line in every source, output of runs, cited papers, links, and the format where
+which third-party headers, one reader for each foreign format, one writer in Python, an SPDX line in every source, output of runs, cited papers, links, and the format where
 clang-format is installed.
 Usage: check_sources.py PROJECT_ROOT [--lower-budget]     the option writes the lines of today to budget.csv where they are fewer"""
+import ast
 import csv
 import pathlib
 import re
@@ -62,6 +63,9 @@ READING = (r"\bstd::(?:ifstream|fstream|filebuf|basic_ifstream|from_chars|getlin
            r"|\bstrto(?:d|f|ld|l|ul|ll|ull|imax|umax)\(|\bmmap\(|\bO_RD(?:ONLY|WR)\b|\bfrom_chars\(")
 DOORS["text data are read by common/csv (LineReader, CsvReader, number_of), and no physics reads files"] = (
     READING, r"(?:client|common/(?:app|base|config|coupling|csv|diagnostics|io|log|mesh|parallel))/.*")
+# Methods and functions of Python that write a file whose name they are given; those of shutil, too.
+WRITING = {"write_text", "write_bytes", "savefig", "symlink", "symlink_to", "hardlink_to", "touch", "tofile", "save", "savetxt", "savez", "imsave"}
+COPYING = {"copy", "copy2", "copyfile", "copytree", "move"}
 SOURCES = ("*.cpp", "*.hpp")
 SCRIPTS = ("*.py", "*.geo", "CMakeLists.txt", "case.yaml")
 
@@ -114,6 +118,23 @@ def second_readers(path, text):
     return found
 
 
+def python_writers(path, text):
+    """Calls of the package `couplet` that write a file on their own and not the new file of `with files.part(...) as made`, so that they might write through a link."""
+    if path.parts[:3] != ("client", "python", "couplet") or path.name == "files.py":
+        return []
+    tree, found = ast.parse(text), []
+    made = {item.optional_vars.id for node in ast.walk(tree) if isinstance(node, ast.With) for item in node.items
+            if item.optional_vars and ast.unparse(item.context_expr).startswith("files.part(")}
+    for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+        owner, _, name = ast.unparse(call.func).rpartition(".")
+        place = ast.unparse(call.args[0]) if call.args else ""
+        modes = [a.value for a in (*call.args, *(k.value for k in call.keywords if k.arg == "mode")) if isinstance(a, ast.Constant) and isinstance(a.value, str)]
+        opens = name in ("open", "File") and (owner == "os" or any(re.fullmatch("[rbt]*[wax+][bt+]*", mode) for mode in modes))
+        if (opens or name in WRITING or owner == "shutil" and name in COPYING) and place not in made | {"os.devnull"}:
+            found.append(f"{path}:{call.lineno}: {name}() writes a file on its own: couplet/files.py does so without following links")
+    return found
+
+
 def namespaces(document):
     """{folder or header: namespace} of the table in docs/architecture.md."""
     return dict(re.findall(r"^\| `([\w/.]+)` \| `(couplet[\w:]*)` \|", document, re.M))
@@ -160,7 +181,7 @@ def check_text(path, text, table):
     if not any("SPDX-License-Identifier: Apache-2.0" in line for line in lines[:3]):
         trouble.append(f"{path}: no SPDX line at the top")
     if path.suffix in (".cpp", ".hpp", ".py"):
-        trouble += second_readers(path, text)
+        trouble += second_readers(path, text) + (python_writers(path, text) if path.suffix == ".py" else [])
     if path.suffix in (".cpp", ".hpp"):
         trouble += check_namespaces(path.as_posix(), text, table)
         for number, line in enumerate(lines, 1):

@@ -29,12 +29,17 @@ WRONG = {
     ("coupler/a.hpp", HEAD + "namespace couplet {\nint a();\n}  // namespace couplet\n"): "wants couplet::coupler",
     ("coupler/mapping/a.hpp", HEAD + "namespace couplet { struct A {}; }\n"): "wants couplet::coupler",
     ("thermocline/bed/a.hpp", HEAD + "namespace couplet::fluid\n{\nclass A;\nint f(A&);\n}\n"): "wants couplet::thermocline",
+    **{("client/python/couplet/a.py", "#" + HEAD[2:] + text): "couplet/files.py" for text in (
+        "open(name, 'w')\n", "open(name, mode='ab')\n", "file.open('x')\n", "h5py.File(name, 'r+')\n", "pathlib.Path(a, b).write_text('')\n", "figure.savefig(name)\n",
+        "shutil.copy(a, b)\n", "os.open(name, os.O_WRONLY)\n", "gzip.open(name, 'wt')\n", "with files.part(a, b) as made:\n    open(other, 'w')\n")},
     ("common/csv/a.hpp", HEAD + "namespace couplet::csvs {\nclass A;\nint a();\n}\n"): "wants couplet::csv",
 }
 RIGHT = [
     ("common/io/hdf5_reader.cpp", HEAD + "const Handle id(H5Fopen(name, 0, 0), H5Fclose);  // hid_t\n"),
     ("coupler/a.cpp", HEAD + "// as H5Fopen( does\nint a;\n"),
     ("tests/unit/io/a.cpp", HEAD + "const auto id = H5Fopen(name, 0, 0);\n"),
+    ("client/python/couplet/a.py", "#" + HEAD[2:] + "with files.part(a, b) as made, open(made, 'w') as out:\n    figure.savefig(made)\nopen(name, 'rb')\nfiles.copy(a, b)\n"),
+    ("tests/cli/a.py", "#" + HEAD[2:] + "open(name, 'w')\n"),
     ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
     ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
     ("common/base/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),

@@ -4,6 +4,7 @@ import pathlib
 
 import numpy as np
 
+from couplet import files
 from couplet.runs.case import Wrong, expect
 from couplet.series import find_series, find_surface, surface_names
 
@@ -130,13 +131,15 @@ def new_figure(width, height, dpi):
     return plt.figure(figsize=(width, height), dpi=dpi, constrained_layout=True)
 
 
-def saved(figure, title, picture):
-    """Adds the title and writes the picture. Returns its path."""
+def saved(figure, title, picture, folder, usual):
+    """Adds the title and writes the picture, which has its usual name below `folder` if none is given. Returns its path."""
     import matplotlib.pyplot as plt
     figure.axes[0].set_title(title, fontsize=10)
-    figure.savefig(picture)
+    base, picture = (pathlib.Path(picture).parent, pathlib.Path(picture)) if picture else (pathlib.Path(folder), usual)
+    with files.part(base, picture.relative_to(base)) as made:
+        figure.savefig(made)
     plt.close(figure)
-    return pathlib.Path(picture)
+    return picture
 
 
 def output_near(series, at):
@@ -156,7 +159,7 @@ def draw_surface(folder, name, patch, picture=None, at=None, component=None, war
         faces = [(list(map(int, face)), number) for number, face in enumerate(surface.cells)]
         scale = in_space(figure, places_of(surface, i, warp, name), surface, values, faces)
         figure.colorbar(scale, ax=figure.axes[0], shrink=0.8, label=label)
-    return saved(figure, f"{patch}, t = {surface.times[i]:.4g} s", picture or pathlib.Path(surface.file.filename).with_name(f"{surface.name}-{name}.png"))
+    return saved(figure, f"{patch}, t = {surface.times[i]:.4g} s", picture, folder, pathlib.Path(surface.file.filename).with_name(f"{surface.name}-{name}.png"))
 
 
 def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110):
@@ -168,7 +171,7 @@ def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110)
     figure = new_figure(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6, dpi)
     drawn = (in_plane if flat else in_space)(figure, points, series, values)
     figure.colorbar(drawn, ax=figure.axes[0], shrink=0.8, label=label_of(series, i, name, component))
-    return saved(figure, f"t = {series.times[i]:.4g} s", picture or pathlib.Path(series.file.filename).with_name(f"{name}.png"))
+    return saved(figure, f"t = {series.times[i]:.4g} s", picture, folder, pathlib.Path(series.file.filename).with_name(f"{name}.png"))
 
 
 def draw_mode(folder, number, picture=None, dpi=110):
@@ -186,4 +189,4 @@ def draw_mode(folder, number, picture=None, dpi=110):
     faces = [(corners[a:b].astype(int), k) for k, (a, b) in enumerate(zip(ends[:-1].astype(int), ends[1:].astype(int)))]
     figure = new_figure(8, 6, dpi)
     in_space(figure, moved, None, np.array([length[f].mean() for f, _ in faces]) / length.max(), faces)
-    return saved(figure, f"mode {number}: {frequency[number - 1]:.4g} Hz", picture or file.with_name(f"mode-{number}.png"))
+    return saved(figure, f"mode {number}: {frequency[number - 1]:.4g} Hz", picture, folder, file.with_name(f"mode-{number}.png"))

@@ -15,7 +15,7 @@ matplotlib.rcParams["text.usetex"] = False  # a matplotlibrc in this folder coul
 import matplotlib.pyplot as plt
 import numpy as np
 
-from couplet import places
+from couplet import files, places
 from couplet.plots.sources import columns_of
 from couplet.runs.case import Case, Wrong, expect
 from couplet.runs.job import output_of
@@ -105,7 +105,7 @@ def profiles(columns, names, title):
     return made
 
 
-def draw(file, options):
+def draw(folder, file, options):
     columns = read(file)
     time = columns[next(iter(columns))]
     names = chosen(columns, options)
@@ -131,7 +131,9 @@ def draw(file, options):
     else:
         made = curves(time[rows], "time [s]", columns, names, options.log, title)
     picture = options.picture or file.with_suffix(".png")
-    made.savefig(picture)
+    base = picture.parent if options.picture else folder
+    with files.part(base, picture.relative_to(base)) as new:
+        made.savefig(new)
     plt.close(made)
     print(picture)
 
@@ -197,17 +199,17 @@ def run(options):
             return code
     else:
         expect(options.out is None and not options.film, "--out, --film: belong to CASE.yaml; of a run give its folder alone")
-    files, folders = [], 0
+    monitors, folders = [], 0
     for name in options.files:
         folders += name.is_dir()
-        files += sorted(f for f in name.rglob("*.csv") if is_monitor(f)) if name.is_dir() else [name]
-    expect(not options.picture or not folders and len(files) == 1, "--picture names one picture: give one file.")
-    expect(files, "There is no monitor (.csv) in these folders. Run the case first.")
+        monitors += [(name, f) for f in sorted(name.rglob("*.csv")) if is_monitor(f)] if name.is_dir() else [(name.parent, name)]
+    expect(not options.picture or not folders and len(monitors) == 1, "--picture names one picture: give one file.")
+    expect(monitors, "There is no monitor (.csv) in these folders. Run the case first.")
     failed = 0
-    for file in files:
+    for folder, file in monitors:
         try:
-            draw(file, options)
+            draw(folder, file, options)
         except Wrong as problem:
             print(problem, file=sys.stderr)
             failed += 1
-    return 1 if failed == len(files) or (failed and not folders) else 0
+    return 1 if failed == len(monitors) or (failed and not folders) else 0

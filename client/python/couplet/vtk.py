@@ -7,6 +7,7 @@ import pathlib
 import h5py
 import numpy as np
 
+from couplet import files
 from couplet.series import FieldSeries
 
 VTK = {1: 1, 2: 3, 4: 5, 5: 9, 6: 10, 7: 14, 8: 13, 9: 12}  # type of cell in VTK, by XDMF code
@@ -47,13 +48,10 @@ def write(folder):
         with h5py.File(file, "r") as content:
             if content.attrs.get("format") not in ("couplet fields", b"couplet fields", "couplet surface", b"couplet surface"):
                 continue
-        series, place = FieldSeries(file), file.parent / "vtk"
-        place.mkdir(exist_ok=True)
-        entries = ""
+        series, place, entries = FieldSeries(file), file.parent.relative_to(folder) / "vtk", ""
         for i, time in enumerate(series.times):
             name = f"{file.stem}-{i:06d}.vtu"
-            (place / name).write_text(grid(series, i))
+            files.write(folder, place / name, grid(series, i))
             entries += f'<DataSet timestep="{time:.12g}" part="0" file="{name}"/>\n'
-        lists.append(place / f"{file.stem}.pvd")
-        lists[-1].write_text(f'<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">\n<Collection>\n{entries}</Collection>\n</VTKFile>\n')
+        lists.append(files.write(folder, place / f"{file.stem}.pvd", f'<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">\n<Collection>\n{entries}</Collection>\n</VTKFile>\n'))
     return lists

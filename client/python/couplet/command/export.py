@@ -7,6 +7,7 @@ import pathlib
 import shutil
 import tempfile
 
+from couplet import files
 from couplet.runs.case import Case, expect, with_changes
 
 TO = ("calculix", "openfoam", "vtk")
@@ -57,6 +58,7 @@ def run(arguments):
         return 0
     case = Case(arguments.case)
     folder = arguments.folder or case.file.parent / arguments.to
+    folder = files.below(folder.parent, folder.name)
     expect(not folder.exists() or folder.is_dir() and not any(folder.iterdir()), f"--folder {folder}: exists and is not empty; choose a new name")
     with tempfile.TemporaryDirectory(prefix="couplet-export-") as work:
         try:

@@ -6,9 +6,10 @@ import pathlib
 
 import yaml
 
+from couplet import files
 from couplet.precice.configuration import Import
 from couplet.precice.elements import read
-from couplet.runs.case import Wrong, expect
+from couplet.runs.case import CONTROL, Wrong, expect
 
 
 def declare(parser):
@@ -22,6 +23,7 @@ def text_of(found, file, output):
     case = {"simulation": {"name": file.resolve().parent.name or "precice", **found.case["simulation"], "output": {"folder": f"{output.stem}-run", "interval": 0}, "checkpoint": {"interval": 0}},
             "participants": found.case["participants"], "coupling": found.case["coupling"]}
     source = os.path.relpath(file, output.parent)
+    expect(not CONTROL.search(source), f"{source!r}: the name contains a control character; rename it.")
     lines = [f"# precice-config: {source}", "# A job of programs on preCICE's interface, made by couplet import. Each program is given that file, or this one:",
              f"#   couplet run {output.name} --with NAME='./program {source}' ...", *(f"# Line {line}: {note}." for line, note in sorted(found.notes))]
     return "\n".join([*lines, ""]) + yaml.dump(case, sort_keys=False, default_flow_style=None, width=160, allow_unicode=True)
@@ -39,6 +41,6 @@ def run(arguments):
         return 0
     output = arguments.output or file.with_suffix(".yaml")
     expect(arguments.force or not output.exists(), f"{output}: the file exists; --force overwrites it.")
-    output.write_text(text_of(found, file, output))
+    files.write(output.parent, output.name, text_of(found, file, output))
     print(f"{output}: a case of {', '.join(found.case['participants'])}. couplet run {output} --with NAME='./program {file.name}' ... starts it")
     return 0

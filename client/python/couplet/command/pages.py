@@ -7,7 +7,7 @@ import pathlib
 import re
 import subprocess
 
-from couplet import command
+from couplet import command, files
 from couplet.runs.case import OURS
 
 
@@ -129,16 +129,12 @@ def main():
     version = arguments.version or command.version()
     debian = arguments.share.parts[-2:] == ("usr", "share")
     zsh_folder = "vendor-completions" if debian else "site-functions"
-    files = {"man/man1/couplet.1": of_command(version), "bash-completion/completions/couplet": bash(), f"zsh/{zsh_folder}/_couplet": zsh()}
-    files |= {f"man/man1/couplet-{name}.1": of_subcommand(name, version) for name in command.SUBCOMMANDS}
-    files |= {f"man/man1/{name}.1": of_program(arguments.bin, name, version) for name in OURS if arguments.bin and (arguments.bin / name).exists()}
-    for name, text in files.items():
-        file = arguments.share / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if debian and file.suffix == ".1":
-            file.with_suffix(".1.gz").write_bytes(gzip.compress(text.encode(), 9, mtime=0))
-        else:
-            file.write_text(text)
+    texts = {"man/man1/couplet.1": of_command(version), "bash-completion/completions/couplet": bash(), f"zsh/{zsh_folder}/_couplet": zsh()}
+    texts |= {f"man/man1/couplet-{name}.1": of_subcommand(name, version) for name in command.SUBCOMMANDS}
+    texts |= {f"man/man1/{name}.1": of_program(arguments.bin, name, version) for name in OURS if arguments.bin and (arguments.bin / name).exists()}
+    for name, text in texts.items():
+        packed = debian and name.endswith(".1")
+        files.write(arguments.share, name + ".gz" * packed, gzip.compress(text.encode(), 9, mtime=0) if packed else text)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import re
 import shlex
 import zlib
 
+from couplet import files
 from couplet.runs.case import Wrong, expect
 
 NAN = math.nan
@@ -309,7 +310,7 @@ def run(arguments):
     lines += [f"# {name}: {text_of(value)}" for name, value in zip(("latitude", "longitude", "time-zone"), site or ())]
     lines += [f"# states-at: {text_of(states)}", ",".join(["hour", *WRITTEN])]
     lines += [",".join([str(hour), *map(text_of, values)]) for hour, values in hours]
-    with (gzip.open if output.suffix == ".gz" else open)(output, "wt") as file:
-        file.write("\n".join(lines) + "\n")
+    text = ("\n".join(lines) + "\n").encode()
+    files.write(output.parent, output.name, gzip.compress(text) if output.suffix == ".gz" else text)
     print(f"{kind}: {len(hours)} hours written to {shlex.quote(str(output))}" + ("" if site else "; it has no location: a case that needs the sun's height gives 'site'"))
     return 0

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import tempfile
 
+from couplet import files
 from couplet.places import ROOT
 from couplet.runs.case import expect
 from couplet.runs.gallery import entries
@@ -149,7 +150,7 @@ def leave_out(site, names):
     index = json.loads(file.read_text())
     addresses = {str(p.with_name("index.html" if p.name == "README.md" else p.stem + ".html")) for p in names}
     index["docs"] = [entry for entry in index["docs"] if entry["location"].partition("#")[0] not in addresses]
-    file.write_text(json.dumps(index, separators=(",", ":")))
+    files.write(site, "search/search_index.json", json.dumps(index, separators=(",", ":")))
 
 
 def with_formulas(page, text):
@@ -160,8 +161,9 @@ def with_formulas(page, text):
 
 def copy_mathjax(folder):
     for part in MATHJAX_PARTS:
-        (folder / part).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copytree(MATHJAX / part, folder / part) if (MATHJAX / part).is_dir() else shutil.copy(MATHJAX / part, folder / part)
+        for file in (MATHJAX / part).rglob("*") if (MATHJAX / part).is_dir() else [MATHJAX / part]:
+            if file.is_file():
+                files.copy(file, folder, file.relative_to(MATHJAX))
 
 
 def stage(folder):
@@ -169,17 +171,13 @@ def stage(folder):
     there, needed = pages(), set()
     known = set(there)
     for page in there:
-        to = folder / ("index.md" if str(page) == "README.md" else page)
-        to.parent.mkdir(parents=True, exist_ok=True)
         text = with_links(page, with_formulas(page, (ROOT / page).read_text()), known, needed)
-        to.write_text(text.replace("](README.md", "](index.md") if str(page) == "README.md" else
-                      re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})", text))
-    (folder / "gallery.md").write_text(gallery(known, needed))
+        files.write(folder, "index.md" if str(page) == "README.md" else page, text.replace("](README.md", "](index.md") if str(page) == "README.md" else
+                    re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})", text))
+    files.write(folder, "gallery.md", gallery(known, needed))
     for file in needed:
-        to = folder / file
-        to.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / file, to if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else to.with_name(to.name + ".txt"))
-    shutil.copy(HERE / "site.css", folder)
+        files.copy(ROOT / file, folder, file if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else file.with_name(file.name + ".txt"))
+    files.copy(HERE / "site.css", folder)
     copy_mathjax(folder / "mathjax")
     return nav_of(there)
 
@@ -190,13 +188,12 @@ def build(site):
     site = pathlib.Path(site).absolute()
     with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
         docs = pathlib.Path(scratch) / "docs"
-        docs.mkdir()
         nav = stage(docs)
         config = pathlib.Path(scratch) / "mkdocs.yml"
         text = (HERE / "mkdocs.yml").read_text()
         for name, value in (("docs", docs), ("site", site), ("nav", nav)):
             text = text.replace(f"{{{name}}}", str(value))
-        config.write_text(text)
+        files.write(scratch, config.name, text)
         done = subprocess.run(["mkdocs", "build", "--clean", "-f", config], capture_output=True, text=True)
         expect(done.returncode == 0, f"mkdocs failed: {(done.stderr or done.stdout).strip()[-2000:]}")
         leave_out(site, [page for group in for_developers(pages()).values() for page in group])

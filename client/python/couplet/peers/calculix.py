@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from couplet import files
 from couplet.peers.elements import CORNERS, EDGES
 from couplet.peers.results import at_middles, of_points, write_solid
 from couplet.peers.values import refuse
@@ -83,8 +84,7 @@ class Input:
     def write(self, folder):
         """Writes <folder>/case.inp. Run it there with `ccx case`."""
         folder = pathlib.Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "case.inp").write_text(self.text())
+        files.write(files.folder(folder, "."), "case.inp", self.text())
         return ["ccx", "case"]
 
     def read(self, folder, out):

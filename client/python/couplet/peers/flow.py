@@ -4,6 +4,7 @@ import pathlib
 
 import numpy as np
 
+from couplet import files
 from couplet.peers import mesh
 from couplet.peers.foam_files import PolyMesh, foam_environment, last_time, one, put, read_field, read_rows, values
 from couplet.peers.results import write_fields, write_table
@@ -125,13 +126,11 @@ class FlowCase:
         return found
 
     def table(self, folder, patch):
-        place = pathlib.Path(folder) / "constant/boundaryData" / patch
+        place = f"constant/boundaryData/{patch}"
         rows = lambda found: f"{len(found)}\n(\n" + "\n".join(map(one, found)) + "\n)\n"  # noqa: E731
-        place.mkdir(parents=True, exist_ok=True)
-        (place / "points").write_text(rows(self.flow.mesh()[2].middles_of(patch)))
+        files.write(folder, f"{place}/points", rows(self.flow.mesh()[2].middles_of(patch)))
         for t in self.flow.times():
-            (place / f"{t:.9g}").mkdir(exist_ok=True)
-            (place / f"{t:.9g}" / "U").write_text(rows(self.flow.velocity(patch, t)))
+            files.write(folder, f"{place}/{t:.9g}/U", rows(self.flow.velocity(patch, t)))
 
     def pressures(self):
         """Entries of 0/p by patch, divided by the density."""
@@ -197,12 +196,12 @@ class FlowCase:
         """Writes the results in `folder` to the participant's folder `out` in the format of our programs."""
         folder, flow = pathlib.Path(folder), self.flow
         last, (flat, _, _) = last_time(folder), flow.mesh()
-        out.mkdir(parents=True, exist_ok=True)
+        files.folder(out, ".")
         count = flat.count()
         u, p = read_field(last / "U", count), read_field(last / "p", count) * flow.density
         if not np.isfinite(u).all():
             raise ValueError(f"{self.program} diverged: velocities are not finite")
-        write_fields(out / f"{flow.name}.h5", flat, float(last.name), {"velocity": u, "pressure": p})
+        write_fields(out, f"{flow.name}.h5", flat, float(last.name), {"velocity": u, "pressure": p})
         forces = {}
         for wall in (q for q, g in flow.boundaries.items() if g["type"] in WALLS):
             rows = read_rows(next((folder / f"postProcessing/forces-{wall}/0").glob("force*.dat")))  # time, total, pressure, viscous
@@ -210,7 +209,7 @@ class FlowCase:
             forces |= {f"{wall} {part} {axis} [N]": rows[:, 4 + 3 * k + c] / flow.depth for k, part in enumerate(("pressure", "viscous"))
                        for c, axis in enumerate("xyz"[:flow.dimension])}
         if forces:
-            write_table(out / "forces.csv", forces)
+            write_table(out, "forces.csv", forces)
         probes = flow.section.get("probes") or {}
         if probes:
             u, p = (read_rows(folder / "postProcessing/probes/0" / name) for name in "Up")
@@ -218,4 +217,4 @@ class FlowCase:
             for k, name in enumerate(probes):
                 table |= {f"{name} velocity {axis} [m/s]": u[:, 1 + 3 * k + c] for c, axis in enumerate("xyz"[:flow.dimension])}
                 table[f"{name} pressure [Pa]"] = p[:, 1 + k] * flow.density
-            write_table(out / "probes.csv", table)
+            write_table(out, "probes.csv", table)

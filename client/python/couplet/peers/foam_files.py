@@ -6,9 +6,12 @@ import re
 
 import numpy as np
 
+from couplet import files
 from couplet.peers import elements
+from couplet.peers.values import refuse
 from couplet.runs.process import environment
 
+WORD = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 RANK = {"scalar": 1, "vector": 3, "symmTensor": 6}
 
 
@@ -19,9 +22,7 @@ def foam_environment():
 
 def put(folder, path, kind, text, note=""):
     """Writes a file of a case and creates its folder if necessary."""
-    file = pathlib.Path(folder) / path
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(f"FoamFile {{version 2.0; format ascii; class {kind}; {note} object {file.name};}}\n{text}\n")
+    files.write(folder, path, f"FoamFile {{version 2.0; format ascii; class {kind}; {note} object {pathlib.PurePath(path).name};}}\n{text}\n")
 
 
 def one(row):
@@ -42,6 +43,9 @@ class PolyMesh:
     def __init__(self, mesh, kinds):
         """`kinds` is {patch: its OpenFOAM type}. `front` and `back` of a plane mesh become the patch frontAndBack."""
         self.mesh, self.kinds = mesh, dict(kinds)
+        for patch in self.kinds:
+            if not WORD.fullmatch(patch):
+                refuse(f"boundaries.{patch}", "this name is no word of OpenFOAM's dictionaries; rename the patch with letters, digits, '_', '-' and '.'")
         faces, cells, centres = self.all_faces()
         keys = np.sort(faces, axis=1)
         _, first, inverse, counts = np.unique(keys, axis=0, return_index=True, return_inverse=True, return_counts=True)
@@ -106,14 +110,13 @@ class PolyMesh:
         return n / np.linalg.norm(n, axis=1)[:, None]
 
     def write(self, folder):
-        base = pathlib.Path(folder) / "constant/polyMesh"
         points = list(map(one, self.mesh.points))
         faces = [f"{len(f)}({' '.join(map(str, f))})" for f in ([v for v in row if v >= 0] for row in self.faces.tolist())]
         note = f'note "nPoints:{len(points)} nCells:{len(self.centres)} nFaces:{len(faces)} nInternalFaces:{len(self.neighbour)}";'
         patches = [f"{name} {{type {kind}; nFaces {count}; startFace {start};}}" for name, (kind, count, start) in self.patches.items()]
         for name, kind, entries in (("points", "vectorField", points), ("faces", "faceList", faces), ("owner", "labelList", self.owner.tolist()),
                                     ("neighbour", "labelList", self.neighbour.tolist()), ("boundary", "polyBoundaryMesh", patches)):
-            put(base, name, kind, f"{len(entries)}\n(\n" + "\n".join(map(str, entries)) + "\n)", note)
+            put(folder, f"constant/polyMesh/{name}", kind, f"{len(entries)}\n(\n" + "\n".join(map(str, entries)) + "\n)", note)
 
 
 def last_time(folder):

@@ -6,6 +6,7 @@ import subprocess
 
 import numpy as np
 
+from couplet import files
 from couplet.peers.elements import CORNERS, EDGES, FACES
 from couplet.peers.values import number, refuse
 from couplet.runs.case import Wrong, expect
@@ -220,8 +221,8 @@ def of_participant(section, folder, where, work, order=1, trusted=False):
     danger = DANGER.search(re.sub(r"//.*|/\*.*?\*/", "", file.read_text()))
     if danger and not trusted:
         refuse(f"{where}.mesh", f"'{danger[0]}' in {file.name} may run commands or write files; --allow-commands permits it")
-    made = pathlib.Path(work) / f"mesh-{order}.msh"
-    made.parent.mkdir(parents=True, exist_ok=True)
+    made = files.folder(work, ".") / f"mesh-{order}.msh"
+    made.unlink(missing_ok=True)
     options = [w for name, value in (section.get("mesh-parameters") or {}).items() for w in ("-setnumber", name, repr(number(value, f"{where}.mesh-parameters.{name}")))]
     try:
         done = subprocess.run(["gmsh", "-nopopup", "-v", "2", f"-{dimension}", "-order", str(order), "-setnumber", "Mesh.SecondOrderIncomplete", "1", *options,

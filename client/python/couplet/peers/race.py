@@ -9,6 +9,7 @@ import pathlib
 import shutil
 import statistics
 
+from couplet import files
 from couplet.peers import calculix
 from couplet.peers.flow import PROGRAMS, Flow, FlowCase
 from couplet.peers.solid import Solid
@@ -62,7 +63,7 @@ class Race:
 
     def __init__(self, study, say=print, trusted=False):
         self.study, self.say, self.trusted, self.why = study, say, trusted, {}
-        self.folder = study.out / "peers"
+        self.folder = files.below(study.out, "peers")
 
     def settings(self, points):
         """Returns [(point, data)] of points with different input for a peer, by size. Our solver settings do not affect it."""
@@ -96,7 +97,7 @@ class Race:
         labels, longest = self.labels(settings), max([r.record.cpu for r in ours if r.good], default=60)
         for point, data in settings:
             try:
-                able, refused = contenders(data, self.study.participant, self.study.case.file.parent, self.folder / "meshes" / point.name, self.trusted)
+                able, refused = contenders(data, self.study.participant, self.study.case.file.parent, files.below(self.folder, f"meshes/{point.name}"), self.trusted)
             except Wrong as error:
                 able, refused = [], [("CalculiX, OpenFOAM", str(error))]
             self.why.update(dict(refused))
@@ -132,8 +133,8 @@ class Race:
 
     def row(self, contender, name, point):
         """Makes a run, once per input, as a row like ours."""
-        place = self.folder / "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name}-{point.name}")
-        folder = place / "case"
+        place = files.folder(self.folder, "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name}-{point.name}"))
+        folder = files.below(place, "case")
         shutil.rmtree(folder, ignore_errors=True)
         made = contender.make()
         command = made.write(folder)
@@ -154,7 +155,7 @@ class Race:
 
     def run(self, name, made, command, place, folder):
         record = Record(digest(folder), name, "done", version=name)
-        shutil.rmtree(place / "results", ignore_errors=True)
+        shutil.rmtree(files.below(place, "results"), ignore_errors=True)
         try:
             costs = []
             while not costs or len(costs) < 3 and sum(c.cpu for c in costs) < SHORT:
@@ -166,9 +167,7 @@ class Race:
             made.read(folder, place / "results" / self.study.participant)
         except (RunFailed, ValueError, OSError, StopIteration) as error:
             record.state, record.reason = "failed", f"{type(error).__name__}: {error}"
-        part = pathlib.Path(f"{place / 'record.json'}.part")
-        part.write_text(json.dumps(dataclasses.asdict(record), indent=1))
-        os.replace(part, place / "record.json")
+        files.write(place, "record.json", json.dumps(dataclasses.asdict(record), indent=1))
         return record
 
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results of another program in the format of our programs, so that all quantities of a study are read in the same way."""
-import csv
-
 import h5py
 import numpy as np
 from scipy.spatial import cKDTree
 
+from couplet import files
 from couplet.peers import elements
 from couplet.peers.values import number
 
@@ -14,11 +13,11 @@ STRESS = ("xx", "yy", "zz", "xy", "yz", "xz")
 UNITS = {"velocity": "m/s", "pressure": "Pa", "displacement": "m", "cell-displacement": "m"}
 
 
-def write_fields(file, mesh, time, cells, points=None):
+def write_fields(folder, name, mesh, time, cells, points=None):
     """Writes a series of one output (docs/formats.md) with fields of `cells` and `points` by name."""
     flat = mesh if mesh.order == 1 else mesh.corners()
     kinds = list(flat.cells)
-    with h5py.File(file, "w") as out:
+    with files.part(folder, name) as made, h5py.File(made, "w") as out:
         out.attrs["format"], out.attrs["kind"] = np.bytes_("couplet fields"), float(XDMF[kinds[0]] if len(kinds) == 1 else 0)
         out["mesh/coordinates"] = flat.points
         out["mesh/cells"] = flat.cells[kinds[0]] if len(kinds) == 1 else np.concatenate(
@@ -31,11 +30,8 @@ def write_fields(file, mesh, time, cells, points=None):
                 step[f"{place}/{name}"].attrs["unit"] = np.bytes_(UNITS.get(name, "Pa"))
 
 
-def write_table(file, columns):
-    with open(file, "w", newline="") as out:
-        writer = csv.writer(out)
-        writer.writerow(columns)
-        writer.writerows(zip(*columns.values()))
+def write_table(folder, name, columns):
+    files.write_rows(folder, name, [list(columns), *zip(*columns.values())])
 
 
 def at_middles(mesh, values):
@@ -74,12 +70,12 @@ def of_cells(mesh, values):
 def write_solid(folder, mesh, solid, cells, at, points=None):
     """Writes `cells` (m, 9): displacements [m] and stresses [Pa] at the cell centers. `at` returns the same at any position; `points` are fields at
     the points of a first-order mesh."""
-    folder.mkdir(parents=True, exist_ok=True)
+    files.folder(folder, ".")
     fields = {"cell-displacement": cells[:, :3], "equivalent-stress": von_mises(cells[:, 3:]), **{f"stress-{c}": cells[:, 3 + k] for k, c in enumerate(STRESS)}}
-    write_fields(folder / f"{solid.name}.h5", mesh, solid.time, fields, points)
+    write_fields(folder, f"{solid.name}.h5", mesh, solid.time, fields, points)
     table = {"time [s]": [solid.time]}
     for name, probe in (solid.section.get("probes") or {}).items():
         found = at([number(v, f"{solid.where}.probes.{name}.point") for v in probe["point"]])
         table |= {f"{name} {c} [m]": [v] for c, v in zip("xyz"[:mesh.dimension], found)}
         table |= {f"{name} stress-{c} [Pa]": [v] for c, v in zip(STRESS, found[3:])} | {f"{name} equivalent-stress [Pa]": [von_mises(found[None, 3:])[0]]}
-    write_table(folder / "probes.csv", table)
+    write_table(folder, "probes.csv", table)

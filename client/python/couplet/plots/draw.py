@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from couplet import fields
+from couplet import fields, files
 from couplet.plots.section import check, seconds
 from couplet.plots.sources import columns_of, number, points_of, series_in
 from couplet.runs.case import Wrong, expect
@@ -209,7 +209,8 @@ def draw(case, out, picture=None, section=None):
         if "title" in section:
             figure.suptitle(section["title"], fontsize=10)
         picture = pathlib.Path(picture or out / section.get("file", f"{case.file.resolve().parent.name}.png"))
-        figure.savefig(picture)
+        with files.part(picture.parent, picture.name) as made:
+            figure.savefig(made)
     except ValueError as problem:  # a color or a title formula that matplotlib does not know
         raise Wrong(f"{where}: {' '.join(str(problem).split())[:300]}") from None
     finally:

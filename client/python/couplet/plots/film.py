@@ -4,7 +4,7 @@ import pathlib
 import shutil
 import subprocess
 
-from couplet import fields
+from couplet import fields, files
 from couplet.plots.draw import across_of, draw, size_of
 from couplet.plots.section import check
 from couplet.plots.sources import series_in
@@ -43,23 +43,23 @@ def film(case, out, low=None, high=None):
     frame = frame_of(section, case, out)
     times = [t for t in series_in(out, frame["panels"][0]["participant"]).times if (low is None or t >= low) and (high is None or t <= high)]
     expect(times, f"{out}: '{frame['panels'][0]['participant']}' has no output between these times.")
-    folder = out / "film"
-    shutil.rmtree(folder, ignore_errors=True)  # frames of an earlier film
-    folder.mkdir()
+    shutil.rmtree(files.below(out, "film"), ignore_errors=True)  # frames of an earlier film
+    folder = files.folder(out, "film")
     for number, time in enumerate(times, 1):
         for panel in frame["panels"]:
             panel["at"] = float(time)
         draw(case, out, folder / f"frame-{number:04d}.png", frame)
-    return folder, animate(folder, out / "film.mp4")
+    return folder, animate(folder, out)
 
 
-def animate(folder, file):
-    """Makes an animated file of the frames. Returns None without ffmpeg."""
+def animate(folder, out):
+    """Makes the animated file film.mp4 of the frames in the folder `out`. Returns None without ffmpeg."""
     program = shutil.which("ffmpeg")
     if not program:
         return None
     # The usual color format needs even numbers of pixels.
-    done = subprocess.run([program, "-loglevel", "error", "-y", "-framerate", str(RATE), "-i", folder / "frame-%04d.png",
-                           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", file], capture_output=True, text=True)
-    expect(done.returncode == 0, f"ffmpeg made no {file.name} of the frames in {folder}: {done.stderr.strip()[-200:]}")
-    return file
+    with files.part(out, "film.mp4") as made:
+        done = subprocess.run([program, "-loglevel", "error", "-y", "-framerate", str(RATE), "-i", folder / "frame-%04d.png",
+                               "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", made], capture_output=True, text=True)
+        expect(done.returncode == 0, f"ffmpeg made no film.mp4 of the frames in {folder}: {done.stderr.strip()[-200:]}")
+    return out / "film.mp4"

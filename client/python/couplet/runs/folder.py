@@ -9,6 +9,8 @@ import signal
 import sys
 import time
 
+from couplet import files
+
 LOCK, RECORD = ".checkpoints.lock", "job.json"
 
 
@@ -110,9 +112,7 @@ def warn_if_older(file):
 
 
 def write_record(folder, record):
-    part = pathlib.Path(folder) / f"{RECORD}.part"
-    part.write_text(json.dumps(record, indent=1, default=str) + "\n")
-    os.replace(part, part.with_suffix(""))
+    files.write(folder, RECORD, json.dumps(record, indent=1, default=str) + "\n")
 
 
 def read_record(folder):

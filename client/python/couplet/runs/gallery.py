@@ -4,13 +4,13 @@ import csv
 import dataclasses
 import pathlib
 import re
-import shutil
 import subprocess
 import tempfile
 import threading
 
 import yaml
 
+from couplet import files
 from couplet.places import ROOT
 from couplet.runs.case import Case, expect
 
@@ -131,17 +131,17 @@ def included(file):
 
 def copy(source, target, values):
     """Copies a case with all named files to a folder, with other values. Returns the new case file."""
-    expect(not target.exists() or not any(target.iterdir()), f"folder '{target}' exists and is not empty; choose a new name")
+    target = files.below(target.parent, target.name)
+    expect(not target.exists() or target.is_dir() and not any(target.iterdir()), f"folder '{target}' exists and is not empty; choose a new name")
     case, text = Case(source), source.read_text()
     moved = {key: node.value for key, node in scalars(yaml.compose(text)) if isinstance(node.value, str) and len(node.value) < 200
              and "\n" not in node.value and (source.parent / node.value).is_file()}
-    files = {(source.parent / name).resolve() for name in moved.values()} | {f.resolve() for f in case.named([case.data])}
-    files |= {extra.resolve() for file in list(files) for extra in included(file)}
+    named = {(source.parent / name).resolve() for name in moved.values()} | {f.resolve() for f in case.named([case.data])}
+    named |= {extra.resolve() for file in list(named) for extra in included(file)}
     guests = {g for p in case.participants if (words := case.guest(p)) for g in map(pathlib.Path, map(str, words)) if g.parent == source.parent}
-    files |= {extra for extra in (*source.parent.glob("*.py"), source.parent / "README.md") if extra.is_file()}
+    named |= {extra for extra in (*source.parent.glob("*.py"), source.parent / "README.md") if extra.is_file()}
     text = with_values(text, {**{key: pathlib.Path(name).name for key, name in moved.items() if "/" in name}, **values})
-    target.mkdir(parents=True, exist_ok=True)
-    for file in (*files, *guests):  # Python and guests may be links: copied under their own names
-        shutil.copy(file, target / file.name)
-    (target / "case.yaml").write_text(text)
-    return target / "case.yaml"
+    files.folder(target, ".")
+    for file in (*named, *guests):  # Python and guests may be links: copied under their own names
+        files.copy(file, target)
+    return files.write(target, "case.yaml", text)

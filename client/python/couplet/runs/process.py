@@ -10,6 +10,8 @@ import subprocess
 import threading
 import time
 
+from couplet import files
+
 STOP = threading.Event()  # when set, everything launched from any thread ends
 PATIENCE = 5.0            # [s] between SIGTERM and SIGKILL
 
@@ -46,7 +48,7 @@ def launch(command, log, folder=None, timeout=3600, env=None):
     """Runs a command with its output in the file `log` and returns its Cost. Raises RunFailed with its last output."""
     log = pathlib.Path(log)
     start = time.monotonic()
-    with open(log, "w") as out:
+    with files.in_place(log.parent, log.name) as out:
         process = subprocess.Popen([str(c) for c in command], stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
                                    cwd=folder, env=env or environment(), start_new_session=True)
         late = False

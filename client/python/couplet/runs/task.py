@@ -11,6 +11,7 @@ import shutil
 import statistics
 import time
 
+from couplet import files
 from couplet.places import ROOT
 from couplet.runs.case import Case
 from couplet.runs.process import RunFailed, commit, launch, machine
@@ -49,7 +50,7 @@ class Task:
     does not count."""
 
     def __init__(self, case: Case, name, folder, changes, alone=None, ranks=None, repeats=1, timeout=3600):
-        self.case, self.name, self.folder = case, name, pathlib.Path(folder).resolve()
+        self.case, self.name, self.folder = case, name, files.below(pathlib.Path(folder).absolute().parent, pathlib.Path(folder).name)
         self.changes, self.alone, self.ranks = dict(changes), alone, dict(ranks or {})
         self.repeats, self.timeout = repeats, timeout
 
@@ -75,8 +76,7 @@ class Task:
     @contextlib.contextmanager
     def lock(self, wait=True):
         """Yields true if the lock was taken. It ends with its process."""
-        self.folder.parent.mkdir(parents=True, exist_ok=True)
-        with open(self.folder.parent / f".{self.folder.name}.lock", "w") as file:
+        with files.in_place(self.folder.parent, f".{self.folder.name}.lock") as file:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
             except BlockingIOError:
@@ -111,6 +111,4 @@ class Task:
         return record
 
     def write(self, record):
-        part = self.folder / f"{RECORD}.part"
-        part.write_text(json.dumps(dataclasses.asdict(record), indent=1, default=str))
-        os.replace(part, self.folder / RECORD)
+        files.write(self.folder, RECORD, json.dumps(dataclasses.asdict(record), indent=1, default=str))

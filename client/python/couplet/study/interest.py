@@ -21,6 +21,7 @@ import math
 
 import yaml
 
+from couplet import files
 from couplet.runs import Task, expect, run_all
 from couplet.runs.case import Wrong, with_changes
 from couplet.study.axes import Axes, filled
@@ -153,7 +154,7 @@ def run(case, out, arguments, say):
                     "mesh, and takes one step.")
     taken = {case.absolute(k, participant) for s in sources for k in s.changes(1)} & set(arguments.changes) if section.get("sources") else ()
     expect(not taken, f"{case.file}: --quantities: --set {next(iter(taken), '')}: study.sources gives it its own values.")
-    folder, tasks = out / "quantities", {}
+    folder, tasks = files.below(out, "quantities"), {}
     for name, factors in runs_of(sources).items():
         changes = {case.absolute(k, participant): v for s in sources for k, v in s.changes(factors.get(s.name, 1)).items()}
         tasks[name] = Task(case, name, folder / name.replace(" ", "-"), {**base, **changes})
@@ -176,7 +177,6 @@ def run(case, out, arguments, say):
             + ", ".join(f"{n} {p:.2g}" + (f" of order {orders[n]:.2g}" if n in orders else "") for n, p in sorted(parts.items(), key=lambda part: -part[1])))
         if len(parts) > 1:
             say(advice(parts))
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "quantities.json").write_text(json.dumps(written, indent=1))
+    files.write(files.folder(folder, "."), "quantities.json", json.dumps(written, indent=1))
     say(f"table: {folder / 'quantities.json'}")
     return 0

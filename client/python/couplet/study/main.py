@@ -4,9 +4,9 @@ best of some variables. An interrupted study continues where it stopped, and two
 import fnmatch
 import os
 import pathlib
-import shutil
 import time
 
+from couplet import files
 from couplet.runs import Case, expect, run_all, warnings_of
 from couplet.study import variants
 
@@ -21,13 +21,17 @@ def chosen(names, arguments):
     return found
 
 
+def out_of(case, arguments):
+    return arguments.out or files.below(case.file.parent / "out", "study")
+
+
 def run_variants(cases, arguments):
     runs, several = [], arguments.out and len(cases) > 1
     for case in cases:
         participant, found = variants.variants_of(case)
         for name in found:
             if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.only.split(",")):
-                folder = (arguments.out or case.file.parent / "out" / "study") / (f"{case.file.parent.name}-{name}" if several else name)
+                folder = out_of(case, arguments) / (f"{case.file.parent.name}-{name}" if several else name)
                 runs.append(variants.Variant(case, name, folder, {**found[name], **arguments.changes}, alone=participant, timeout=86400))
     expect(runs, f"--only {arguments.only}: there is no such variant.")
     if arguments.list:
@@ -40,7 +44,7 @@ def run_variants(cases, arguments):
     for case in cases:
         good = [run for run in runs if run.case is case and records[run].state == "done"]
         if good:
-            folder = arguments.out or case.file.parent / "out" / "study"
+            folder = out_of(case, arguments)
             variants.write_table(folder / (f"{case.file.parent.name}.csv" if several else "table.csv"), good)
     for line in warnings_of(run.folder / "run.log" for run in runs):
         say(line)
@@ -52,7 +56,7 @@ def run_variants(cases, arguments):
 
 def run_axes(case, arguments):
     from couplet.study.study import Study
-    out = arguments.out or case.file.parent / "out" / "study"
+    out = out_of(case, arguments)
     study = Study(case, out, arguments.changes, arguments.repeats)
     if arguments.for_error:
         from couplet.study.predict import for_error
@@ -74,9 +78,8 @@ def run_axes(case, arguments):
             say(f"{name} was not run: {reason}")
     page = study.report(rows, peers, why)
     if arguments.publish:
-        arguments.publish.mkdir(parents=True, exist_ok=True)
         for file in (*out.glob("*.png"), *out.glob("peers.csv"), out / "report.md", out / "runs.csv"):
-            shutil.copy(file, arguments.publish)
+            files.copy(file, files.folder(arguments.publish, "."))
     failed = [row for row in rows if not row.good]
     for row in failed:
         say(f"failed: {row.point.name}: {row.record.reason or row.reason}")
@@ -115,7 +118,7 @@ def run(arguments):
     if arguments.quantities:
         from couplet.study import interest
         expect(len(cases) == 1, "--quantities: one case at a time.")
-        return interest.run(cases[0], arguments.out or cases[0].file.parent / "out" / "study", arguments, say)
+        return interest.run(cases[0], out_of(cases[0], arguments), arguments, say)
     if all("axes" not in case.study for case in cases):
         expect(not arguments.peers, "--peers: the study needs 'axes' and 'quantities'.")
         expect(not arguments.for_error, "--for-error: the study needs 'axes', of which one has 'sizes'.")

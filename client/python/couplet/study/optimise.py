@@ -15,7 +15,6 @@ The section of the case:
 A surface of cubic radial functions through the runs so far predicts where the best is; the next runs go there, as many at a
 time as there are processors, the others of a round to where the surface is known least. optimise.csv has all runs so far; a
 search that was interrupted and is started again finds the runs that are done. --again repeats them."""
-import csv
 import itertools
 import math
 import os
@@ -26,6 +25,7 @@ from scipy.interpolate import RBFInterpolator
 from scipy.optimize import minimize
 from scipy.spatial.distance import cdist
 
+from couplet import files
 from couplet.runs import expect, run_all, warnings_of
 from couplet.study.variants import Variant
 
@@ -221,19 +221,17 @@ class Runs:
         return values
 
     def write(self):
-        self.folder.mkdir(parents=True, exist_ok=True)
-        with open(self.folder / "optimise.csv", "w", newline="") as out:
-            writer = csv.writer(out)
-            writer.writerow([*(f"{v.name} [{v.unit}]" for v in self.search.variables), self.search.quantity])
-            for point, value in zip(self.points, self.values):
-                shown = f"{self.search.sign * value:.9g}" if math.isfinite(value) else "failed"
-                writer.writerow([*(f"{v.at(x):.9g}" for v, x in zip(self.search.variables, point)), shown])
+        rows = [[*(f"{v.name} [{v.unit}]" for v in self.search.variables), self.search.quantity]]
+        for point, value in zip(self.points, self.values):
+            shown = f"{self.search.sign * value:.9g}" if math.isfinite(value) else "failed"
+            rows.append([*(f"{v.at(x):.9g}" for v, x in zip(self.search.variables, point)), shown])
+        files.write_rows(files.folder(self.folder, "."), "optimise.csv", rows)
 
 
 def run(case, arguments):
     wanted = Search(case)
     jobs = arguments.jobs or len(os.sched_getaffinity(0))
-    runs = Runs(wanted, arguments.out or wanted.case.file.parent / "out" / "optimise", jobs, arguments.changes, arguments.again,
+    runs = Runs(wanted, arguments.out or files.below(wanted.case.file.parent / "out", "optimise"), jobs, arguments.changes, arguments.again,
                 lambda line: print(line, flush=True))
     point, value, points, _ = search(runs, len(wanted.variables), int(wanted.runs), wanted.tolerance, jobs, runs.say, wanted.sign)
     where = ", ".join(f"{v.name} {v.at(x):.4g} {v.unit}".strip() for v, x in zip(wanted.variables, point))

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator
 
+from couplet import files
 from couplet.study import fits
 from couplet.study.table import series_of
 
@@ -95,7 +96,8 @@ def finish(made, axes, file, xlabel="", ylabel=""):
         if len(labels) > 1 or labels and len(axes) > 1:  # for several panels below each one, where it hides nothing
             one.legend(fontsize=7, framealpha=0.7, **({"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 1 + (max(map(len, labels)) < 36)} if len(axes) > 1 else {}))
     made.supxlabel(xlabel, fontsize=10), made.supylabel(textwrap.fill(ylabel, WIDEST_Y), fontsize=10)
-    made.savefig(file)
+    with files.part(file.parent, file.name) as new:
+        made.savefig(new)
     plt.close(made)
     return file
 
@@ -202,6 +204,7 @@ def phases(title, rows, file, most=24):
     made.suptitle(textwrap.fill(title, NARROW), fontsize=10)
     below.axis("off")
     below.legend(*axes.get_legend_handles_labels(), fontsize=6, ncols=4, loc="center")
-    made.savefig(file)
+    with files.part(file.parent, file.name) as new:
+        made.savefig(new)
     plt.close(made)
     return file

@@ -10,6 +10,7 @@ import json
 import math
 import re
 
+from couplet import files
 from couplet.runs import expect
 from couplet.study import table
 from couplet.study.series import ENOUGH, GROWTH, ROUNDS, Prediction, Refusal, Series
@@ -253,7 +254,7 @@ def for_error(study, text, name, say):
     search = Search(study, quantity, target, say)
     result = said(search, *search.go())
     file = study.out / f"for-error-{quantity.name.replace(' ', '-')}-{text.strip().replace('%', 'pc')}.json"
-    file.write_text(json.dumps(result, indent=1, default=lambda v: v.item()))
+    files.write(study.out, file.name, json.dumps(result, indent=1, default=lambda v: v.item()))
     for line in result["lines"]:
         say(line)
     return 0 if result["met"] else 1

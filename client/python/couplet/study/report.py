@@ -5,6 +5,8 @@ import html
 import pathlib
 import re
 
+from couplet import files
+
 STYLE = (pathlib.Path(__file__).parent / "report.css").read_text().strip()
 
 
@@ -67,7 +69,5 @@ class Report:
         return "\n".join([*parts, "</body></html>\n"])
 
     def write(self, folder, stem="report"):
-        folder = pathlib.Path(folder)
-        (folder / f"{stem}.md").write_text(self.markdown(folder))
-        (folder / f"{stem}.html").write_text(self.html())
-        return folder / f"{stem}.html"
+        files.write(folder, f"{stem}.md", self.markdown(pathlib.Path(folder)))
+        return files.write(folder, f"{stem}.html", self.html())

@@ -3,6 +3,7 @@
 import pathlib
 import re
 
+from couplet import files
 from couplet.runs import Task, expect, run_all
 from couplet.runs.process import machine
 from couplet.study import estimates, fits, pictures, table
@@ -39,7 +40,7 @@ class Study:
         self.title = section.get("title", case.file.parent.name)
 
     def task(self, point):
-        return Task(self.case, point.name, self.out / "runs" / point.name, point.changes, self.alone, point.ranks, self.repeats,
+        return Task(self.case, point.name, files.below(self.out, "runs") / point.name, point.changes, self.alone, point.ranks, self.repeats,
                     float(self.section.get("timeout", 3600)))
 
     def run(self, points, jobs=1, again=False, say=print):
@@ -66,7 +67,7 @@ class Study:
     def report(self, rows, peers=(), why=None):
         """Writes runs.csv, the pictures, report.md and report.html, and returns the page. `peers` are rows of other programs on the same case, `why`
         is {program: reason why it did not run}."""
-        self.out.mkdir(parents=True, exist_ok=True)
+        files.folder(self.out, ".")
         against = table.set_errors(rows, self.quantities, peers)
         table.write(self.out / "runs.csv", rows, self.axes, self.quantities)
         if peers:

@@ -5,6 +5,7 @@ import math
 import re
 import types
 
+from couplet import files
 from couplet.study import fits
 from couplet.study.axes import Point
 
@@ -117,7 +118,7 @@ def read(file, axes, quantities):
 def write(file, rows, axes, quantities):
     heads = [*(a.name for a in axes.all), *(n for q in quantities for n in (q.name, f"error of {q.name}") if not (q.is_error and n == q.name)),
              *(HEADS.get(c, c) for c in COSTS), "version", "reason"]
-    with open(file, "w", newline="") as out:
+    with files.part(file.parent, file.name) as made, open(made, "w", newline="") as out:
         writer = csv.writer(out)
         writer.writerow(heads)
         for row in rows:

@@ -7,6 +7,7 @@ sweeps: {diameter: {key: diameter, values: [38 m, 41.8 m]}}   # variants diamete
 import csv
 import re
 
+from couplet import files
 from couplet.runs import Task, expect
 
 
@@ -50,11 +51,7 @@ def write_table(file, variants):
     """Writes one row per quantity and one column per variant."""
     columns = {variant.name: variant.summary() for variant in variants}
     rows = list(dict.fromkeys(key for column in columns.values() for key in column))
-    with open(file, "w", newline="") as out:
-        writer = csv.writer(out)
-        writer.writerow(["quantity", "unit", *columns])
-        for row in rows:
-            writer.writerow([*row, *(f"{c[row]:.6g}" if row in c else "" for c in columns.values())])
+    files.write_rows(file.parent, file.name, [["quantity", "unit", *columns], *([*row, *(f"{c[row]:.6g}" if row in c else "" for c in columns.values())] for row in rows)])
     width = max(len(f"{q} [{u}]") for q, u in rows)
     print("\n" + " " * width + "".join(f"{name[:12]:>13}" for name in columns))
     for row in rows:
