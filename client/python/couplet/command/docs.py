@@ -6,6 +6,7 @@ import os
 import pathlib
 import sys
 
+from couplet.command.page import Server
 from couplet.documents import site
 
 
@@ -32,6 +33,12 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
     def log_message(self, *_):
         pass
 
+    def send_head(self):
+        try:
+            return super().send_head()
+        except ValueError:  # no address
+            self.send_error(400)
+
 
 def run(arguments):
     if arguments.build:
@@ -40,7 +47,7 @@ def run(arguments):
         print(f"written: {arguments.build / 'index.html'}")
         return 0
     folder = built(arguments.again)
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", arguments.port), functools.partial(Quiet, directory=str(folder)))
+    server = Server(("127.0.0.1", arguments.port), functools.partial(Quiet, directory=str(folder)))
     print(f"http://127.0.0.1:{server.server_port}/ (press Ctrl-C to stop)", flush=True)
     server.serve_forever()
     return 0

@@ -4,6 +4,7 @@ import http.server
 import json
 import pathlib
 import secrets
+import sys
 import threading
 import urllib.parse
 
@@ -27,7 +28,10 @@ def handler_of(progress, token):
             self.wfile.write(data)
 
         def do_GET(self):
-            address = urllib.parse.urlparse(self.path)
+            try:
+                address = urllib.parse.urlparse(self.path)
+            except ValueError:
+                return self.answer(400, "text/plain", "This is no address.\n")
             given = urllib.parse.parse_qs(address.query).get("token", [""])[0]
             # A request with another host name comes from a foreign page that tries to read this one.
             mine = self.headers.get("Host", "") == f"127.0.0.1:{self.server.server_port}"
@@ -44,8 +48,16 @@ def handler_of(progress, token):
     return Handler
 
 
+class Server(http.server.ThreadingHTTPServer):
+    """Says nothing about a client that leaves before it has its answer."""
+
+    def handle_error(self, request, client_address):
+        if not isinstance(sys.exc_info()[1], ConnectionError):
+            super().handle_error(request, client_address)
+
+
 def server(progress, port=0):
     """Returns (server, address with its token), only on the loopback address."""
     token = secrets.token_urlsafe(18)
-    made = http.server.ThreadingHTTPServer(("127.0.0.1", port), handler_of(progress, token))
+    made = Server(("127.0.0.1", port), handler_of(progress, token))
     return made, f"http://127.0.0.1:{made.server_port}/?token={token}"
