@@ -4,11 +4,13 @@ the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of 
 import os
 import pathlib
 import shlex
+import subprocess
+import sys
 
 from couplet.command.run import RANKS_HELP, build_of, pairs, ranks_of, shown_run
 from couplet.runs import folder as folders
-from couplet.runs.case import Case, expect
-from couplet.runs.job import Job
+from couplet.runs.case import OURS, Case, expect
+from couplet.runs.job import Job, surroundings
 
 SHAPE = {"case": str, "ranks": dict, "sets": list, "flags": list, "with": dict}  # of the record
 
@@ -24,13 +26,21 @@ def declare(parser):
     parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
 
 
+def problem_of(job, checkpoint):
+    """Error in the files of a checkpoint, whose digests the driver compares. Empty if there is none."""
+    if pathlib.Path(job.parts[0][1][0]).name not in OURS:
+        return ""
+    asked = subprocess.run([*job.parts[0][1], "--check"], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=surroundings())
+    return next((line for line in asked.stderr.splitlines() if str(checkpoint) in line), "")
+
+
 def run(arguments):
     folder = arguments.folder.absolute()
     expect(folder.is_dir(), f"{arguments.folder}: there is no such folder")
     record = folders.read_record(folder)
     expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
     expect(all(isinstance(record.get(key), kind) for key, kind in SHAPE.items()) and all(isinstance(n, int) for n in record["ranks"].values()), f"{folder / folders.RECORD}: is damaged. Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
-    file, found = pathlib.Path(os.path.normpath(folder / record["case"])), folders.checkpoint(folder)
+    file, found = pathlib.Path(os.path.normpath(folder / record["case"])), folders.checkpoints(folder)
     expect(file.is_file(), f"{arguments.folder}: its case is not at {file}. Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'} --set simulation.output.folder={shlex.quote(str(folder))}")
     expect(found, f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {shlex.quote(str(file))}")
     sets = [*record["sets"], f"simulation.output.folder={folder}", *arguments.set]
@@ -39,9 +49,22 @@ def run(arguments):
         command = record["with"].get(name) or case.guest(name)
         expect(not command or name in played_by, f"'{name}' is run by a program that is not Couplet's. If you trust it, give its command again: --with {name}={shlex.quote(shlex.join(map(str, command or [])))}")
     expect(arguments.allow_commands or "--allow-commands" not in record["flags"], f"{arguments.folder}: its run let the .geo run commands. If you trust the case, give --allow-commands again")
-    flags = [*record["flags"], *(["--restart-with-changes"] if arguments.restart_with_changes and "--restart-with-changes" not in record["flags"] else []), "--restart", str(folder / "checkpoints" / found)]
-    job = Job(case, {**record["ranks"], **ranks_of(arguments.ranks, case)}, sets,
-              flags, record["alone"], played_by)
+    flags = [*record["flags"], *(["--restart-with-changes"] if arguments.restart_with_changes and "--restart-with-changes" not in record["flags"] else [])]
+
+    def job_from(name):
+        return Job(case, {**record["ranks"], **ranks_of(arguments.ranks, case)}, sets, [*flags, "--restart", str(folder / "checkpoints" / name)], record["alone"], played_by)
+
+    problems = []
+    for name in found:
+        problem = problem_of(job_from(name), folder / "checkpoints" / name)
+        if not problem:
+            break
+        problems.append(f"warning: {problem}")
+    else:
+        name, problems = found[0], []  # the run itself reports what is wrong with all of them
+    for problem in problems:
+        print(f"{problem} {name} is used.", file=sys.stderr)
+    job = job_from(name)
     if arguments.print:
         print(job.line())
         return 0

@@ -85,8 +85,13 @@ def is_damaged(file):
 
 
 def checkpoint(folder):
-    """Name of the complete checkpoint with the latest time that the recorded run wrote or started from; None if there is none. Those of another run
-    in the folder may belong to another case. The id of a run begins with its start, which a copy of the folder keeps. A damaged one is named and left out."""
+    """Name of the complete checkpoint with the latest time that the recorded run wrote or started from; None if there is none."""
+    return next(iter(checkpoints(folder)), None)
+
+
+def checkpoints(folder):
+    """Names of the complete checkpoints that the recorded run wrote, else of the one that it started from, latest first. Those of another run in the folder may
+    belong to another case. The id of a run begins with its start, which a copy of the folder keeps. Incomplete ones are named and left out."""
     all_sets = pathlib.Path(folder).absolute() / "checkpoints"
     damaged = sorted(filter(is_damaged, all_sets.glob("step-*/set.txt")))
     for file in damaged:
@@ -97,7 +102,7 @@ def checkpoint(folder):
     begun = record["restart"] and pathlib.Path(os.path.normpath(all_sets.parent / record["restart"])) if "restart" in record else None
     started = datetime.datetime.fromisoformat(record["started"]).timestamp() if "started" in record else 0
     own = [name for run, name in runs if int(run[:12], 16) / 1000 >= started or begun in (all_sets, all_sets.parent)]
-    return own[-1] if own else next((name for _, name in runs if begun == all_sets / name), None)
+    return own[::-1] if own else [name for _, name in runs if begun == all_sets / name][:1]
 
 
 def warn_if_older(file):
