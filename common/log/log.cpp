@@ -93,8 +93,9 @@ void setup(const std::string& participant, int rank, Verbosity verbosity, const 
   if (verbosity == Verbosity::verbose)
     logger->set_level(spdlog::level::debug);
   else
-    logger->set_level(verbosity == Verbosity::normal && rank == 0 ? spdlog::level::info
-                                                                  : spdlog::level::warn);
+    logger->set_level(rank > 0                         ? spdlog::level::err
+                      : verbosity == Verbosity::normal ? spdlog::level::info
+                                                       : spdlog::level::warn);
   // Standard output is a pipe under mpirun. One flush per step is acceptable.
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(logger);

@@ -29,8 +29,9 @@ TEST(Log, every_line_names_participant_and_rank_and_errors_go_to_stderr_alone) {
   EXPECT_EQ(root.err, "[fl%d 0] error: e\n");
 }
 
-TEST(Log, below_verbose_only_rank_0_tells_what_is_in_order) {
-  EXPECT_EQ(speak(2, log::Verbosity::normal).out, "[fl%d 2] warning: w\n");
+TEST(Log, below_verbose_only_rank_0_tells_more_than_errors) {
+  EXPECT_EQ(speak(2, log::Verbosity::normal).out, "");
+  EXPECT_EQ(speak(2, log::Verbosity::quiet).err, "[fl%d 2] error: e\n");
   EXPECT_EQ(speak(0, log::Verbosity::quiet).out, "[fl%d 0] warning: w\n");
   EXPECT_EQ(speak(1, log::Verbosity::verbose).out, "[fl%d 1] d\n[fl%d 1] i 1\n[fl%d 1] warning: w\n");
 }
