@@ -69,10 +69,15 @@ class Runner:
         folder.mkdir(parents=True)
         for file, text in files.items():
             (folder / file).write_text(text)
-        places = [next((p for p in (self.build / "bin" / n, self.build / "bin/tests" / n) if p.exists()), n) for n in programs]
-        words = [[p, "case.yaml", "--strict=effects"] for p in places]
+        words = [[self.program(n), "case.yaml", "--strict=effects"] for n in programs]
         line = words[0] if len(words) == 1 else ["mpirun", "--oversubscribe", *(w for i, one in enumerate(words) for w in ([":"] * (i > 0) + ["-n", "1", *one]))]
         return folder, *self.command(line, folder)
+
+    def program(self, name):
+        found = next((p for p in (self.build / "bin" / name, self.build / "bin/tests" / name) if p.exists()), None)
+        if found is None:  # otherwise the square would count as a run that stopped
+            raise RuntimeError(f"the program '{name}' is not built")
+        return found
 
     def command(self, line, folder, limit=300):
         try:

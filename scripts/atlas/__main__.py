@@ -43,7 +43,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="lists the maps")
     parser.add_argument("--page", action="store_true", help="no runs: only docs/stability.md, from existing tables")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="number of concurrent runs")
-    arguments, maps, red = parser.parse_args(), atlas.maps(), []
+    arguments, maps, red, lost = parser.parse_args(), atlas.maps(), [], []
     if unknown := set(arguments.maps) - set(maps):
         parser.error(f"there is no map '{min(unknown)}'; there is: {', '.join(maps)}")
     if arguments.list:
@@ -55,16 +55,20 @@ def main():
             continue
         from atlas import draw
         start = time.monotonic()
-        with tempfile.TemporaryDirectory(prefix="couplet-stability-") as scratch:
-            squares = atlas.make(m, arguments.out / f"{m.name}.csv", atlas.Runner(arguments.build.resolve(), scratch), arguments.fresh, arguments.jobs)
+        try:
+            with tempfile.TemporaryDirectory(prefix="couplet-stability-") as scratch:
+                squares = atlas.make(m, arguments.out / f"{m.name}.csv", atlas.Runner(arguments.build.resolve(), scratch), arguments.fresh, arguments.jobs)
+        except RuntimeError as error:
+            lost.append(f"{m.name}: could not be measured: {error}")
+            continue
         draw.picture(m, squares, arguments.out / f"{m.name}.png")
         wrong = [k for k, s in squares.items() if s.outcome == atlas.RED]
         red += [f"RED {m.name}: {panel}, x {x:g}, y {y:g}" for panel, x, y in wrong]
         print(f"{m.name}: {len(squares)} squares, {len(wrong)} red, {time.monotonic() - start:.0f} s", flush=True)
     if arguments.out == ROOT / "docs/stability":
         (ROOT / "docs/stability.md").write_text(page(maps, arguments.out))
-    print(*red, sep="\n", end="\n" if red else "")
-    return 1 if red else 0
+    print(*lost, *red, sep="\n", end="\n" if lost or red else "")
+    return 1 if lost or red else 0
 
 
 if __name__ == "__main__":
