@@ -5,7 +5,7 @@ parallel. 'open SOURCE' opens a mesh as the programs do and prints time and memo
 import pathlib
 import subprocess
 
-from couplet import places
+from couplet import files, places
 from couplet.command.run import build_of
 from couplet.runs.case import Case, expect, with_changes
 from couplet.runs.job import surroundings
@@ -57,10 +57,16 @@ def cut(arguments, source, dimension, parameters, output):
     return tool(arguments, ["cut", source, "-o", output, "--dimension", dimension, *(w for p in parameters for w in ("--parameter", p))])
 
 
+def beside(folder, mesh):
+    """Cut mesh beside a mesh of a case. A case may name a mesh elsewhere, but not lead there through links below its own folder."""
+    place = pathlib.PurePath(mesh).with_suffix(".h5")
+    return folder / place if place.is_absolute() or ".." in place.parts else files.below(folder, place)
+
+
 def cut_case(arguments):
     case = Case(arguments.source)
     found = meshes_of(case, arguments)
-    outputs = {key: arguments.output or (case.file.parent / key[0]).with_suffix(".h5") for key in found}
+    outputs = {key: arguments.output or beside(case.file.parent, key[0]) for key in found}
     expect(len(set(outputs.values())) == len(found), f"{case.file}: several meshes would become {outputs[next(iter(found))]}; cut one at a time: --participant NAME -o FILE.h5")
     for (mesh, dimension, parameters), names in found.items():
         expect(pathlib.Path(mesh).suffix != ".h5", f"{case.file}: participants.{names[0]}.mesh: '{mesh}' is a cut mesh already")

@@ -185,16 +185,20 @@ def stage(folder):
 def build(site):
     """Builds the site into a folder."""
     expect(shutil.which("mkdocs") and MATHJAX.is_dir(), "the site is built by MkDocs and MathJax: apt install mkdocs mkdocs-material libjs-mathjax")
-    site = pathlib.Path(site).absolute()
+    site = pathlib.Path(site)
     with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
-        docs = pathlib.Path(scratch) / "docs"
+        docs, built = files.folder(scratch, "docs"), pathlib.Path(scratch) / "site"
         nav = stage(docs)
         config = pathlib.Path(scratch) / "mkdocs.yml"
         text = (HERE / "mkdocs.yml").read_text()
-        for name, value in (("docs", docs), ("site", site), ("nav", nav)):
+        for name, value in (("docs", docs), ("site", built), ("nav", nav)):
             text = text.replace(f"{{{name}}}", str(value))
         files.write(scratch, config.name, text)
         done = subprocess.run(["mkdocs", "build", "--clean", "-f", config], capture_output=True, text=True)
         expect(done.returncode == 0, f"mkdocs failed: {(done.stderr or done.stdout).strip()[-2000:]}")
-        leave_out(site, [page for group in for_developers(pages()).values() for page in group])
+        leave_out(built, [page for group in for_developers(pages()).values() for page in group])
+        for old in files.folder(site, ".").glob("[!.]*"):
+            shutil.rmtree(old) if old.is_dir() and not old.is_symlink() else old.unlink()
+        for file in filter(pathlib.Path.is_file, built.rglob("*")):
+            files.copy(file, site, file.relative_to(built))
         return [line for line in (done.stdout + done.stderr).splitlines() if "WARNING" in line or "ERROR" in line]
