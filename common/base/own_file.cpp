@@ -29,7 +29,9 @@ const std::filesystem::path& own_file(const std::filesystem::path& file) {
 namespace {
 
 void expect(bool good, const std::filesystem::path& file) {
-  if (!good) throw Error("Cannot write '{}' ({}). Is the disk full?", file.string(), std::strerror(errno));
+  if (!good)
+    throw Error("Cannot write '{}' ({}). {}", file.string(), std::strerror(errno),
+                errno == ENOENT ? "Was its folder removed during the run?" : "Is the disk full?");
 }
 
 /// Waits for the disk. Some file systems cannot flush (EINVAL), which is no failure to write.

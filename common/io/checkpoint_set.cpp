@@ -13,6 +13,7 @@
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
+#include "common/log/log.hpp"
 
 namespace couplet::io {
 namespace {
@@ -249,6 +250,16 @@ std::vector<FoundSet> checkpoint_sets(const fs::path& parent) {
     return std::tie(a.stamp.time, a.stamp.step, a.folder) < std::tie(b.stamp.time, b.stamp.step, b.folder);
   });
   return found;
+}
+
+void warn_if_lost(const fs::path& output, double restart_time) {
+  if (fs::exists(output)) return;
+  for (const FoundSet& set : checkpoint_sets(output.parent_path().parent_path() / "checkpoints"))
+    if (set.stamp.time == restart_time) {
+      log::warn("'{}' was not there: it begins at t = {:g} s, where the run continues.", output.string(),
+                restart_time);
+      return;
+    }
 }
 
 void remove_checkpoint_set(const fs::path& folder) {

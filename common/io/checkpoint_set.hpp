@@ -61,6 +61,9 @@ struct FoundSet {
 };
 /// Complete sets in the folders step-* of `parent`, sorted by time, then step. Unreadable sets are omitted.
 std::vector<FoundSet> checkpoint_sets(const std::filesystem::path& parent);
+/// Warns if an output is missing that continues from a checkpoint in its own output folder: what the run wrote
+/// before is lost. Call it on one rank. Nothing is missing in another folder.
+void warn_if_lost(const std::filesystem::path& output, double restart_time);
 /// Removes the files of this set, including those of guest programs, and the folder if it is then empty.
 void remove_checkpoint_set(const std::filesystem::path& folder);
 /// Removes incomplete sets of interrupted runs from `parent` and returns their folders.

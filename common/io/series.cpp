@@ -13,6 +13,8 @@
 #include "common/base/own_file.hpp"
 #include "common/csv/csv_reader.hpp"
 #include "common/diagnostics/results.hpp"
+#include "common/io/checkpoint_set.hpp"
+#include "common/log/log.hpp"
 
 namespace couplet::io {
 namespace {
@@ -71,9 +73,17 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), code);
   std::ostringstream text;
   text << head << '\n';
-  if (const auto old = std::isnan(restart_time) ? nullptr : rows_of(file, head))
-    copy_rows(*old, n_columns_, restart_time, text);
+  if (!std::isnan(restart_time)) {
+    warn_if_lost(file, restart_time);
+    if (const auto old = rows_of(file, head)) copy_rows(*old, n_columns_, restart_time, text);
+  }
   base::write_file(file, text.view());
+}
+
+Series::~Series() {
+  std::error_code ignored;
+  if (file_.is_open() && !std::filesystem::exists(name_, ignored))
+    log::warn("'{}' was removed during the run: its rows are lost.", name_.string());
 }
 
 void Series::row(std::span<const double> values) {

@@ -17,6 +17,9 @@ class Series {
  public:
   Series(const std::filesystem::path& file, const std::vector<std::string>& columns,
          double restart_time = std::numeric_limits<double>::quiet_NaN());
+  /// Warns if the file is no longer there.
+  ~Series();
+  Series(Series&&) = default;
   void row(std::span<const double> values);
 
  private:

@@ -6,6 +6,7 @@
 #include <optional>
 #include <tuple>
 
+#include "common/io/checkpoint_set.hpp"
 #include "common/io/fields/xdmf.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/log/log.hpp"
@@ -202,7 +203,10 @@ void FieldWriter::State::find_order() {
 bool FieldWriter::State::continue_from(double restart_time) {
   int there = parallel::comm_rank(mesh.comm) == 0 && std::filesystem::exists(file()) ? 1 : 0;
   MPI_Bcast(&there, 1, MPI_INT, 0, mesh.comm);
-  if (there == 0) return false;
+  if (there == 0) {
+    if (parallel::comm_rank(mesh.comm) == 0) warn_if_lost(file(), restart_time);
+    return false;
+  }
   try {
     const std::vector<std::string> dropped =
         parallel::on_all(mesh.comm, [&] { return read_index(restart_time); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/series.hpp"
+#include "common/io/checkpoint_set.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/support/test.hpp"
 
@@ -47,6 +48,31 @@ TEST(Series, a_restart_drops_the_later_rows_and_keeps_the_others) {
     series.row(std::vector<double>{0.25, 7});
   }
   EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n0.1,1\n0.2,0.5\n0.25,7\n");
+}
+
+std::string said(const std::function<void()>& action) {
+  testing::internal::CaptureStdout();
+  action();
+  return testing::internal::GetCapturedStdout();
+}
+
+TEST(Series, a_lost_file_is_named) {
+  const support::SharedFolder scratch;
+  const std::string rank = std::to_string(parallel::comm_rank(MPI_COMM_WORLD));
+  const std::filesystem::path out = scratch / rank, file = out / "solid/tip.csv";
+  const CheckpointStamp stamp{.run = "1", .step = 2, .time = 0.2};
+  finish_checkpoint_set(begin_checkpoint_set(out / "checkpoints", stamp), stamp);
+  EXPECT_THAT(said([&] { Series(file, columns, 0.2); }),
+              HasSubstr("tip.csv' was not there: it begins at t = 0.2 s"));
+  EXPECT_EQ(said([&] { Series(file, columns, 0.2); }), "");
+  EXPECT_EQ(said([&] { Series(scratch / rank / "elsewhere/solid/tip.csv", columns, 0.2); }), "");
+  EXPECT_EQ(said([&] { write_three(file); }), "");
+  EXPECT_THAT(said([&] {
+                Series series(file, columns);
+                series.row(std::vector<double>{1, 1});
+                std::filesystem::remove(file);
+              }),
+              HasSubstr("tip.csv' was removed during the run"));
 }
 
 TEST(Series, a_row_cut_by_a_crash_is_dropped) {

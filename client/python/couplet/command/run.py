@@ -180,6 +180,8 @@ def finish(job, code, picture):
     """Prints the last lines: where the results are, or what failed and what to do."""
     out, took = shown(job.output), span(job.seconds)
     again = f"couplet resume {shlex.quote(out)}"
+    if not job.case.file.is_file():
+        print(f"warning: {shown(job.case.file)} was removed during the run", file=sys.stderr)
     if code == 0 or code == 4:
         look = picture_of(job) if picture else f"picture: {line_of_picture(job, out)}"
         doubt = ", but the result is useless" if code == 4 else ""
