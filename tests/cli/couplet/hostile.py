@@ -1,17 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cases and results folders from elsewhere that try to start a program or a shell. Reading starts none: check, explain, docs, compare, plot, watch, stop and export, nor does
-`resume` of such a folder. Each attack would leave a file; besides, every process that the command itself starts is recorded, and must be a program of Couplet.
-Usage: hostile.py BIN"""
+"""Cases and results folders from elsewhere, and damaged ones.
+programs  try to start a program or a shell. Reading starts none: check, explain, docs, compare, plot, watch, stop and export, nor does `resume` of such a folder. Each attack would
+          leave a file; besides, every process that the command itself starts is recorded, and must be a program of Couplet.
+links     in the place of each file and folder that a command writes lead to files and folders of the user, which stay as they are.
+names     of cases, participants, patches and probes that would become lines of scripts, entries of dictionaries, or paths.
+damage    of each file of the newest checkpoint and of the results: `resume` gives the results of a run that nobody disturbed, or says why not.
+faults    a short selection.
+Usage: hostile.py BIN [PART ...]"""
+import contextlib
+import io
 import json
 import os
 import pathlib
+import re
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "tests/support"))
+from scene import ROOT, call_here
 from checks import check, failed  # noqa: E402
 
 BIN, MESH = pathlib.Path(sys.argv[1]).resolve(), ROOT / "tests/mistakes/square.msh"
@@ -68,7 +77,7 @@ def commands(folder):
     yield from (["export", "case.yaml", "--to", "calculix", "--folder", "x"], ["study", "case.yaml", "--print"], ["resume", "out", "--bin", BIN])
 
 
-def main():
+def programs():
     with tempfile.TemporaryDirectory(prefix="couplet-hostile-") as scratch:
         scratch = pathlib.Path(scratch)
         mark, started = scratch / "EXECUTED", scratch / "started"
@@ -108,7 +117,212 @@ def main():
         built = subprocess.run([ROOT / "scripts/couplet", "docs", "--build", scratch / "site"], cwd=folder, env=environment, capture_output=True, text=True)
         check("docs, in a folder with modules", not mark.exists(), built.stderr[-300:])
         print(f"{len(all_attacks)} hostile cases and results folders, {calls + 1} commands: {len(failed)} started a program")
-        sys.exit(1 if failed or len(all_attacks) < 30 else 0)
+        check("no attack was forgotten", len(all_attacks) >= 30)
 
 
-main()
+# -- links, names, damage ----------------------------------------------------------------------------------------------
+MOVING = CASE.replace("    analysis: static\n", "").replace("end-time: 1 s, time-step: 1 s", "end-time: 4 ms, time-step: 1 ms, checkpoint: {interval: 1 ms}, error-estimate: false").replace("probes:", "output: {surfaces: [top]}\n    probes:")
+PLOT = "plot: {panels: [{field: displacement}]}\n"
+STUDY = "study: {participant: solid, axes: {n: {key: simulation.time-step, values: [1 ms, 2 ms]}}, quantities: {q: {monitor: solid/probes.csv, column: 'corner x [m]'}}}\n"
+FLOW = """simulation: {end-time: 1 s, time-step: 1 s}
+participants:
+  air: {program: fluid_solver, mesh: square.msh, dimension: 2, density: 1 kg/m^3, viscosity: 1 Pa s,
+    boundaries: {left: {type: inlet, velocity: ['0.1*t', 0]}, right: {type: outlet, pressure: 0}, top: {type: no-slip}, bottom: {type: no-slip}}}
+"""
+XML = """<precice-configuration><data:vector name="D"/><mesh name="M" dimensions="3"><use-data name="D"/></mesh><mesh name="N" dimensions="3"><use-data name="D"/></mesh>
+<participant name="One"><provide-mesh name="M"/><write-data name="D" mesh="M"/></participant><participant name="Two"><provide-mesh name="N"/><receive-mesh name="M" from="One"/><read-data name="D" mesh="N"/>
+<mapping:nearest-neighbor direction="read" from="M" to="N" constraint="consistent"/></participant><m2n:sockets acceptor="One" connector="Two"/>
+<coupling-scheme:serial-explicit><participants first="One" second="Two"/><max-time-windows value="2"/><time-window-size value="1"/><exchange data="D" mesh="M" from="One" to="Two"/></coupling-scheme:serial-explicit>
+</precice-configuration>"""
+MOST = 25  # places of links for each command
+WRITERS = (("plot", "case.yaml"), ("plot", "out"), ("plot", "out/solid/probes.csv"), ("plot", "out", "--field", "displacement"), ("plot", "out", "--field", "displacement", "--surface", "top"),
+           ("plot", "case.yaml", "--film"), ("export", "out", "--to", "vtk"), ("export", "static.yaml", "--to", "calculix"), ("export", "static.yaml", "--to", "openfoam"),
+           ("export", "flow.yaml", "--to", "openfoam"), ("import", "p.xml"), ("weather", "w.csv"), ("weather", "w.csv", "-o", "x.csv.gz"), ("new", "mine"),
+           ("run", "case.yaml", "-q", "--picture"), ("resume", "out", "--set", "simulation.end-time=6 ms"), ("study", "study.yaml"), ("mesh", "cut", "case.yaml"))
+
+
+def couplet(folder, *words):
+    """Runs a command in a folder. Those that start a job or draw many pictures do so in a process of their own."""
+    if words[0] in ("run", "resume", "study"):
+        return subprocess.run([ROOT / "scripts/couplet", *words], cwd=folder, env={**os.environ, "COUPLET_BIN": str(BIN)}, capture_output=True, text=True, timeout=120)
+    with contextlib.chdir(folder):
+        return call_here(BIN, *words)
+
+
+def tree(folder):
+    """{relative name: content} of all below a folder; the content of folders is None."""
+    return {str(f.relative_to(folder)): None if f.is_dir() and not f.is_symlink() else os.readlink(f).encode() if f.is_symlink() else f.read_bytes() for f in sorted(folder.rglob("*"))}
+
+
+class Scene:
+    """A folder of a case that was run; `fresh` copies it beside a folder of the user."""
+
+    def __init__(self, scratch):
+        self.scratch, self.sound = scratch, scratch / "sound"
+        self.sound.mkdir()
+        shutil.copy(MESH, self.sound)
+        hours = "\n".join(f"{h},500,20,3,50,100000" for h in range(8760))
+        for name, text in {"case.yaml": MOVING + PLOT, "static.yaml": CASE, "flow.yaml": FLOW, "study.yaml": MOVING + STUDY, "p.xml": XML, "w.csv": f"hour,dni,t2m,ws10m,rh,sp [Pa]\n{hours}\n"}.items():
+            (self.sound / name).write_text(text)
+        done = couplet(self.sound, "run", "case.yaml", "-q")
+        assert done.returncode == 0, done.stderr
+        self.trials = 0
+
+    def fresh(self, folder="case"):
+        self.trials += 1
+        for name in (folder, "home"):
+            shutil.rmtree(self.scratch / name, ignore_errors=True)
+        shutil.copytree(self.sound, self.scratch / folder, symlinks=True)
+        (self.scratch / "home/folder").mkdir(parents=True)
+        (self.scratch / "home/victim.txt").write_text("PRECIOUS")
+        return self.scratch / folder
+
+    def linked(self, words, name, target):
+        """What a command does to the folder of the user if the place of a file or folder that it writes is a link there. Empty if nothing."""
+        folder = self.fresh()
+        place = folder / name
+        if words[0] == "run":
+            shutil.rmtree(folder / "out")
+        if place.is_dir():  # of results that are there
+            shutil.copytree(place, self.scratch / "home/folder", dirs_exist_ok=True)
+            shutil.rmtree(place)
+        home = tree(self.scratch / "home")
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.unlink(missing_ok=True)
+        place.symlink_to(self.scratch / "home" / target)
+        done = couplet(folder, *words)
+        good = tree(self.scratch / "home") == home and "Traceback" not in done.stderr + done.stdout
+        return [] if good else [(name, target, done.stderr[-200:])]
+
+    def links(self):
+        for words in WRITERS:
+            folder = self.fresh()
+            if words[0] == "run":
+                shutil.rmtree(folder / "out")
+            before = tree(folder)
+            done = couplet(folder, *words)
+            written = {name: content for name, content in tree(folder).items() if before.get(name, b"") != content and not re.search(r"(^|/)\.\w*lock$|\.part$", name)}
+            if check(f"{' '.join(words)}: ends well", done.returncode == 0 and written, done.stderr[-300:]):
+                continue
+            bad, names = [], sorted(set(written) - {"out"})  # which may be a link (docs/formats.md)
+            for name in names[::1 + len(names) // MOST]:
+                for target in ["folder"] if written[name] is None else ["victim.txt", ".bash_login"]:
+                    bad += self.linked(words, name, target)
+            check(f"{' '.join(words)}: {len(names)} files and folders", not bad, bad)
+
+    def names(self):
+        odd = ["x\ntouch PWNED\n", "x\ttab", "\x1b[31m", "x\u009b31m", "../../up", "/tmp/up", "a/b", "..", ".", "-rf", "$(touch PWNED)", "`touch PWNED`", "a;}b{", "#include", "$x", "a b", "a,b", 'a"b', "x" * 300]
+        where = {"simulation.name": lambda n: CASE.replace("{end-time", f"{{name: {n}, end-time", 1), "participant": lambda n: CASE.replace("  solid:", f"  {n}:", 1),
+                 "probe": lambda n: CASE.replace("corner:", f"{n}:"), "patch": lambda n: CASE.replace("      top:", f"      {n}:"), "output folder": lambda n: CASE.replace("time-step: 1 s", f"time-step: 1 s, output: {{folder: {n}}}"),
+                 "picture": lambda n: CASE + PLOT.replace("panels", f"file: {n}, panels"), "mesh": lambda n: CASE.replace("square.msh", n)}
+        for key, made in where.items():
+            bad = []
+            for name in odd:
+                folder = self.fresh()
+                text = json.dumps(name)
+                (folder / "case.yaml").write_text(made(text))
+                if key == "patch":  # whose mesh has it, too
+                    (folder / "square.msh").write_text((folder / "square.msh").read_text().replace('"top"', f'"{name}"'))
+                outside = {n: c for n, c in tree(self.scratch).items() if not n.startswith("case/")}
+                commands = [("check", "case.yaml"), ("run", "case.yaml", "--slurm=--time=1", "--print"), ("run", "case.yaml", "-q"), ("plot", "case.yaml"), ("export", "case.yaml", "--to", "openfoam")]
+                done = {words: couplet(folder, *words) for words in commands}
+                script = done[commands[1]]
+                lines = script.stdout.splitlines()
+                harmless = script.returncode == 2 or all(line.startswith("#") for line in lines[:-1]) and lines[-1].startswith("exec ")
+                foam = "".join(f.read_text() for f in (folder / "openfoam").rglob("*") if f.is_file())
+                left = {n for n, c in tree(self.scratch).items() if not n.startswith("case/") and outside.get(n, b"") != c} if key != "output folder" else set()
+                controls = [words[0] for words, one in done.items() if re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f]", one.stdout + one.stderr)]
+                plain = re.fullmatch(r"[\w.-]+", name)
+                if not harmless or left or controls or list(folder.rglob("PWNED")) or foam and key == "patch" and not plain or any("Traceback" in one.stderr + one.stdout for one in done.values()) or (
+                        any(c in name for c in "\n\t\x1b\x9b") and done[commands[0]].returncode != 2):
+                    bad.append((name, harmless, left, controls, [(words[0], one.returncode, one.stderr[-200:]) for words, one in done.items()]))
+            check(f"names: {key}", not bad, bad)
+
+    def damage(self):
+        from couplet.runs.progress import Progress
+        ways = {"a bit": flipped, "another bit": lambda data: flipped(data, 0.9), "cut": lambda data: data[:len(data) // 2], "empty": lambda data: b"", "lost": None}
+        result = (self.sound / "out/solid/probes.csv").read_bytes()
+        newest = sorted((self.sound / "out/checkpoints").glob("step-*"))[-1].relative_to(self.sound)
+        files = sorted(str(f.relative_to(self.sound)) for f in (self.sound / "out").rglob("*") if f.is_file() and f.stat().st_size > 0)
+        for name in files:
+            bad = []
+            for way, change in ways.items():
+                folder = self.fresh()
+                data = (folder / name).read_bytes()
+                (folder / name).unlink()
+                if change:
+                    (folder / name).write_bytes(change(data))
+                around = [couplet(folder, *words) for words in (("report", "out"), ("watch", "out", "--once"), ("compare", "out", "out"), ("plot", "out"))]
+                Progress(folder / "out").state()
+                done = couplet(folder, "resume", "out")
+                said = done.stdout + done.stderr
+                whole = (folder / "out/solid/probes.csv").read_bytes() if (folder / "out/solid/probes.csv").exists() else b""
+                fine = done.returncode == 0 and whole == result or done.returncode in (1, 2) or name == "out/solid/probes.csv" and ("warning" in said or change)
+                if name.startswith(str(newest)) and ("bit" in way or not name.endswith("set.txt")):
+                    fine = done.returncode == 0 and whole == result and ("is damaged" in said or "is missing" in said)
+                if not fine or any("Traceback" in one.stdout + one.stderr for one in (*around, done)):
+                    bad.append((way, done.returncode, said[-300:], *(one.stderr[-200:] for one in around if "Traceback" in one.stderr)))
+            check(f"damage: {name}", not bad, bad)
+
+    def faults(self):
+        for words, name, target in ((("plot", "case.yaml"), "out/case.png", "victim.txt"), (("export", "out", "--to", "vtk"), "out/solid/vtk", "folder"),
+                                    (("export", "static.yaml", "--to", "calculix"), "calculix", "folder"), (("import", "p.xml"), "p.yaml", ".bash_login")):
+            bad = self.linked(words, name, target)
+            check(f"{' '.join(words)} does not follow a link", not bad and (self.scratch / "case" / name).is_symlink(), bad)
+        folder = self.fresh()
+        (folder / "case.yaml").write_text(CASE.replace("{end-time", '{name: "x\\ntouch PWNED\\n", end-time', 1))
+        check("a name of two lines is refused", couplet(folder, "check", "case.yaml").returncode == 2 == couplet(folder, "run", "case.yaml", "--slurm=--time=1", "--print").returncode)
+        (folder / "static.yaml").write_text(CASE.replace("top:", '"a;}b{":'))
+        (folder / "square.msh").write_text(MESH.read_text().replace('"top"', '"a;}b{"'))
+        check("a patch that would end an entry of OpenFOAM is refused", couplet(folder, "export", "static.yaml", "--to", "openfoam").returncode == 2)
+        newest = folder / "out/checkpoints/step-00000004/solid.h5"
+        newest.write_bytes(flipped(newest.read_bytes()))
+        shutil.rmtree(folder / "out/solid")
+        (folder / "case.yaml").write_text(MOVING)
+        (folder / "square.msh").write_bytes(MESH.read_bytes())
+        done = couplet(folder, "resume", "out")
+        check("the checkpoint before the damaged one is used", done.returncode == 0 and "is damaged" in done.stderr and "step-00000003 is used" in done.stderr, done.stderr[-500:])
+        check("lost tables are named", "probes.csv' was not there: it begins at t = 0.003 s" in done.stdout, done.stdout[-500:])
+        bad_requests(folder / "out")
+
+
+def flipped(data, place=0.5):
+    """The data with another bit in the middle, or at another place."""
+    data = bytearray(data)
+    data[int(len(data) * place)] ^= 1
+    return bytes(data)
+
+
+def bad_requests(folder):
+    """A request without a token that is no address is answered, and nothing is printed."""
+    from couplet.command import page
+    from couplet.runs.progress import Progress
+    server, _ = page.server(Progress(folder))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        for request, code in ((b"GET http://[::1/ HTTP/1.0", b"400"), (b"POST / HTTP/1.0", b"501"), (b"\xff\xfe", b"400"), (b"GET /?token=%ff%00&token= HTTP/1.0", b"403")):
+            with socket.create_connection(server.server_address) as s:
+                s.sendall(request + b"\r\n\r\n")
+                answer = s.recv(1000)
+                check(f"watch --web: {request!r}", code in answer[:200], answer[:60])
+        with socket.create_connection(server.server_address) as s:  # leaves at once
+            s.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")
+            s.sendall(b"GET / HTTP/1.0\r\n\r\n")
+    server.shutdown()
+    check("watch --web: nothing is printed", said.getvalue() == "", said.getvalue()[-300:])
+
+
+def main(parts):
+    if "programs" in parts:
+        programs()
+    with tempfile.TemporaryDirectory(prefix="couplet-hostile-") as scratch:
+        scene = Scene(pathlib.Path(scratch))
+        for part in parts:
+            if part != "programs":
+                getattr(scene, part)()
+        print(f"{scene.trials} trials with links, names and damaged files")
+    print(f"{len(failed)} checks failed" if failed else "all checks passed")
+    sys.exit(1 if failed else 0)
+
+
+main(sys.argv[2:] or ["programs"])
