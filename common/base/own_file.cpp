@@ -57,15 +57,24 @@ void when_started(std::function<void()> write) {
 }
 
 void write_file(const std::filesystem::path& file, std::string_view text, bool durable) {
-  const std::filesystem::path part = own_file(file).string() + "~";
+  own_file(file);
   if (holding) return when_started([=, whole = std::string(text)] { write_file(file, whole, durable); });
+  write_file(
+      file, [&] { return std::exchange(text, {}); }, durable);
+}
+
+void write_file(const std::filesystem::path& file, const std::function<std::string_view()>& next,
+                bool durable) {
+  const std::filesystem::path part = own_file(file).string() + "~";
+  if (holding) return when_started([=] { write_file(file, next, durable); });
   const int out = ::open(own_file(part).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   expect(out >= 0, file);
-  while (!text.empty()) {
-    const ssize_t n = ::write(out, text.data(), text.size());
-    expect(n > 0 || (n < 0 && errno == EINTR), file);
-    text.remove_prefix(std::size_t(std::max<ssize_t>(n, 0)));
-  }
+  for (std::string_view text = next(); !text.empty(); text = next())
+    while (!text.empty()) {
+      const ssize_t n = ::write(out, text.data(), text.size());
+      expect(n > 0 || (n < 0 && errno == EINTR), file);
+      text.remove_prefix(std::size_t(std::max<ssize_t>(n, 0)));
+    }
   if (durable) flush(out, file);
   expect(::close(out) == 0, file);
   expect(std::rename(part.c_str(), file.c_str()) == 0, file);

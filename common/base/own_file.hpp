@@ -15,6 +15,9 @@ const std::filesystem::path& own_file(const std::filesystem::path& file);
 /// partial. Throws Error if any write, flush, close or rename fails. `durable` waits until it is on disk.
 /// Written later if files are held.
 void write_file(const std::filesystem::path& file, std::string_view text, bool durable = false);
+/// As above, for a long text in parts until `next` returns an empty one. It must own what it returns.
+void write_file(const std::filesystem::path& file, const std::function<std::string_view()>& next,
+                bool durable = false);
 
 /// Makes write_file() and when_started() wait for release_files(), so that a start that fails leaves the
 /// results of an earlier run as they are.

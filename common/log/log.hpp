@@ -9,9 +9,8 @@ namespace couplet::log {
 
 enum class Verbosity { quiet, normal, verbose };
 
-/// Sets up the log with prefix "[fluid 0]". Below verbose only rank 0 prints, but every rank prints errors.
-/// A warning therefore speaks for all ranks. Lines go to stdout, errors to stderr. Rank 0 also writes to `file`
-/// unless it is empty.
+/// Sets up the log with prefix "[fluid 0]". Below verbose only rank 0 prints, but every rank prints errors: a
+/// warning speaks for all. Lines go to stdout, errors to stderr. Rank 0 also writes to `file` unless it is "".
 void setup(const std::string& participant, int rank, Verbosity verbosity, const std::string& file = "");
 
 using spdlog::debug;

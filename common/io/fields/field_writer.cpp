@@ -151,16 +151,16 @@ void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vecto
     const std::string group = "steps/" + step;
     const double time = file.number(group, "time");
     if (time > last) break;
-    xdmf::Entry one{group, time, {}};
+    std::vector<xdmf::Field> fields;
     for (const std::string place : {"cells", "points"})
       for (const std::string& field : file.members(group + "/" + place, most_fields)) {
         const std::string table = group + "/" + place + "/" + field;
         const double components = file.number(table, "components");
         if (!(components >= 1 && components <= 9))
           file.refuse("'" + table + "' has an invalid number of components");
-        one.fields.push_back({field, file.text(table, "unit"), place == "cells", int(components)});
+        fields.push_back({field, file.text(table, "unit"), place == "cells", int(components)});
       }
-    index.entries.push_back(std::move(one));
+    index.add(group, time, std::move(fields));
   }
 }
 
@@ -283,30 +283,30 @@ void FieldWriter::write(double time, std::span<const Vec3> points, const std::ve
   std::vector<Vec3> places;
   if (part_ && s.moving)
     for (const Index v : part_->points) places.push_back(points[v]);
-  xdmf::Entry entry{step_name(s.number), time, {}};
+  const std::string step = step_name(s.number);
+  std::vector<xdmf::Field> listed;
   {
     hdf5::Handle id = hdf5::open_file_to_write(s.mesh.comm, s.file());
-    hdf5::Handle group = hdf5::make_group(id, entry.group);
+    hdf5::Handle group = hdf5::make_group(id, step);
     hdf5::write_attribute(group, "time", time);
-    if (s.moving) s.write_points(id, entry.group + "/coordinates", part_ ? places : points);
+    if (s.moving) s.write_points(id, step + "/coordinates", part_ ? places : points);
     std::vector<double> values;
     for (const OutputField& field : fields) {
       const bool on_cells = field.place == OutputField::Place::cells;
-      const std::string path =
-          fmt::format("{}/{}/{}", entry.group, on_cells ? "cells" : "points", field.name);
+      const std::string path = fmt::format("{}/{}/{}", step, on_cells ? "cells" : "points", field.name);
       s.write_field(id, path,
                     part_ ? picked(field, on_cells ? part_->entries : part_->points, values) : field);
       const hdf5::Handle table = hdf5::open_written(id, path);
       const int components = field.components == 2 ? 3 : field.components;
       hdf5::write_attribute(table, "unit", field.unit);
       hdf5::write_attribute(table, "components", double(components));
-      entry.fields.push_back({field.name, field.unit, on_cells, components});
+      listed.push_back({field.name, field.unit, on_cells, components});
     }
     group.reset();
     hdf5::close_file(s.mesh.comm, id, s.file());
   }
   ++s.number;
-  s.index.entries.push_back(std::move(entry));
+  s.index.add(step, time, std::move(listed));
   if (parallel::comm_rank(s.mesh.comm) == 0) xdmf::write(s.folder / (s.name + ".xdmf"), s.index);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
@@ -79,7 +80,7 @@ std::string grid(const Series& s, const Entry& entry) {
       "3\">{}:/{}/coordinates</DataItem>\n"
       "        </Geometry>\n",
       s.n_points, escaped(s.file), s.moving ? entry.group : "mesh");
-  for (const Field& field : entry.fields) text += attribute(s, entry, field);
+  for (const Field& field : *entry.fields) text += attribute(s, entry, field);
   return text + "      </Grid>\n";
 }
 
@@ -89,12 +90,25 @@ std::int64_t cell_code(mesh::CellType type) { return kinds[static_cast<std::size
 
 std::uint64_t points_of(std::int64_t code) { return std::ranges::find(kinds, code, &Kind::code)->points; }
 
+void Series::add(std::string group, double time, std::vector<Field> fields) {
+  auto shared = !entries.empty() && *entries.back().fields == fields
+                    ? entries.back().fields
+                    : std::make_shared<const std::vector<Field>>(std::move(fields));
+  entries.push_back({std::move(group), time, std::move(shared)});
+}
+
+// The text of all outputs would take more memory than the run itself.
 void write(const std::filesystem::path& index, const Series& series) {
-  std::string text =
-      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
-      "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  for (const Entry& entry : series.entries) text += grid(series, entry);
-  base::write_file(index, text + "    </Grid>\n  </Domain>\n</Xdmf>\n");
+  std::size_t parts = series.entries.size() + 2, next = 0;
+  base::write_file(index, [=, text = std::string()]() mutable -> std::string_view {
+    if (next == parts) return {};
+    text = next == 0           ? "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
+                                 "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n"
+           : next + 1 == parts ? "    </Grid>\n  </Domain>\n</Xdmf>\n"
+                               : grid(series, series.entries[next - 1]);
+    ++next;
+    return text;
+  });
 }
 
 }  // namespace couplet::io::xdmf

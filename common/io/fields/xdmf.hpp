@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,13 @@ struct Field {
   std::string name, unit;
   bool on_cells = true;
   int components = 1;
+  bool operator==(const Field&) const = default;
 };
 
 struct Entry {
   std::string group;  ///< where it is in the HDF5 file
   double time = 0;    ///< [s]
-  std::vector<Field> fields;
+  std::shared_ptr<const std::vector<Field>> fields;
 };
 
 struct Series {
@@ -36,6 +38,9 @@ struct Series {
   std::uint64_t topology_size = 0, n_cells = 0, n_points = 0;
   bool moving = false;
   std::vector<Entry> entries;
+
+  /// Adds an output. Its fields are kept once if they are those of the last one.
+  void add(std::string group, double time, std::vector<Field> fields);
 };
 
 /// Replaces the index by a rename, so that a viewer never reads half of it.
