@@ -144,6 +144,7 @@ def of_case(file, options):
     case.trusted = options.allow_commands
     out = options.out or output_of(case, ())
     expect(not options.film or "plot" in case.data, f"--film: {case.file} has no section plot with a map")
+    matplotlib.rcParams["text.parse_math"] = "plot" in case.data  # whose titles may hold formulas
     if options.film:
         from couplet.plots.film import film
         folder, file = film(case, out, options.low, options.high)
@@ -183,6 +184,7 @@ def declare(parser):
 
 
 def run(options):
+    matplotlib.rcParams["text.parse_math"] = False  # names are no formulas
     expect(options.field or not options.surface, "--surface: name the field that is drawn on it with --field NAME")
     if options.field or options.mode is not None:
         from couplet import fields

@@ -3,6 +3,7 @@
 most other programs read. Coordinates are those of the moved mesh."""
 import base64
 import pathlib
+from xml.sax.saxutils import quoteattr
 
 import h5py
 import numpy as np
@@ -19,7 +20,7 @@ def array(name, values):
     data = values.tobytes()
     text = base64.b64encode(np.uint64(len(data)).tobytes() + data).decode()
     components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim > 1 else ""
-    return f'<DataArray type="{NAMES[values.dtype]}" Name="{name}"{components} format="binary">{text}</DataArray>\n'
+    return f'<DataArray type="{NAMES[values.dtype]}" Name={quoteattr(name)}{components} format="binary">{text}</DataArray>\n'
 
 
 def padded(values):
@@ -52,6 +53,6 @@ def write(folder):
         for i, time in enumerate(series.times):
             name = f"{file.stem}-{i:06d}.vtu"
             files.write(folder, place / name, grid(series, i))
-            entries += f'<DataSet timestep="{time:.12g}" part="0" file="{name}"/>\n'
+            entries += f'<DataSet timestep="{time:.12g}" part="0" file={quoteattr(name)}/>\n'
         lists.append(files.write(folder, place / f"{file.stem}.pvd", f'<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">\n<Collection>\n{entries}</Collection>\n</VTKFile>\n'))
     return lists
