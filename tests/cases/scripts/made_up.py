@@ -11,8 +11,8 @@ from couplet.study import axes, quantities  # noqa: E402
 class MadeUp:
     """value(settings), None where the run fails; seconds(settings); own(settings): the run's estimate. Settings: n (text) and method."""
 
-    def __init__(self, value, seconds, given, names=("good", "dear"), sizes=(4, 6, 8), multiple=2, own=lambda settings: 0.0):
-        self.own = own
+    def __init__(self, value, seconds, given, names=("good", "dear"), sizes=(4, 6, 8), multiple=2, own=lambda settings: 0.0, ranges=()):
+        self.own, self.ranges = own, dict(ranges)
         self.value, self.cost, self.clock, self.made, self.section = value, seconds, "cpu", [], {}
         case = types.SimpleNamespace(file=pathlib.Path("case.yaml"), absolute=lambda key, participant: key)
         self.case, self.participant = case, "solid"
@@ -25,6 +25,6 @@ class MadeUp:
         rows = []
         for p in points:
             value = self.value(p.changes)
-            rows.append(types.SimpleNamespace(point=p, good=value is not None, reason="" if value is not None else "it failed", errors={}, own=self.own(p.changes),
+            rows.append(types.SimpleNamespace(point=p, good=value is not None, reason="" if value is not None else "it failed", errors={}, ranges=self.ranges, own=self.own(p.changes),
                                               record=types.SimpleNamespace(cpu=self.cost(p.changes)), values={"u": value}, series=""))
         return rows

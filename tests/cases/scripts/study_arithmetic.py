@@ -54,6 +54,15 @@ for given, part in (({"field": "u", "exact": ["sin(x)", "x.tofile('pwned')"]}, "
 axis = axes.axis_of("mesh", {"sizes": [8, 4], "multiple": 4, "set": {"k": "<n>"}}, "file")
 assert list(axis.sizes.values()) == [4, 8] and axis.round(9, up=True) == 12 and axis.round(8 + 1e-12, up=True) == 8
 
+# -- the range of temperatures, of the table or else of the last field; none for other units
+heated = {"time [s]": np.array([0.0, 1.0]), "a temperature [K]": np.array([293.0, 303.0]), "b temperature [K]": np.array([293.0, 333.0]), "a x [m]": np.array([0.0, 9.0])}
+steady = {**heated, "a temperature [K]": np.array([303.0]), "b temperature [K]": np.array([303.0])}
+field = types.SimpleNamespace(times=[0.0], field=lambda i, name: np.array([300.0, 350.0]))
+for given, columns, wanted in (({"probe": "a temperature [K]"}, heated, 40), ({"probe": "a temperature [K]"}, steady, 50), ({"probe": "a x [m]"}, heated, 0),
+                               ({"probe": "a temperature [K]", "is": "error"}, heated, 0)):
+    results = types.SimpleNamespace(table=lambda who, file, columns=columns: columns, fields=lambda who: field)
+    assert quantities.Quantity("u", given, pathlib.Path("."), "solid").range(results) == wanted, (given, wanted)
+
 # -- one number of a series
 t = np.linspace(0, 10, 2001)
 y = 2 * np.cos(2 * np.pi * (t - 0.3) / 1.7) + 1

@@ -115,6 +115,11 @@ for given, value in (({}, lambda s: 2.0 * (1 + wrong(s))), ({"reference": 2.0}, 
         other, = said["others"]
         assert other["series"] == "dear" and other["sizes"] and other["reason"], other
 
+# -- a temperature: a per cent is one of its range, not of the kelvin that it has above absolute zero
+said = asked(MadeUp(lambda s: 300 + 10 * (1 + wrong(s)), seconds, {"probe": "x temperature [K]"}, ranges={"u": 10.0}), 0.004)
+true = wrong({"n": said["size"], "method": said["series"]})
+assert said["met"] and 0.3 <= true / 0.004 <= 1.1, (said, true)
+
 # -- a run that is far better than asked is no answer where a smaller size would do, nor is a smaller one that leaves too much
 for sizes, target, least, most in (((5, 40, 80), 3e-3, 17, 30), ((40, 80, 160), 5e-2, 4, 9)):
     said = asked(MadeUp(lambda s: 1 + float(s["n"])**-2, lambda s: 0.1 + 2e-5 * float(s["n"])**3, {}, names=("good",), sizes=sizes, multiple=1), target)

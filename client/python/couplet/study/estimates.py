@@ -53,7 +53,7 @@ def uncertainty(rows, quantity):
     """Relative uncertainty of the reference if it is the study's own best value or has a stated accuracy; else 0."""
     if quantity.is_error or isinstance(quantity.reference, (int, float)):
         return float(quantity.given.get("good-to", 0))
-    limits = [(max(r.point.size for r in some), limit.gci / abs(limit.value or 1)) for some, limit in
+    limits = [(max(r.point.size for r in some), limit.gci / (quantity.size(limit.value, some[-1]) or 1)) for some, limit in
               ((table.series_of(rows)[s], limit) for s, limit in table.limits_of(rows, quantity).items()) if limit]
     if quantity.reference == "finest" or not limits:
         good = [r for r in rows if r.good]
@@ -72,7 +72,6 @@ def of(rows, quantity, clear=CLEAR):
         return []
     runs = table.series_of(rows)
     series = {name: ([r.point.size for r in some], [r.values[quantity.name] for r in some]) for name, some in runs.items()}
-    absolute = quantity.is_error or quantity.given.get("absolute")
     least, found = clear * uncertainty(rows, quantity) if clear else 0, []
     for (name, i), guess in guesses(series, quantity.given.get("orders")).items():
         row = runs[name][i]
@@ -80,7 +79,7 @@ def of(rows, quantity, clear=CLEAR):
         if not true > least or not guess > 0:
             continue
         size = quantity.reference if isinstance(quantity.reference, (int, float)) else series[name][1][-1]
-        found.append((guess if absolute else guess / abs(size or 1), true, row.point.name))
+        found.append((guess if quantity.is_error else guess / (quantity.size(size, row) or 1), true, row.point.name))
     return found
 
 

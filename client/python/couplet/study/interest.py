@@ -98,11 +98,6 @@ def seconds(text):
         return None
 
 
-def unit_of(quantity):
-    head = str(quantity.given.get("probe", quantity.given.get("column", "")))
-    return quantity.given.get("unit") or (head[head.rindex("[") + 1:-1] if head.endswith("]") else "1")
-
-
 def order_of(own, coarser, coarsest, source):
     """Order of convergence of three values, within limits."""
     first, second = own - coarser, coarser - coarsest if coarsest is not None else 0.0
@@ -170,7 +165,7 @@ def run(case, out, arguments, say):
         of_runs = {name: found[quantity.name] for name, found in values.items()}
         expect(all(math.isfinite(v) for name, v in of_runs.items() if not name.endswith(COARSEST)), f"{quantity.name}: not a number in a run that ended well.")
         parts, orders = parts_of(of_runs, sources)
-        own, error, unit = of_runs[AS_IT_IS], sum(parts.values()), unit_of(quantity)
+        own, error, unit = of_runs[AS_IT_IS], sum(parts.values()), quantity.unit
         written[quantity.name] = {"value": own, "unit": unit, "error": error, "parts": parts, "orders": orders, "method": f"differences of {len(tasks)} runs"}
         share = f" ({100 * error / abs(own):.2g} %)" if own and not quantity.is_error else ""
         say(f"{quantity.name}: {own:.6g} {unit}, estimated error {error:.2g} {unit}{share} by differences of {len(tasks)} runs: "

@@ -10,7 +10,8 @@ quantities:
   profile: {file: bed.csv, column: T, over: z, against: reference.csv}  # relative L2 norm against a table
 at: last (default), first, maximum, minimum, mean, amplitude, period, or a time; reference: a number, or finest, richardson;
 good-to: 5.0e-4, what a number given as reference is itself uncertain by, over its size (for the estimate of errors);
-orders: {upwind: 1} where a series is of another order than 2 (for the estimate of errors); absolute: true where the error is not to be divided by the reference"""
+orders: {upwind: 1} where a series is of another order than 2 (for the estimate of errors); absolute: true where the error is not to be divided by the reference
+The error of a temperature (unit K or degC) is relative to the range of temperatures of the run, not to kelvin."""
 import dataclasses
 import functools
 import importlib.util
@@ -99,6 +100,30 @@ class Quantity:
     @property
     def reference(self):
         return self.given.get("reference")
+
+    @property
+    def unit(self):
+        head = str(self.given.get("probe", self.given.get("column", "")))
+        return self.given.get("unit") or (head[head.rindex("[") + 1:-1] if head.endswith("]") else "1")
+
+    def size(self, value, row):
+        """What an error of the value is relative to: the row's range of temperatures if it is one, else the value."""
+        return 1 if self.given.get("absolute") else row.ranges.get(self.name) or abs(value)
+
+    def range(self, results):
+        """Range of the run's temperatures: of all in the same table, or else of the last field. 0 for other quantities."""
+        if self.is_error or self.unit not in ("K", "degC"):
+            return 0.0
+        table = results.table(self.participant, "probes.csv" if "probe" in self.given else self.given["file"]) if "python" not in self.given else {}
+        found = [v for head, v in table.items() if head.endswith(f"[{self.unit}]")]
+        range_seen = float(np.ptp(np.concatenate(found))) if found else 0.0
+        if range_seen > 0 or self.unit != "K":
+            return range_seen
+        try:  # one probe at one time: the field
+            series = results.fields(self.participant)
+            return float(np.ptp(series.field(len(series.times) - 1, "temperature")))
+        except (LookupError, OSError):
+            return 0.0
 
     def value(self, results):
         g, who = self.given, self.given.get("participant", self.participant)

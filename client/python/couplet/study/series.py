@@ -112,7 +112,7 @@ class Series:
         value, reference = row.values[self.quantity.name], self.quantity.reference
         if self.quantity.is_error:
             return value
-        return (value - reference) / (1 if self.quantity.given.get("absolute") or reference == 0 else abs(reference))
+        return (value - reference) / (self.quantity.size(reference, row) or 1)
 
     def fit(self):
         if len(self.rows) not in self.fitted:
@@ -126,9 +126,9 @@ class Series:
         found, reason = fits.of_values(self.sizes(), self.values(), self.formal)
         if found is None or self.quantity.given.get("absolute"):
             return found, reason
-        if abs(found.limit) <= found.deviation:
+        scale = self.quantity.size(found.limit, self.rows[-1])
+        if scale <= found.deviation:
             return None, "its limit is 0 or near it: relative errors say nothing (`absolute: true` asks for the difference itself)"
-        scale = abs(found.limit)
         return dataclasses.replace(found, limit=found.limit / scale, terms=[(c / scale, p) for c, p in found.terms],
                                    deviation=found.deviation / scale, scale=scale,
                                    seen=[(n, e / scale) for n, e in found.seen]), ""
@@ -169,7 +169,7 @@ class Series:
     def agree(self, row, finer):
         """Returns true if the difference of a run from a finer one confirms its extrapolated error."""
         name = self.quantity.name
-        apart = abs(row.values[name] - finer.values[name]) / (1 if self.quantity.given.get("absolute") else abs(finer.values[name]) or 1)
+        apart = abs(row.values[name] - finer.values[name]) / (self.quantity.size(finer.values[name], finer) or 1)
         return apart > 0 and 1 / OWN_OFF <= self.left(row)[0] / apart <= OWN_OFF
 
     def scatter(self):

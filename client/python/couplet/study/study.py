@@ -122,7 +122,7 @@ class Study:
             for series, limit in table.limits_of(rows, quantity).items():
                 finest = table.series_of(rows)[series][-1]
                 value = finest.values[name]
-                lines.append((series, value, *((limit.value, f"{limit.order:.2f}", f"{100 * limit.gci / abs(value):.2g} %") if limit and value else
+                lines.append((series, value, *((limit.value, f"{limit.order:.2f}", f"{100 * limit.gci / quantity.size(value, finest):.2g} %") if limit and quantity.size(value, finest) else
                                                ("none", "none", "no limit approached"))))
             report.text("Richardson's extrapolation of the three finest and the grid convergence index of the finest:")
             report.table(("series", "finest", "extrapolated", "observed order", "GCI"), lines)

@@ -19,6 +19,7 @@ class Row:
     def __init__(self, point, record, series):
         self.point, self.record, self.series = point, record, series
         self.own = 0.0  # error that the run itself estimates, relative; 0 if unknown
+        self.ranges = {}  # of the temperatures of a run, by the quantity
         self.values, self.errors, self.reason = {}, {}, re.sub(r" \(see \S+\)$", "", record.reason)  # a log's location is meaningless elsewhere
 
     @property
@@ -41,6 +42,7 @@ def value_row(row, quantities, results):
     for quantity in quantities if row.good else ():
         try:
             row.values[quantity.name] = quantity.value(results)
+            row.ranges[quantity.name] = quantity.range(results)
             if not math.isfinite(row.values[quantity.name]):
                 row.reason = f"{quantity.name} is {row.values[quantity.name]}"
         except (Exception, SystemExit) as error:  # e.g. a missing monitor, or a series that does not oscillate
@@ -77,12 +79,13 @@ def set_errors(rows, quantities, others=()):
         reference, word = quantity.reference, "the reference"
         good = [r for r in rows if r.good]
         if reference is None or reference == "richardson":
-            limits = [(max(r.point.size for r in some), limit) for some, limit in
+            limits = [(some[-1], limit) for some, limit in
                       ((series_of(rows)[s], limit) for s, limit in limits_of(rows, quantity).items()) if limit]
             reference, word = None, "none: the values do not approach a limit"
             if limits:  # of the series with the largest sizes the one with the smallest uncertainty, because coarse ones look too certain
-                best = min(limits, key=lambda pair: (-pair[0], pair[1].gci))[1]
-                reference, word = best.value, f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by {100 * best.gci / abs(best.value or 1):.2g} %)"
+                finest, best = min(limits, key=lambda pair: (-pair[0].point.size, pair[1].gci))
+                reference = best.value
+                word = f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by {100 * best.gci / (quantity.size(best.value, finest) or 1):.2g} %)"
         elif reference == "finest":
             finest = max(good, key=lambda r: (r.point.size, r.record.cpu)) if good else None
             reference, word = (finest.values[name], f"the finest run, {finest.point.name}") if finest else (None, "no run")
@@ -90,8 +93,7 @@ def set_errors(rows, quantities, others=()):
             word = f"{reference:g}"
         against[name] = word
         for row in (*good, *(r for r in others if r.good)) if reference is not None else ():
-            gap = abs(row.values[name] - reference)
-            row.errors[name] = gap if quantity.given.get("absolute") or reference == 0 else gap / abs(reference)
+            row.errors[name] = abs(row.values[name] - reference) / (quantity.size(reference, row) or 1)
     return against
 
 
