@@ -23,6 +23,7 @@ class UnusedInput final : public TankDiagnostic {
   }
   void conclude(diagnostics::Report& report) override {
     if (has_schedule()) look_at_rows(report);
+    look_at_plant(report);
     look_at_capsules(report);
     if (!view_.report) return;
     const std::vector<std::string> doubts = view_.report->doubts();
@@ -59,11 +60,31 @@ class UnusedInput final : public TankDiagnostic {
       if (row.stop_above) limits += fmt::format(" above {:g} degC", celsius(*row.stop_above));
       if (row.stop_below)
         limits += fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*row.stop_below));
-      tell(report, "flow-schedule", std::to_string(i),
-           fmt::format("flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond "
-                       "that whenever it started",
-                       i, limits, row.mass_flow > 0 ? "top" : "bottom"));
+      tell(
+          report, "flow-schedule", std::to_string(i),
+          fmt::format(
+              "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond "
+              "that whenever it started. Are the sign of the flow (upward, out of the top, is above 0) and the "
+              "bed's initial-temperature correct?",
+              i, limits, row.mass_flow > 0 ? "top" : "bottom"));
     }
+  }
+
+  /// Reports a plant that neither charged nor discharged the tank.
+  void look_at_plant(diagnostics::Report& report) const {
+    const FlowParameters& flow = view_.parameters().flow;
+    if (flow.type != FlowParameters::Type::plant || seen_->flow > 0) return;
+    const PlantParameters& p = flow.plant;
+    tell(
+        report, "flow-schedule", "plant",
+        fmt::format(
+            "the plant moved no heat: up to {:g} h the sun brought {:.3g} kWh/m^2. The bottom of the bed is at {:.1f} "
+            "degC (charging starts at {:.1f} degC or below, with more sun than the block uses), its top at {:.1f} degC "
+            "(discharging starts at {:.1f} degC or above). Check 'ambient', the hours of the run and "
+            "'bed.initial-temperature'",
+            view_.time() / seconds_an_hour, view_.weather.irradiation(0, view_.time()) / 3.6e6,
+            celsius(bed().bottom()), celsius(p.cold + p.restart), celsius(bed().top()),
+            celsius(p.hot - p.restart)));
   }
 
   /// Reports a last row with a flow that holds far longer than the whole schedule before it.

@@ -163,9 +163,10 @@ std::string forgotten_unit_of_bed(const TankParameters& parameters);
 /// Checks the temperatures of the flow likewise.
 std::string forgotten_unit_of_flow(const TankParameters& parameters);
 
-/// Sentences for the log about a tank in its initial state: missing air and sun, a restart beyond the
-/// cut-off, a flow that never starts.
-std::vector<std::string> questions(const TankParameters& parameters, const TankModel& model);
+/// Warning about air and sun that nobody gave; empty if nothing needs them.
+std::string missing_weather(const TankParameters& parameters);
+/// Warning about a plant's restart beyond its cut-off, or nothing.
+std::string restart_beyond_cut_off(const FlowParameters& flow);
 
 /// Prices without a matching quantity, as sentences.
 std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, const Inventory& inventory,

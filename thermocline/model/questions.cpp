@@ -19,37 +19,6 @@ std::string forgotten_unit(const std::string& what, double kelvin_given, const F
       what, kelvin_given, celsius(kelvin_given), fluid.name, celsius(fluid.lowest), kelvin_given);
 }
 
-void ask_about_plant(const PlantParameters& p, const TankModel& model, std::vector<std::string>& all) {
-  if (p.restart > p.cut_off)
-    all.push_back(
-        fmt::format("flow.restart ({:g} K) is above flow.cut-off ({:g} K): what may start at a "
-                    "temperature is stopped at once, so the cut-off alone is effective.",
-                    p.restart, p.cut_off));
-  const double top = model.bed().top(), bottom = model.bed().bottom();
-  if (bottom > p.cold + p.restart && top < p.hot - p.restart)
-    all.push_back(
-        fmt::format("the tank starts between charged and discharged and can do neither: its bottom is at "
-                    "{:.1f} degC, but charging starts at {:.1f} degC or below; its top is at {:.1f} "
-                    "degC, but discharging starts at {:.1f} degC or above. It idles until its losses "
-                    "have cooled it; set a bed.initial-temperature (or a profile) that is cold at the "
-                    "bottom or hot at the top.",
-                    celsius(bottom), celsius(p.cold + p.restart), celsius(top), celsius(p.hot - p.restart)));
-}
-
-void ask_about_schedule(const FlowParameters& flow, const TankModel& model, std::vector<std::string>& all) {
-  const ScheduleRow& row = flow.rows.front();
-  if (row.mass_flow == 0) return;
-  const double outlet = row.mass_flow > 0 ? model.bed().top() : model.bed().bottom();
-  const bool above = row.stop_above && outlet > *row.stop_above,
-             below = row.stop_below && outlet < *row.stop_below;
-  if (above || below)
-    all.push_back(fmt::format(
-        "flow.rows[0] stops before it starts: the outlet is at {:.1f} degC, but the row stops {} {:.1f} "
-        "degC. Are the sign of the flow (upward, out of the top, is above 0) and the bed's "
-        "initial-temperature correct?",
-        celsius(outlet), above ? "above" : "below", celsius(above ? *row.stop_above : *row.stop_below)));
-}
-
 }  // namespace
 
 std::string forgotten_unit_of_bed(const TankParameters& p) {
@@ -89,19 +58,22 @@ std::string forgotten_unit_of_flow(const TankParameters& p) {
   return "";
 }
 
-std::vector<std::string> questions(const TankParameters& p, const TankModel& model) {
-  std::vector<std::string> all;
+std::string missing_weather(const TankParameters& p) {
   const bool plant = p.flow.type == FlowParameters::Type::plant;
   const bool deep = p.ground && !p.ground->deep_temperature;
-  if (!p.ambient_given && (p.insulation || p.ullage || deep || plant))
-    all.push_back(
-        fmt::format("the section 'ambient' is missing: {} see still air of 20 degC{}.",
-                    plant ? "plant and tank" : "the surroundings of the tank",
-                    plant ? " and no sun, day and night; the field collects nothing" : " and no sun"));
-  if (plant) ask_about_plant(p.flow.plant, model, all);
-  if (p.flow.type == FlowParameters::Type::schedule && p.flow.rows.front().at == 0)
-    ask_about_schedule(p.flow, model, all);
-  return all;
+  if (p.ambient_given || !(p.insulation || p.ullage || deep || plant)) return "";
+  return fmt::format("the section 'ambient' is missing: {} see still air of 20 degC{}.",
+                     plant ? "plant and tank" : "the surroundings of the tank",
+                     plant ? " and no sun, day and night; the field collects nothing" : " and no sun");
+}
+
+std::string restart_beyond_cut_off(const FlowParameters& flow) {
+  const PlantParameters& p = flow.plant;
+  if (flow.type != FlowParameters::Type::plant || p.restart <= p.cut_off) return "";
+  return fmt::format(
+      "flow.restart ({:g} K) is above flow.cut-off ({:g} K): what may start at a temperature is stopped at "
+      "once, so the cut-off alone is effective.",
+      p.restart, p.cut_off);
 }
 
 std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const Inventory& i, bool pump) {

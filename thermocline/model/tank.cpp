@@ -27,8 +27,7 @@ Inventory inventory_of(const TankSetup& setup) {
   for (const auto& layer : p.bed.layers) {
     const Filler& filler = layer.filler ? *layer.filler : setup.filler;
     all.fluid += area * layer.height * layer.porosity * setup.fluid.density;
-    (layer.melting ? all.capsules : all.filler) +=
-        area * layer.height * (1 - layer.porosity) * filler.density;
+    (layer.melting ? all.capsules : all.filler) += area * layer.height * (1 - layer.porosity) * filler.density;
   }
   all.foundation = area;
   if (!setup.rings) return all;
@@ -76,14 +75,14 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
                 fmt::format("participants.{}.insulation.solar-absorptance", context.name));
   const auto report = [&](const char* id, const std::vector<std::string>& sentences) {
     for (const std::string& sentence : sentences)
-      diagnostics::finding(rank, {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
+      if (!sentence.empty())
+        diagnostics::finding(rank, {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
   };
   report("weather-data", weather_->doubts());
-  if (files_) {
+  report("weather-data", {missing_weather(p)});
+  report("flow-schedule", {restart_beyond_cut_off(flow)});
+  if (files_)
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
-    if (std::isnan(context.restart_time))
-      for (const std::string& sentence : questions(p, accepted_)) log::warn("{}: {}", context.name, sentence);
-  }
   report("calendar", Calendar(flow.plant.calendar, flow.plant.start).doubts());
   if (!p.report) return;
   const Inventory inventory = inventory_of(setup);

@@ -102,8 +102,8 @@ std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
 /// tables of average days. Keeps the energy of every month.
 WeatherHours with_mean_days(WeatherHours record);
 
-/// Reasons to doubt the sun of a record with a site, as sentences: irradiance with the sun below the horizon,
-/// or a clock far from that of the longitude.
-std::vector<std::string> doubts_about_sun(const WeatherHours& record);
+/// Reasons to doubt the sun of a record, as sentences: irradiance with the sun below the horizon, or a clock far
+/// from that of the longitude. Without a site: irradiance around midnight of the simulation's clock.
+std::vector<std::string> doubts_about_sun(const WeatherHours& record, int shift_hours = 0);
 
 }  // namespace couplet::thermocline

@@ -171,4 +171,21 @@ INSTANTIATE_TEST_SUITE_P(
                     Season{"G_L2", "upington_surrogate", "12-01", "02-28", area_g, 0.42, 1089}),
     [](const auto& info) { return std::string(info.param.name); });
 
+TEST(Weather, sun_at_night_is_doubted_without_a_site) {
+  const auto doubts = [](int first, int hours, int shift = 0) {
+    WeatherHours record;
+    for (int d = 0; d < 10; ++d)
+      for (int h = 0; h < 24; ++h) record.dni.push_back((h - first + 24) % 24 < hours ? 800 : 0);
+    return doubts_about_sun(record, shift).size();
+  };
+  EXPECT_EQ(doubts(6, 12), 0u);
+  EXPECT_EQ(doubts(4, 17), 0u) << "a summer far in the north";
+  EXPECT_EQ(doubts(11, 10), 0u) << "the clock of Greenwich in the west of Brazil";
+  EXPECT_EQ(doubts(0, 24), 1u);
+  EXPECT_EQ(doubts(2, 20), 1u);
+  EXPECT_EQ(doubts(21, 12), 1u) << "the clock of Greenwich in Japan";
+  EXPECT_EQ(doubts(21, 12, 9), 0u) << "with its shift";
+  EXPECT_EQ(doubts(0, 0), 0u);
+}
+
 }  // namespace couplet::thermocline::weather_test
