@@ -23,6 +23,19 @@ const std::array cards{
     Card{"range of the film correlation", "`bed.closures.film-coefficient`",
          [](const P& p) { return when(p, p.tank.bed.closures.film_coefficient > 0, "film-coefficient"); }, "",
          "where Re is outside: width of the front that the film makes, over the bed"},
+    Card{"conduction through the grains", "`bed.closures.conduction: stagnant`, the default",
+         [](const P& p) {
+           return when(p, p.tank.bed.closures.conduction == Conduction::stagnant, "bed.closures.conduction");
+         },
+         "", "width that it adds to a front, over the bed"},
+    Card{"radiation between the grains", "`filler.emissivity` above 0, the default, in a gas",
+         [](const P& p) {
+           const bool conducts = p.tank.bed.closures.conduction == Conduction::stagnant;
+           return when(p,
+                       conducts && make_fluid(p.tank.fluid).is_transparent() && p.tank.filler.emissivity > 0,
+                       "filler.emissivity");
+         },
+         "", "width that it adds to a front, over the bed"},
     Card{"mixing of inverted fluid", "`bed.mix-inversions`",
          [](const P& p) { return when(p, p.tank.bed.mix_inversions, "bed.mix-inversions"); }, "",
          "largest inversion over the run's range of temperatures"},

@@ -88,6 +88,8 @@ class Property final {
     use_->note(to);
     return table_[0].integral(from, to);
   }
+  /// The table, or nullptr of a constant. Reading it does not count as use.
+  const Table* table() const { return is_constant() ? nullptr : table_.data(); }
   /// Integral from an arbitrary fixed temperature; only differences are meaningful.
   double antiderivative(double temperature) const {
     return is_constant() ? constant_ * temperature : table_[0].antiderivative(temperature);

@@ -13,14 +13,12 @@ namespace couplet::thermocline {
 namespace {
 
 void declare_closures(config::Section& s, ClosureParameters& p) {
-  s.choice("conduction", p.conduction,
-           {{"wakao", Conduction::wakao},
-            {"molecular", Conduction::molecular},
-            {"stagnant", Conduction::stagnant},
-            {"constant", Conduction::constant}})
+  s.choice(
+       "conduction", p.conduction,
+       {{"stagnant", Conduction::stagnant}, {"wakao", Conduction::wakao}, {"constant", Conduction::constant}})
       .doc(
-          "axial conduction: 0.7 eps k + 0.5 Re Pr k; eps k; the stagnant bed of Zehner and Schluender "
-          "with dispersion; or given");
+          "axial conduction: the bed at rest (Zehner and Schluender; in a gas with radiation between the "
+          "grains) + 0.5 Re Pr k; 0.7 eps k + 0.5 Re Pr k, the fluid alone, as in the thesis; or given");
   s.value("conductivity", p.conductivity)
       .unit("W/(m K)", 1e-3, 1e4)
       .not_negative()

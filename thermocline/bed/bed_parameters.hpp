@@ -11,11 +11,11 @@ namespace couplet::thermocline {
 
 /// Horizontal layer of the bed.
 struct BedLayer {
-  double height = 0;                    ///< [m]
-  double porosity = 0;                  ///< volume fraction of the liquid [1]
-  double diameter = 0;                  ///< effective grain diameter [m]
-  std::optional<Filler> filler = {};    ///< grains of this layer; else those of the tank
-  std::optional<Melting> melting = {};  ///< capsules instead of grains
+  double height = 0;                            ///< [m]
+  double porosity = 0;                          ///< volume fraction of the liquid [1]
+  double diameter = 0;                          ///< effective grain diameter [m]
+  std::optional<FillerParameters> filler = {};  ///< grains of this layer; else those of the tank
+  std::optional<Melting> melting = {};          ///< capsules instead of grains
 };
 
 /// Cells from the bottom up. Layer boundaries are cell faces, so masses are exact; the cells of a layer are

@@ -83,8 +83,8 @@ BedHeat PackedBed::first_order_step(const BedOperator& op, double flux, double i
     outlet = explicit_terms(fluid_.data(), flux, inlet, second_order);
   }
   work_.extra[entry] += through_inlet * inlet;
-  if (!c_->melting.empty()) {
-    solve_with_melting(op, work_.extra.data());
+  if (is_nonlinear()) {
+    solve_nonlinear(op, work_.extra.data());
   } else {
     solve(op, fluid_.data(), shell_.data(), shell_.data(), work_.extra.data());
   }
@@ -178,55 +178,67 @@ BedHeat PackedBed::step(double mass_flow, double inlet) {
   return heat;
 }
 
-// Melting capsules use Newton's method for the heat of each shell [swaminathan1993]. With h_m, T_m of the
+// Grains that melt or have a specific heat by temperature use Newton's method for the heat of each shell [swaminathan1993]. With h_m, T_m of the
 // last pass and c = dh/dT,
 //   (h_m + c (T - T_m) - h^n)/tau = inflow at T
 // is linear. h_m + c (T - T_m) then equals the inflow exactly after any number of passes, and T_{m+1} is its
-// temperature.
+// temperature. The conductivity of the grains is that of the old temperatures.
 
 /// Apparent capacity and right-hand side of each shell at its temperature of the last pass [J/(m^3 K)],
 /// [J/m^3].
-void PackedBed::linearise_melting(const BedGrid::Run& run, const PhaseChange& phase) {
+void PackedBed::linearise(const BedGrid::Run& run, const GrainHeat& content) {
   const int n = c_->grid.size();
   const double share = (1 - run.layer.porosity) / c_->shells;
   for (int j = 0; j < c_->shells; ++j)
     for (int i = run.first; i < run.first + run.count; ++i) {
       const std::size_t k = std::size_t(j) * n + i;
-      const double c = phase.capacity(shell_[k]);
-      work_.melt.capacity[k] = share * c;
-      work_.melt.right[k] = share * (c * shell_[k] - phase.heat(shell_[k]) + phase.heat(work_.shell1[k]));
+      const double c = content.capacity(shell_[k]);
+      work_.nonlinear.capacity[k] = share * c;
+      work_.nonlinear.right[k] =
+          share * (c * shell_[k] - content.heat(shell_[k]) + content.heat(work_.shell1[k]));
     }
 }
 
 /// GrainElimination with a capacity per shell and cell; adds to the fluid's rows.
-void PackedBed::eliminate_melting(const BedOperator& op, std::size_t r, const double* extra) {
+void PackedBed::eliminate(const BedOperator& op, std::size_t r, const double* extra) {
   const BedGrid::Run& run = c_->grid.runs[r];
   const Grains& grains = c_->grains[r];
   const int n = c_->grid.size();
+  const fv::Property& conductivity = c_->fillers[r].conductivity;
+  const double nominal = value_of(conductivity, c_->nominal);
+  const std::vector<double>& old = work_.shell1;
+  const auto ratio = [&](std::size_t a, std::size_t b) {  // at the mean temperature of two shells
+    return conductivity.is_constant() ? 1 : value_of(conductivity, 0.5 * (old[a] + old[b])) / nominal;
+  };
+  const auto between = [&](int j, int i) {  // shells j and j + 1 of cell i
+    const std::size_t k = std::size_t(j) * n + i;
+    return grains.between[j] * ratio(k, k + n);
+  };
   for (int i = run.first; i < run.first + run.count; ++i) {
     double rest_inside = 1, inside = 0;  // 1 - beta and alpha of the shell further in
     for (int j = c_->shells - 1; j >= 1; --j) {
       const std::size_t k = std::size_t(j) * n + i;
-      const double outward = grains.between[j - 1], inward = j + 1 < c_->shells ? grains.between[j] : 0;
-      const double held = work_.melt.capacity[k] / op.tau + inward * rest_inside, diagonal = held + outward;
-      work_.melt.alpha[k] = inside = (work_.melt.right[k] / op.tau + inward * inside) / diagonal;
-      work_.melt.beta[k] = outward / diagonal;
+      const double outward = between(j - 1, i), inward = j + 1 < c_->shells ? between(j, i) : 0;
+      const double held = work_.nonlinear.capacity[k] / op.tau + inward * rest_inside,
+                   diagonal = held + outward;
+      work_.nonlinear.alpha[k] = inside = (work_.nonlinear.right[k] / op.tau + inward * inside) / diagonal;
+      work_.nonlinear.beta[k] = outward / diagonal;
       rest_inside = held / diagonal;
     }
-    const double between = c_->shells > 1 ? grains.between[0] : 0;
-    const double own = work_.melt.capacity[i] / op.tau + between * rest_inside;
-    const double g = grains.exchange(prepared_.film[i]), dz = c_->grid.dz[i];
-    work_.melt.alpha[i] = (work_.melt.right[i] / op.tau + between * inside) / (own + g);
-    work_.melt.beta[i] = g / (own + g);
-    work_.melt.diagonal[i] =
-        work_.diagonal[i] - op.grains[r].own * op.heat[i] + own * work_.melt.beta[i] * dz;
-    fluid_[i] = op.rate[i] * fluid_[i] + extra[i] + g * dz * work_.melt.alpha[i];
+    const double inward = c_->shells > 1 ? between(0, i) : 0;
+    const double own = work_.nonlinear.capacity[i] / op.tau + inward * rest_inside;
+    const double g = grains.exchange(prepared_.film[i], ratio(i, i)), dz = c_->grid.dz[i];
+    work_.nonlinear.alpha[i] = (work_.nonlinear.right[i] / op.tau + inward * inside) / (own + g);
+    work_.nonlinear.beta[i] = g / (own + g);
+    work_.nonlinear.diagonal[i] =
+        work_.diagonal[i] - op.grains[r].own * op.heat[i] + own * work_.nonlinear.beta[i] * dz;
+    fluid_[i] = op.rate[i] * fluid_[i] + extra[i] + g * dz * work_.nonlinear.alpha[i];
   }
 }
 
 /// Computes the temperatures for the heat received by each shell. Returns the largest error of the linearized
 /// ones [K].
-double PackedBed::settle_melting(const BedGrid::Run& run, const PhaseChange& phase) {
+double PackedBed::settle(const BedGrid::Run& run, const GrainHeat& content) {
   const int n = c_->grid.size();
   const double share = (1 - run.layer.porosity) / c_->shells;
   double worst = 0;
@@ -234,42 +246,42 @@ double PackedBed::settle_melting(const BedGrid::Run& run, const PhaseChange& pha
     double outside = fluid_[i];
     for (int j = 0; j < c_->shells; ++j) {
       const std::size_t k = std::size_t(j) * n + i;
-      outside = work_.melt.alpha[k] + work_.melt.beta[k] * outside;
+      outside = work_.nonlinear.alpha[k] + work_.nonlinear.beta[k] * outside;
       // capacity T - right = h - h^n, per volume of the bed.
-      const double heat =
-          phase.heat(work_.shell1[k]) + (work_.melt.capacity[k] * outside - work_.melt.right[k]) / share;
-      shell_[k] = phase.temperature(heat);
+      const double heat = content.heat(work_.shell1[k]) +
+                          (work_.nonlinear.capacity[k] * outside - work_.nonlinear.right[k]) / share;
+      shell_[k] = content.temperature(heat);
       worst = std::max(worst, std::abs(shell_[k] - outside));
     }
   }
   return worst;
 }
 
-void PackedBed::solve_with_melting(const BedOperator& op, const double* extra) {
+void PackedBed::solve_nonlinear(const BedOperator& op, const double* extra) {
   constexpr int most_passes = 30;
   constexpr double close = 1e-6;  // [K]
   work_.fluid1 = fluid_, work_.shell1 = shell_;
   for (int pass = 0; pass < most_passes; ++pass) {
     fluid_ = work_.fluid1;
-    work_.melt.diagonal = work_.diagonal;
+    work_.nonlinear.diagonal = work_.diagonal;
     for (std::size_t r = 0; r < c_->grid.runs.size(); ++r) {
       const BedGrid::Run& run = c_->grid.runs[r];
-      if (!c_->melting[r]) {
+      if (!c_->heat[r]) {
         gather_grains(op.grains[r], cells_of(op, run), work_.shell1.data(), extra, fluid_.data(),
                       work_.sums.data());
         continue;
       }
-      linearise_melting(run, *c_->melting[r]);
-      eliminate_melting(op, r, extra);
+      linearise(run, *c_->heat[r]);
+      eliminate(op, r, extra);
     }
-    work_.melt.matrix.resize(c_->grid.size());
-    work_.melt.matrix.factorise(work_.lower.data(), work_.melt.diagonal.data(), work_.upper.data());
-    work_.melt.matrix.solve(fluid_.data());
+    work_.nonlinear.matrix.resize(c_->grid.size());
+    work_.nonlinear.matrix.factorise(work_.lower.data(), work_.nonlinear.diagonal.data(), work_.upper.data());
+    work_.nonlinear.matrix.solve(fluid_.data());
     double worst = 0;
     for (std::size_t r = 0; r < c_->grid.runs.size(); ++r) {
       const BedGrid::Run& run = c_->grid.runs[r];
-      if (c_->melting[r])
-        worst = std::max(worst, settle_melting(run, *c_->melting[r]));
+      if (c_->heat[r])
+        worst = std::max(worst, settle(run, *c_->heat[r]));
       else
         scatter_grains(op.grains[r], cells_of(op, run), work_.shell1.data(), fluid_.data(), shell_.data(),
                        work_.sums.data());

@@ -11,15 +11,31 @@ const int n_nodes = 257;  // every 4 K over 1000 K
 
 }  // namespace
 
-double zehner_schluender(double porosity, double kappa) {
-  const double b = 1.25 * std::pow((1 - porosity) / porosity, 10.0 / 9), n = 1 - b / kappa;
+// With r = radiation and N = 1 + (r - B)/kappa,
+//   k/k_f = (1 - sqrt(1 - eps)) (1 + eps r) + 2 sqrt(1 - eps)/N [bracket]
+//   bracket = B (kappa + r - 1)/(N^2 kappa) ln((kappa + r)/B) + (B + 1)/(2 B) (r - B) - (B - 1)/N
+double zehner_schluender(double porosity, double kappa, double r) {
+  const double b = 1.25 * std::pow((1 - porosity) / porosity, 10.0 / 9), n = 1 + (r - b) / kappa;
   const double root = std::sqrt(1 - porosity);
-  // The bracket over N; near kappa = B both vanish, so the first terms of its series are used.
-  const double bridge =
-      std::abs(n) < 1e-3
-          ? (2 * b + 1) / 6 + n * (3 * b + 1) / 12
-          : (b * (1 - 1 / kappa) / (n * n) * std::log(kappa / b) - (b + 1) / 2 - (b - 1) / n) / n;
-  return 1 - root + 2 * root * bridge;
+  // The bracket over N. Both vanish where kappa + r = B, so the first terms of the series in (kappa + r)/B - 1 are used.
+  const double q = kappa / b, y = (kappa + r) / b - 1;
+  const double bridge = std::abs(n) < 1e-3
+                            ? q * (b + 1) / 2 - q * q * b / 2 + q * q * (kappa + r - 1) * (1.0 / 3 - y / 4)
+                            : (b * (kappa + r - 1) / (n * n * kappa) * std::log(1 + y) +
+                               (b + 1) / (2 * b) * (r - b) - (b - 1) / n) /
+                                  n;
+  return (1 - root) * (1 + porosity * r) + 2 * root * bridge;
+}
+
+double stagnant_conductivity(const Fluid& fluid, const Filler& filler, double porosity, double diameter,
+                             double kelvin) {
+  constexpr double stefan_boltzmann = 5.670374e-8;  // [W/(m^2 K^4)]
+  const double k = fluid.conductivity(kelvin), e = filler.emissivity;
+  const double radiation = fluid.is_transparent() && e > 0
+                               ? 4 * stefan_boltzmann / (2 / e - 1) * kelvin * kelvin * kelvin * diameter / k
+                               : 0;
+  return k *
+         zehner_schluender(std::min(porosity, 0.999), value_of(filler.conductivity, kelvin) / k, radiation);
 }
 
 MassFlux::MassFlux(double g_abs)
@@ -43,7 +59,7 @@ LayerClosure::LayerClosure(const ClosureParameters& parameters, const Fluid& flu
 LayerClosure::Node LayerClosure::node_at(double t) const {
   const double k = fluid_.conductivity(t), mu = std::max(fluid_.viscosity(t), 1e-6), d = diameter_;
   const double pr = mu * fluid_.specific_heat / k, re = d / mu;  // Re per unit flux
-  const double stagnant = zehner_schluender(std::min(porosity_, 0.999), filler_.conductivity / k) * k;
+  const double stagnant = stagnant_conductivity(fluid_, filler_, porosity_, d, t);
   Node n{};
   // Nu = 2 + 1.1 Pr^(1/3) Re^0.6, Re on the superficial velocity (Wakao and Kaguei 1982, fitted to 15 < Re <
   // 8500; Nu = 2, pure conduction, at rest).
@@ -51,14 +67,11 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
   n.film_flow = 1.1 * k / d * std::cbrt(pr) * std::pow(re, 0.6);
   if (parameters_.film_coefficient > 0) n.film_still = parameters_.film_coefficient, n.film_flow = 0;
   switch (parameters_.conduction) {
-    case Conduction::wakao:
-      n.conduction_still = 0.7 * porosity_ * k;
-      break;
-    case Conduction::molecular:
-      n.conduction_still = porosity_ * k;
-      break;
     case Conduction::stagnant:
       n.conduction_still = stagnant;
+      break;
+    case Conduction::wakao:
+      n.conduction_still = 0.7 * porosity_ * k;
       break;
     case Conduction::constant:
       n.conduction_still = parameters_.conductivity;
@@ -89,8 +102,7 @@ Closure LayerClosure::at(double temperature, const MassFlux& flux) const {
 
 void LayerClosure::fill(std::span<const double> temperature, const MassFlux& flux, double* film,
                         double* conductivity, double* wall) const {
-  const bool disperses =
-      parameters_.conduction == Conduction::wakao || parameters_.conduction == Conduction::stagnant;
+  const bool disperses = parameters_.conduction != Conduction::constant;
   const double dispersion = disperses ? 0.5 * fluid_.specific_heat * diameter_ * flux.g : 0;  // 0.5 Re Pr k
   const WallFilm kind = parameters_.wall_film;
   const Node* const nodes = nodes_.data();

@@ -10,25 +10,27 @@ namespace couplet::thermocline {
 
 /// Axial conduction of the fluid phase, per area of the whole cross section.
 enum class Conduction {
-  wakao,      ///< 0.7 eps k + 0.5 Re Pr k: molecular and dispersion (Wakao and Kaguei 1982)
-  molecular,  ///< eps k
-  stagnant,   ///< stagnant bed of Zehner and Schluender (grains conduct, too) and the dispersion of wakao
-  constant,   ///< prescribed value
+  stagnant,  ///< bed at rest (grains conduct and, in a gas, radiate) + 0.5 Re Pr k (Wakao and Kaguei 1982)
+  wakao,     ///< 0.7 eps k + 0.5 Re Pr k: the fluid alone, as in the thesis
+  constant,  ///< prescribed value
 };
 /// Correlation between fluid and wall; at least that of the stagnant bed, 2 k0/d.
 enum class WallFilm { beek, yagi_wakao, constant };
 
 struct ClosureParameters {
-  Conduction conduction = Conduction::wakao;
+  Conduction conduction = Conduction::stagnant;
   double conductivity = 0;  ///< [W/(m K)], for Conduction::constant
   WallFilm wall_film = WallFilm::beek;
   double wall_coefficient = 0;  ///< [W/(m^2 K)], for WallFilm::constant
   double film_coefficient = 0;  ///< between fluid and grains [W/(m^2 K)]; 0 means Wakao's correlation
 };
 
-/// Stagnant conductivity of a packed bed over that of its fluid; kappa = k_s/k_f (Zehner and Schluender
-/// 1970).
-double zehner_schluender(double porosity, double kappa);
+/// Conductivity of a packed bed at rest over that of its fluid (Zehner and Schluender 1970); kappa = k_s/k_f.
+/// `radiation` is that between grains as a conductivity over k_f (Zehner, Bauer and Schluender 1978), 0 without.
+double zehner_schluender(double porosity, double kappa, double radiation = 0);
+/// Conductivity of a bed at rest [W/(m K)]. Grains radiate if the fluid is transparent and they have an emissivity.
+double stagnant_conductivity(const Fluid& fluid, const Filler& filler, double porosity, double diameter,
+                             double kelvin);
 
 /// Transfer coefficients at one temperature and mass flux.
 struct Closure {

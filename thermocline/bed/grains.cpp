@@ -4,9 +4,9 @@
 #include <cmath>
 
 namespace couplet::thermocline {
-Grains::Grains(const Filler& filler, double porosity, double diameter, int shells)
+Grains::Grains(const Filler& filler, double porosity, double diameter, int shells, double kelvin)
     : n(shells),
-      capacity((1 - porosity) * filler.volumetric() / shells),
+      capacity((1 - porosity) * filler.volumetric(kelvin) / shells),
       area(6 * (1 - porosity) / diameter) {
   // In units of the radius, shell j is between (1 - j/n)^(1/3) and (1 - (j+1)/n)^(1/3); its mean of r^2 is
   // (3/5)(r_out^5 - r_in^5)/(r_out^3 - r_in^3).
@@ -16,7 +16,7 @@ Grains::Grains(const Filler& filler, double porosity, double diameter, int shell
   };
   // 8 pi k R r^3/(difference) per grain, 3 (1 - eps)/(4 pi R^3) grains per volume.
   const double radius_m = 0.5 * diameter;
-  const double scale = 6 * (1 - porosity) * filler.conductivity / (radius_m * radius_m);
+  const double scale = 6 * (1 - porosity) * value_of(filler.conductivity, kelvin) / (radius_m * radius_m);
   surface = scale / (1 - mean_square(0));
   for (int j = 0; j + 1 < n; ++j)
     between.push_back(scale * (1 - double(j + 1) / n) / (mean_square(j) - mean_square(j + 1)));

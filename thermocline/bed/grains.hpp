@@ -16,7 +16,8 @@ namespace couplet::thermocline {
 /// means of a r^2. A single shell gives the linear driving force model (surface resistance d/(10 k)), and few
 /// shells resolve the passing front. With many shells they become the usual 4 pi k r^2/dr.
 struct Grains {
-  Grains(const Filler& filler, double porosity, double diameter, int n);
+  /// `kelvin`: temperature of the properties.
+  Grains(const Filler& filler, double porosity, double diameter, int n, double kelvin);
 
   int n;                        ///< shells
   double capacity;              ///< of each shell [J/(m^3 K)]; 0 in a bed without filler
@@ -24,8 +25,10 @@ struct Grains {
   double surface;               ///< outer shell's mean to surface [W/(m^3 K)]
   std::vector<double> between;  ///< shell j to j+1 [W/(m^3 K)]; n - 1 values
 
-  /// Conductance from fluid to outer shell at film coefficient h [W/(m^3 K)].
-  double exchange(double h) const { return h > 0 && area > 0 ? 1 / (1 / (h * area) + 1 / surface) : 0; }
+  /// Conductance from fluid to outer shell at film coefficient h [W/(m^3 K)]. `ratio`: conductivity of that shell over that of `surface`.
+  double exchange(double h, double ratio = 1) const {
+    return h > 0 && area > 0 ? 1 / (1 / (h * area) + 1 / (surface * ratio)) : 0;
+  }
 };
 
 /// Implicit conduction in the grains over a time tau, eliminated from the inside to the surface. With shells

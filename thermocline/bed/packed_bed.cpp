@@ -13,24 +13,33 @@ namespace couplet::thermocline {
 
 BedConstants::BedConstants(const BedParameters& p, const Fluid& its_fluid, const Filler& filler,
                            double diameter)
-    : grid(p.layers, p.cells),
+    : nominal(p.profile_temperature.empty() ? p.initial_temperature
+                                            : 0.5 * (std::ranges::min(p.profile_temperature) +
+                                                     std::ranges::max(p.profile_temperature))),
+      grid(p.layers, p.cells),
       fluid(its_fluid),
       area(0.25 * std::numbers::pi * diameter * diameter),
       shells(p.shells),
       advection(p.advection),
       courant(p.courant),
       conducting_inlet(p.conducting_inlet) {
-  const bool melts =
-      std::any_of(p.layers.begin(), p.layers.end(), [](const BedLayer& l) { return l.melting; });
-  if (melts && advection == Advection::tvd)
-    throw Error("bed.advection: tvd does not support phase-change layers; use upwind or implicit.");
+  for (const BedGrid::Run& run : grid.runs)
+    fillers.push_back(run.layer.filler ? make_filler(*run.layer.filler) : filler);
+  bool is_nonlinear = false;
+  for (std::size_t r = 0; r < fillers.size(); ++r)
+    is_nonlinear |= grid.runs[r].layer.melting || fillers[r].depends_on_temperature();
+  if (is_nonlinear && advection == Advection::tvd)
+    throw Error(
+        "bed.advection: tvd supports neither phase-change layers nor properties of the filler that depend on "
+        "temperature; use upwind or implicit.");
   const double lightest = std::min(fluid.density, fluid.density_at(fluid.highest));
   for (const BedGrid::Run& run : grid.runs) {
-    const Filler& own = run.layer.filler ? *run.layer.filler : filler;
+    const Filler& own = fillers[closures.size()];
     closures.emplace_back(p.closures, fluid, own, run.layer.porosity, run.layer.diameter);
-    grains.emplace_back(own, run.layer.porosity, run.layer.diameter, shells);
-    if (melts) melting.emplace_back();
-    if (run.layer.melting) melting.back().emplace(own, *run.layer.melting);
+    grains.emplace_back(own, run.layer.porosity, run.layer.diameter, shells, nominal);
+    if (is_nonlinear) heat.emplace_back();
+    if (run.layer.porosity < 1 && (run.layer.melting || own.depends_on_temperature()))
+      heat.back().emplace(own, run.layer.melting);
     for (int i = run.first; i < run.first + run.count; ++i) {
       capacity.push_back(run.layer.porosity * fluid.volumetric() * grid.dz[i]);
       heat_capacity += area * (capacity[i] + grains.back().capacity * shells * grid.dz[i]);
@@ -51,10 +60,11 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
     work_.fluid1.assign(n, 0.0), work_.fluid2.assign(n, 0.0);
     work_.shell1.assign(all_shells, 0.0), work_.shell2.assign(all_shells, 0.0);
   }
-  if (melts()) {
-    for (auto* v : {&work_.melt.capacity, &work_.melt.right, &work_.melt.alpha, &work_.melt.beta})
+  if (is_nonlinear()) {
+    for (auto* v :
+         {&work_.nonlinear.capacity, &work_.nonlinear.right, &work_.nonlinear.alpha, &work_.nonlinear.beta})
       v->assign(all_shells, 0.0);
-    work_.melt.diagonal.assign(n, 0.0);
+    work_.nonlinear.diagonal.assign(n, 0.0);
   }
   std::vector<double> start(n, p.initial_temperature);
   if (!p.profile_z.empty()) {
@@ -177,10 +187,10 @@ double PackedBed::energy(double reference) const {
           capacity_[i] * (fluid_[i] - settled_[i] +
                           c_->fluid.real->between(reference, settled_[i]) / c_->fluid.real->at(settled_[i]));
     const std::size_t l = c_->grid.layer[i];
-    if (!c_->melting.empty() && c_->melting[l]) {
+    if (is_nonlinear() && c_->heat[l]) {
       double heat = 0;
       for (int j = 0; j < c_->shells; ++j)
-        heat += c_->melting[l]->heat(shell_[std::size_t(j) * n + i]) - c_->melting[l]->heat(reference);
+        heat += c_->heat[l]->heat(shell_[std::size_t(j) * n + i]) - c_->heat[l]->heat(reference);
       sum += fluid + (1 - c_->grid.runs[l].layer.porosity) / c_->shells * c_->grid.dz[i] * heat;
     } else {
       sum += fluid + c_->grains[l].capacity * c_->grid.dz[i] * grain;
@@ -190,7 +200,7 @@ double PackedBed::energy(double reference) const {
 }
 
 double PackedBed::heat_between(double cold, double hot) const {
-  if (!c_->fluid.real_density && c_->melting.empty()) return c_->heat_capacity * (hot - cold);
+  if (!c_->fluid.real_density && !is_nonlinear()) return c_->heat_capacity * (hot - cold);
   double sum = 0;
   for (const BedGrid::Run& run : c_->grid.runs) {
     const double eps = run.layer.porosity, height = run.layer.height;
@@ -198,8 +208,8 @@ double PackedBed::heat_between(double cold, double hot) const {
     const double mass_degrees =  // integral of the density [kg K/m^3]
         c_->fluid.real_density ? c_->fluid.real->between(cold, hot) : c_->fluid.density * (hot - cold);
     sum += height * eps * c_->fluid.specific_heat * mass_degrees;
-    if (!c_->melting.empty() && c_->melting[l])
-      sum += height * (1 - eps) * (c_->melting[l]->heat(hot) - c_->melting[l]->heat(cold));
+    if (is_nonlinear() && c_->heat[l])
+      sum += height * (1 - eps) * (c_->heat[l]->heat(hot) - c_->heat[l]->heat(cold));
     else
       sum += height * c_->grains[l].capacity * c_->shells * (hot - cold);
   }

@@ -29,6 +29,8 @@ struct BedOperator {
 /// Constants of a run, shared by all copies of the bed.
 struct BedConstants {
   BedConstants(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
+  /// Temperature at which properties of the grains are called nominal [K].
+  double nominal = 0;
   BedGrid grid;
   Fluid fluid;
   double area;
@@ -37,9 +39,10 @@ struct BedConstants {
   double courant;
   bool conducting_inlet;
   // One entry per run, the adjacent cells of one layer.
+  std::vector<Filler> fillers;
   std::vector<LayerClosure> closures;
   std::vector<Grains> grains;
-  std::vector<std::optional<PhaseChange>> melting;  // empty if no layer melts
+  std::vector<std::optional<GrainHeat>> heat;  // of nonlinear layers; empty if there are none
   std::vector<double> capacity;  // eps rho c dz of the cells at the fluid's constant density [J/(m^2 K)]
   double heat_capacity = 0;      // [J/K]
   double limit = std::numeric_limits<double>::infinity();  // smallest eps rho dz [kg/m^2]
@@ -53,8 +56,8 @@ struct PreparedBed {
   BedOperator fallback;  // at first order, without grains until a step needs it
 };
 
-/// Rows of layers that melt: shells times cells, of the diagonal cells. Empty if no layer melts.
-struct MeltingRows {
+/// Rows of nonlinear layers: shells times cells, of the diagonal cells. Empty if there are none.
+struct NonlinearRows {
   std::vector<double> capacity, right, alpha, beta, diagonal;
   Tridiagonal matrix;
 };
@@ -64,7 +67,7 @@ struct BedWork {
   std::vector<double> extra, face, fluid1, fluid2, shell1, shell2;
   std::vector<double> sums;                                // of the shells, weighted, per cell
   std::vector<double> lower, diagonal, upper, resistance;  // of a matrix during assembly
-  MeltingRows melt;
+  NonlinearRows nonlinear;
 };
 
 /// Heat of one step of the bed.
@@ -100,7 +103,8 @@ class PackedBed {
 
   /// Heat relative to a uniform temperature [J].
   double energy(double reference) const;
-  double heat_capacity() const { return c_->heat_capacity; }  ///< [J/K]; at the fluid's constant density
+  /// [J/K]; at the fluid's constant density and the nominal properties of the grains
+  double heat_capacity() const { return c_->heat_capacity; }
   /// Heat of fluid and filler between two temperatures [J].
   double heat_between(double cold, double hot) const;
   /// Completes the steps since prepare() for a temperature-dependent density. During these, each cell kept
@@ -121,11 +125,13 @@ class PackedBed {
   /// Fluid-wall coefficients at the prepared flow [W/(m^2 K)].
   std::span<const double> wall_coefficient() const { return prepared_.wall; }
   const LayerClosure& closure(std::size_t run) const { return c_->closures[run]; }
+  const Filler& filler(std::size_t run) const { return c_->fillers[run]; }
 
   /// Mixes fluid that is colder than the fluid below it; conserves heat.
   void mix_inversions();
-  bool melts() const { return !c_->melting.empty(); }
-  /// Steps of the tvd scheme repeated at first order in time to stay bounded. For a melting bed, steps with
+  /// True if layers melt or their grains have properties that depend on temperature.
+  bool is_nonlinear() const { return !c_->heat.empty(); }
+  /// Steps of the tvd scheme repeated at first order in time to stay bounded. For a nonlinear bed, steps with
   /// an unconverged iteration.
   long fallbacks() const { return fallbacks_; }
   long steps() const { return steps_; }
@@ -146,11 +152,11 @@ class PackedBed {
   void solve(const BedOperator& op, double* fluid, const double* shells, double* to_shells,
              const double* extra);
   GrainCells cells_of(const BedOperator& op, const BedGrid::Run& run) const;
-  /// Solves a step of a bed with melting layers, in place.
-  void solve_with_melting(const BedOperator& op, const double* extra);
-  void linearise_melting(const BedGrid::Run& run, const PhaseChange& phase);
-  void eliminate_melting(const BedOperator& op, std::size_t run, const double* extra);
-  double settle_melting(const BedGrid::Run& run, const PhaseChange& phase);
+  /// Solves a step of a bed with nonlinear layers, in place.
+  void solve_nonlinear(const BedOperator& op, const double* extra);
+  void linearise(const BedGrid::Run& run, const GrainHeat& content);
+  void eliminate(const BedOperator& op, std::size_t run, const double* extra);
+  double settle(const BedGrid::Run& run, const GrainHeat& content);
   /// Sets work_.extra to advection and sources [W/m^2] at the given fluid temperatures. Returns the
   /// temperature of the outflow.
   double explicit_terms(const double* fluid, double flux, double inlet, bool second_order);

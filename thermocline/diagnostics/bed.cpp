@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <utility>
 
 #include "common/io/checkpoint.hpp"
@@ -11,9 +13,11 @@
 namespace couplet::thermocline {
 namespace {
 
-/// Checks grains with a single shell. It assumes a parabolic profile (linear driving force), delayed by
-/// d^2/(60 a) for slow changes and inaccurate for fast ones: 1/h becomes (1 + Bi/5)/h. With x the delay over the time in which a front
-/// crosses the bed, its transfer function 1/(1 + x) differs from that of a sphere by 3/7 x^2.
+/// Checks grains with a single shell. It assumes a parabolic profile (linear driving force): 1/h becomes (1 + Bi/5)/h. Of the time in
+/// which the front has passed, the film delays a grain by x_f = d rho c/(6 h) and its inside by x_g = d^2 rho c/(60 k). The exponent
+/// of the front's Laplace transform then lacks 3/7 x_g^2 s^3 beside a Gaussian of variance 2 (x_f + x_g), which changes a step by
+///   2 (3/7) x_g^2 |g''| = 0.39 x_g^2 (2 (x_f + x_g))^(-5/4),   |g''|^2 = 3/(8 sqrt(pi)) at variance 1,
+/// bounded by 1 for a front that is wider than the bed.
 class ResolvedGrains final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
@@ -42,9 +46,8 @@ class ResolvedGrains final : public TankDiagnostic {
       if (run.layer.porosity >= 1 || (reynolds >= 15 && reynolds <= 8500)) continue;
       is_outside = true;
       // Each layer adds the delay by its film to the square of the width of a front, over the time of its passage.
-      const Filler& filler = run.layer.filler ? *run.layer.filler : view_.model.setup().filler;
-      const double delay =
-          run.layer.diameter * filler.volumetric() / (6 * bed().closure(r).at(kelvin, MassFlux(flux)).film);
+      const double delay = run.layer.diameter * bed().filler(r).volumetric(kelvin) /
+                           (6 * bed().closure(r).at(kelvin, MassFlux(flux)).film);
       spread += double(run.count) / double(bed().fluid().size()) * delay * seen_->flow / crossing_mass();
     }
     report.sentences.push_back(
@@ -61,20 +64,93 @@ class ResolvedGrains final : public TankDiagnostic {
  private:
   /// Film times d/(2 conductivity) of grain layers at the largest flow and the bed's mean temperature; and its share of the result.
   std::pair<double, double> largest_biot() const {
-    double mean = 0, largest = 0, share = 0;
+    double mean = 0, largest = 0, third = 0, variance = 0;
     for (const double t : bed().fluid()) mean += t / double(bed().fluid().size());
+    // The share is largest half way through the bed.
+    const double passage = std::min(0.5 * crossing_mass(), seen_->moved) / seen_->flow;
     for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
-      const BedLayer& layer = bed().grid().runs[r].layer;
-      if (layer.porosity >= 1 || layer.melting) continue;
-      const Filler& filler = layer.filler ? *layer.filler : view_.model.setup().filler;
-      const double film = bed().closure(r).at(mean, MassFlux(seen_->flow / bed().area())).film;
-      const double biot = film * layer.diameter / (2 * filler.conductivity);
-      const double delay = layer.diameter * layer.diameter * filler.volumetric() / (60 * filler.conductivity);
-      const double x = delay * seen_->flow / crossing_mass();
+      const BedGrid::Run& run = bed().grid().runs[r];
+      if (run.layer.porosity >= 1 || run.layer.melting) continue;
+      const double conductivity = value_of(bed().filler(r).conductivity, mean), d = run.layer.diameter,
+                   film = bed().closure(r).at(mean, MassFlux(seen_->flow / bed().area())).film;
+      const double biot = film * d / (2 * conductivity), weight = run.count / double(bed().fluid().size());
+      const double inside = d * d * bed().filler(r).volumetric(mean) / (60 * conductivity) / passage;
       largest = std::max(largest, biot);
-      share = std::max(share, biot / (5 + biot) * 3. / 7 * x * x / (1 + x * x));
+      third += weight * inside * inside;
+      variance += 2 * weight * inside * (1 + 5 / biot);
     }
-    return {largest, share};
+    const double share = variance > 0 ? 0.39 * third * std::pow(variance, -1.25) : 0;
+    return {largest, share / (1 + share)};
+  }
+};
+
+/// Conduction through the grains and radiation between them, where the bed leaves them out.
+class StillBed final : public TankDiagnostic {
+ public:
+  using TankDiagnostic::TankDiagnostic;
+  // At the end, because a front stays as long as the flow of the whole run leaves it in the bed.
+  void conclude(diagnostics::Report& report) override {
+    const auto [cold, hot] = range_to_come();
+    const Conduction kind = view_.parameters().bed.closures.conduction;
+    if (hot <= cold + 1 || kind == Conduction::constant) return;
+    const double mean = 0.5 * (cold + hot);
+    const auto still = [&, this](std::size_t r, double emissivity) {
+      const BedLayer& layer = bed().grid().runs[r].layer;
+      Filler filler = bed().filler(r);
+      filler.emissivity = emissivity;
+      return stagnant_conductivity(view_.fluid(), filler, layer.porosity, layer.diameter, mean);
+    };
+    if (kind == Conduction::wakao)
+      judge(report, "conduction through the grains", mean,
+            "set 'bed.closures.conduction: stagnant', the default", [&, this](std::size_t r) {
+              return still(r, 0) - bed().closure(r).at(mean, MassFlux(0)).conductivity;
+            });
+    if (view_.fluid().is_transparent())
+      judge(report, "radiation between the grains", mean,
+            "give 'filler.emissivity', with 'bed.closures.conduction: stagnant', the default",
+            [&, this](std::size_t r) {
+              const double own = bed().filler(r).emissivity;
+              if (kind == Conduction::stagnant && own > 0) return 0.;
+              return still(r, own > 0 ? own : Filler().emissivity) - still(r, 0);
+            });
+  }
+
+ private:
+  /// A front has the variance a^2 by conduction, 2 k t/C in the time t that it stays in the bed, and by film and grains; with the
+  /// conductivity that layers lack (`left_out`) it has b^2. Two steps smeared that much differ by the integral
+  ///   sqrt(2/pi) (sqrt(a^2 + b^2) - (a + b)/sqrt(2))
+  /// of the squares, where that of a step from its mean is a quarter of the height. A bed that has not seen its range has less of a front.
+  void judge(diagnostics::Report& report, const char* effect, double mean, const char* advice,
+             const std::function<double(std::size_t)>& left_out) const {
+    const double time = view_.time(), stay = time * std::min(1., crossing_mass() / seen_->moved);
+    const MassFlux flux(seen_->moved / (time * bed().area()));
+    double diffusivity = 0, lacking = 0, largest = 0;
+    for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
+      const BedGrid::Run& run = bed().grid().runs[r];
+      const double solid = 1 - run.layer.porosity, lacks = left_out(r),
+                   capacity = run.layer.porosity * view_.fluid().volumetric() +
+                              solid * bed().filler(r).volumetric(mean),
+                   weight = run.count / (capacity * double(bed().fluid().size()));
+      diffusivity += weight * bed().closure(r).at(mean, flux).conductivity;
+      lacking += weight * lacks;
+      largest = std::max(largest, lacks);
+    }
+    if (!(largest > 0)) return;
+    const double height = bed().grid().height,
+                 spread =
+                     variance_of_grains() * height * height * std::min(1., seen_->moved / crossing_mass()),
+                 before = std::sqrt(spread + 2 * diffusivity * stay),
+                 after = std::sqrt(spread + 2 * (diffusivity + lacking) * stay);
+    const double squares = std::sqrt(2 / std::numbers::pi) *
+                           (std::hypot(before, after) - (before + after) / std::numbers::sqrt2);
+    const auto [cold, hot] = range_to_come();
+    const double share = std::min(1., 2 * std::sqrt(std::max(0., squares) / height)) *
+                         (seen_->hottest - seen_->coldest) / (hot - cold);
+    tell(report, {.effect = effect,
+                  .number = share,
+                  .what = fmt::format("up to {:.2g} W/(m K) at {:.0f} degC", largest, celsius(mean)),
+                  .advice = advice,
+                  .share = share});
   }
 };
 
@@ -176,6 +252,8 @@ class Gas final : public TankDiagnostic {
 }  // namespace
 
 Made grains(const TankView& view, const Seen& seen) { return std::make_shared<ResolvedGrains>(view, seen); }
+
+Made still_bed(const TankView& view, const Seen& seen) { return std::make_shared<StillBed>(view, seen); }
 
 Made inversions(const TankView& view, const Seen& seen) { return std::make_shared<Inversions>(view, seen); }
 

@@ -27,10 +27,10 @@ class EnergyBalance final : public TankDiagnostic {
           of_tank / turnover));
     std::string steps = fmt::format("bed: {} steps of {} cells", bed().steps(), bed().grid().size());
     if (bed().fallbacks() > 0)
-      steps += fmt::format("; {} of them {}", bed().fallbacks(),
-                           bed().melts() ? "ended before the temperatures of the melting layers converged to "
-                                           "1e-6 K"
-                                         : "were first order in time to remain bounded");
+      steps +=
+          fmt::format("; {} of them {}", bed().fallbacks(),
+                      bed().is_nonlinear() ? "ended before the temperatures of the grains converged to 1e-6 K"
+                                           : "were first order in time to remain bounded");
     report.sentences.push_back(steps);
   }
 };

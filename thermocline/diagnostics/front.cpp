@@ -100,29 +100,6 @@ class FrontError final : public TankDiagnostic {
     const double added = 0.5 * (of_scheme + std::hypot(of_scheme, of_grains) - of_grains);
     return 2 * deviations(flow.plant.cut_off / (flow.plant.hot - flow.plant.cold)) * added;
   }
-
-  /// Relative variance of a front by film and grains on its way through the bed: 2 (G c/(h a)) (1 - beta)^2
-  /// per meter over the squared height, beta the fluid's share of the heat capacity (Schumann's model at late
-  /// times).
-  double variance_of_grains() const {
-    const std::span<const double> fluid = bed().fluid();
-    const double mean = std::accumulate(fluid.begin(), fluid.end(), 0.0) / double(fluid.size());
-    const Fluid& f = view_.fluid();
-    const double flux = seen_->flow / bed().area();
-    double variance = 0;
-    for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
-      const BedLayer& layer = bed().grid().runs[r].layer;
-      if (layer.porosity >= 1 || layer.melting) continue;
-      const Filler& filler = layer.filler ? *layer.filler : view_.model.setup().filler;
-      const double resistance =
-          1 / bed().closure(r).at(mean, MassFlux(flux)).film + layer.diameter / (10 * filler.conductivity);
-      const double solid = 1 - layer.porosity, of_grains = solid * filler.volumetric();
-      const double share = of_grains / (layer.porosity * f.volumetric() + of_grains);
-      variance += 2 * layer.height * flux * f.specific_heat * resistance * layer.diameter / (6 * solid) *
-                  share * share;
-    }
-    return variance / (bed().grid().height * bed().grid().height);
-  }
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/io/checkpoint.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
@@ -24,6 +25,7 @@ class ExtremesOfRun final : public TankDiagnostic {
     for (const BedStep& s : view_.happened.bed) {
       seen_->flow = std::max(seen_->flow, std::abs(s.flow.mass_flow));
       seen_->advance = std::max(seen_->advance, std::abs(s.flow.mass_flow) * s.dt);
+      seen_->moved += std::abs(s.flow.mass_flow) * s.dt;
     }
     seen_->coldest = std::min(seen_->coldest, view_.happened.coldest);
     seen_->hottest = std::max(seen_->hottest, view_.happened.hottest);
@@ -58,6 +60,26 @@ std::pair<double, double> TankDiagnostic::range_to_come() const {
     for (const ScheduleRow& row : flow.rows)
       if (row.mass_flow != 0) see(row.inlet_temperature);
   return {cold, hot};
+}
+
+double TankDiagnostic::variance_of_grains() const {
+  const std::span<const double> fluid = bed().fluid();
+  const double mean = std::accumulate(fluid.begin(), fluid.end(), 0.0) / double(fluid.size());
+  const Fluid& f = view_.fluid();
+  const double flux = seen_->flow / bed().area();
+  double variance = 0;
+  for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {
+    const BedLayer& layer = bed().grid().runs[r].layer;
+    if (layer.porosity >= 1 || layer.melting) continue;
+    const Filler& filler = bed().filler(r);
+    const double resistance = 1 / bed().closure(r).at(mean, MassFlux(flux)).film +
+                              layer.diameter / (10 * value_of(filler.conductivity, mean));
+    const double solid = 1 - layer.porosity, of_grains = solid * filler.volumetric(mean);
+    const double share = of_grains / (layer.porosity * f.volumetric() + of_grains);
+    variance +=
+        2 * layer.height * flux * f.specific_heat * resistance * layer.diameter / (6 * solid) * share * share;
+  }
+  return variance / (bed().grid().height * bed().grid().height);
 }
 
 void TankDiagnostic::tell(diagnostics::Report& report, const diagnostics::EffectFinding& effect) {

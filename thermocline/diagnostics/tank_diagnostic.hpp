@@ -12,10 +12,11 @@ namespace couplet::thermocline {
 /// Extreme values of the run so far, used by several diagnostics.
 struct Extremes {
   double flow = 0, advance = 0;     ///< largest |m| [kg/s], and |m| dt of a bed step [kg]
+  double moved = 0;                 ///< sum of |m| dt [kg]
   double coldest = 0, hottest = 0;  ///< fluid, including the initial state [K]
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(flow, advance, coldest, hottest);
+    numbers(flow, advance, moved, coldest, hottest);
   }
 };
 
@@ -34,6 +35,10 @@ class TankDiagnostic : public diagnostics::Diagnostic {
   std::pair<double, double> range_to_come() const;
   /// Inflow required for a front to cross the bed [kg]: its heat capacity over the fluid's specific heat.
   double crossing_mass() const { return bed().heat_capacity() / view_.fluid().specific_heat; }
+  /// Relative variance of a front by film and grains on its way through the bed: 2 (G c/(h a)) (1 - beta)^2
+  /// per meter over the squared height, beta the fluid's share of the heat capacity (Schumann's model at late
+  /// times).
+  double variance_of_grains() const;
   /// Reports an effect, unless its number is unknown.
   static void tell(diagnostics::Report& report, const diagnostics::EffectFinding& effect);
   /// Reports a sentence. `subject` distinguishes it from others with the same id.

@@ -165,6 +165,63 @@ Insulator make_insulator(const InsulatorParameters& p) {
   return made;
 }
 
+Filler make_filler(const FillerParameters& p) {
+  return {p.density,
+          {p.specific_heat, "filler.specific-heat"},
+          {p.conductivity, "filler.conductivity"},
+          p.friction_angle,
+          p.expansion,
+          p.emissivity};
+}
+
+GrainHeat::GrainHeat(const Filler& filler, const std::optional<Melting>& melting) {
+  std::vector<double> nodes;
+  if (const fv::Table* table = filler.specific_heat.table()) nodes = table->at();
+  double low = 0, high = 0, latent = 0;  // of the melting range
+  if (melting) {
+    low = melting->temperature - melting->width / 2, high = melting->temperature + melting->width / 2;
+    latent = filler.density * melting->latent_heat / (high - low);
+    nodes.push_back(low), nodes.push_back(high);
+  }
+  if (nodes.empty()) nodes.push_back(zero_celsius);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  pieces_.push_back({nodes.front(), 0, filler.volumetric(nodes.front()), 0});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double from = nodes[i], c = filler.volumetric(from) + (from >= low && from < high ? latent : 0);
+    const double length = i > 0 ? from - nodes[i - 1] : 0;
+    const Piece& below = pieces_.back();
+    const double heat = below.heat + length * (below.capacity + 0.5 * below.slope * length);
+    const bool is_last = i + 1 == nodes.size();
+    const double slope =
+        is_last ? 0 : (filler.volumetric(nodes[i + 1]) - filler.volumetric(from)) / (nodes[i + 1] - from);
+    pieces_.push_back({from, heat, c, slope});
+  }
+}
+
+const GrainHeat::Piece& GrainHeat::piece(double Piece::*member, double value) const {
+  const auto above = std::upper_bound(pieces_.begin() + 1, pieces_.end(), value,
+                                      [&](double v, const Piece& p) { return v < p.*member; });
+  return *(above - 1);
+}
+
+double GrainHeat::heat(double kelvin) const {
+  const Piece& p = piece(&Piece::from, kelvin);
+  const double x = kelvin - p.from;
+  return p.heat + x * (p.capacity + 0.5 * p.slope * x);
+}
+
+double GrainHeat::temperature(double heat) const {
+  const Piece& p = piece(&Piece::heat, heat);
+  const double h = heat - p.heat;
+  return p.from + 2 * h / (p.capacity + std::sqrt(p.capacity * p.capacity + 2 * p.slope * h));
+}
+
+double GrainHeat::capacity(double kelvin) const {
+  const Piece& p = piece(&Piece::from, kelvin);
+  return p.capacity + p.slope * (kelvin - p.from);
+}
+
 namespace {
 
 void nothing(config::Section&) {}
@@ -247,13 +304,22 @@ void declare(config::Section& section, FluidParameters& p) {
                         true);
 }
 
-void declare(config::Section& s, Filler& f) {
+void declare(config::Section& s, FillerParameters& f) {
   s.value("density", f.density)
       .unit("kg/m^3", 50, 25000)
       .positive()
       .doc("density of the grains; the defaults are those of quartzite");
-  as_specific_heat(s.value("specific-heat", f.specific_heat)).positive().doc("specific heat of the grains");
-  as_conductivity(s.value("conductivity", f.conductivity)).positive().doc("conductivity of the grains");
+  as_specific_heat(s.value("specific-heat", f.specific_heat))
+      .positive()
+      .doc("specific heat of the grains: a number or a table of T");
+  as_conductivity(s.value("conductivity", f.conductivity))
+      .positive()
+      .doc("conductivity of the grains: a number or a table of T");
+  s.check([&f] { return fv::problem_of_property(f.specific_heat); }, "specific-heat");
+  s.check([&f] { return fv::problem_of_property(f.conductivity); }, "conductivity");
+  s.value("emissivity", f.emissivity)
+      .range(0, 1)
+      .doc("emissivity of the grains, which exchange radiation through a gas; 0 leaves radiation out");
   s.value("friction-angle", f.friction_angle)
       .unit("rad")
       .range(0.01, 1.5)

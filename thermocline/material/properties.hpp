@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/fv/table.hpp"
 #include "thermocline/material/numerics.hpp"
 
 namespace couplet::thermocline {
@@ -39,7 +40,8 @@ void declare_section(config::Section& s, const char* name, std::optional<T>& val
       name, value, [](config::Section& q, T& v) { declare(q, v); }, doc);
 }
 
-inline constexpr double gravity = 9.81;  // [m/s^2]
+inline constexpr double gravity = 9.81;        // [m/s^2]
+inline constexpr double lightest_liquid = 50;  // [kg/m^3]
 
 /// Density as a polynomial of temperature in degC.
 struct DensityLaw {
@@ -55,6 +57,12 @@ struct DensityLaw {
   }
 };
 
+/// Value of a property at a temperature, which does not count as use of its table.
+inline double value_of(const fv::Property& property, double kelvin) {
+  const fv::Table* table = property.table();
+  return table ? (*table)(std::clamp(kelvin, table->at().front(), table->at().back())) : property(kelvin);
+}
+
 /// Heat-transfer fluid. The specific heat is constant, and so is the density unless `real_density` is set
 /// (thesis table 5.1); plant and tank use both for heat. Conductivity and viscosity depend on temperature.
 struct Fluid {
@@ -68,16 +76,21 @@ struct Fluid {
   double gas_constant = 0, pressure = 101325;  // of an ideal gas [J/(kg K)], [Pa]; 0 for a liquid
   double known_from = 0, known_to = 1e4;       // range of user-defined tables [K]
   bool is_gas() const { return gas_constant > 0; }
+  /// Transparent to thermal radiation: air, and what the user defines as light as a gas.
+  bool is_transparent() const { return is_gas() || density < lightest_liquid; }
   double volumetric() const { return density * specific_heat; }
   double density_at(double kelvin) const { return real_density ? real->at(kelvin) : density; }
 };
 
 /// Grains of sand and rock.
 struct Filler {
-  double density = 2643, specific_heat = 1000.5, conductivity = 2.2;  // quartzite, table 5.1
-  double friction_angle = 0.5235987755982988;                         // [rad]; 30 degrees
-  double expansion = 7.92e-6;                                         // linear [1/K]
-  double volumetric() const { return density * specific_heat; }
+  double density = 2643;                                    // quartzite, table 5.1
+  fv::Property specific_heat = 1000.5, conductivity = 2.2;  // [J/(kg K)], [W/(m K)]
+  double friction_angle = 0.5235987755982988;               // [rad]; 30 degrees
+  double expansion = 7.92e-6;                               // linear [1/K]
+  double emissivity = 0.85;                                 // [1]; 0 leaves radiation out
+  double volumetric(double kelvin) const { return density * value_of(specific_heat, kelvin); }
+  bool depends_on_temperature() const { return !specific_heat.is_constant() || !conductivity.is_constant(); }
 };
 
 /// Melting of capsules over a temperature range, with uniformly distributed latent heat.
@@ -141,7 +154,14 @@ struct FluidParameters {
 void declare(config::Section& section, FluidParameters& parameters);
 Fluid make_fluid(const FluidParameters& parameters);
 
-void declare(config::Section& section, Filler& filler);
+struct FillerParameters {
+  double density = Filler().density;
+  config::ExpressionText specific_heat{"1000.5"}, conductivity{"2.2"};
+  double friction_angle = Filler().friction_angle, expansion = Filler().expansion,
+         emissivity = Filler().emissivity;
+};
+void declare(config::Section& section, FillerParameters& parameters);
+Filler make_filler(const FillerParameters& parameters);
 
 struct SteelParameters {
   enum class Type { a537, a387, n06022, custom } type = Type::a537;
@@ -158,30 +178,24 @@ struct InsulatorParameters {
 void declare(config::Section& section, InsulatorParameters& parameters);
 Insulator make_insulator(const InsulatorParameters& parameters);
 
-/// Heat content of a grain material per volume as a function of temperature, with a melting range:
-///   h(T) = rho c T + rho L clamp((T - T_low)/width, 0, 1)
-struct PhaseChange {
-  PhaseChange(const Filler& filler, const Melting& melting)
-      : solid(filler.volumetric()),
-        latent(filler.density * melting.latent_heat),
-        low(melting.temperature - melting.width / 2),
-        high(melting.temperature + melting.width / 2) {}
-
-  double solid, latent, low, high;  // [J/(m^3 K)], [J/m^3], [K]
-
-  /// Relative to T_low, to avoid loss of digits [J/m^3].
-  double heat(double t) const {
-    const double sensible = solid * (t - low);
-    if (t <= low) return sensible;
-    return t >= high ? sensible + latent : sensible + latent * (t - low) / (high - low);
-  }
-  double temperature(double heat) const {
-    if (heat <= 0) return low + heat / solid;
-    const double full = solid * (high - low) + latent;
-    return heat >= full ? low + (heat - latent) / solid : low + (high - low) * heat / full;
-  }
+/// Heat content of grains per volume by temperature: the integral of rho c, and the latent heat of a melting range.
+/// The capacity is piecewise linear, and constant beyond the ends of its table.
+class GrainHeat {
+ public:
+  GrainHeat(const Filler& filler, const std::optional<Melting>& melting);
+  /// Relative to the first node, to avoid loss of digits [J/m^3].
+  double heat(double kelvin) const;
+  double temperature(double heat) const;
   /// Apparent capacity dh/dT [J/(m^3 K)].
-  double capacity(double t) const { return t > low && t < high ? solid + latent / (high - low) : solid; }
+  double capacity(double kelvin) const;
+
+ private:
+  /// Values at the lower end, and the slope of the capacity. The first piece also holds below it.
+  struct Piece {
+    double from, heat, capacity, slope;  // [K], [J/m^3], [J/(m^3 K)], [J/(m^3 K^2)]
+  };
+  const Piece& piece(double Piece::*member, double value) const;
+  std::vector<Piece> pieces_;
 };
 
 }  // namespace couplet::thermocline

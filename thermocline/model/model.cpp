@@ -22,7 +22,10 @@ std::vector<ColumnLayer> ground_layers(const GroundParameters& p) {
 }
 
 TankSetup::TankSetup(const TankParameters& p)
-    : parameters(p), fluid(make_fluid(p.fluid)), filler(p.filler), grid(p.bed.layers, p.bed.cells) {
+    : parameters(p),
+      fluid(make_fluid(p.fluid)),
+      filler(make_filler(p.filler)),
+      grid(p.bed.layers, p.bed.cells) {
   if (!p.shell) return;
   steel = make_steel(p.shell->material);
   rings.emplace(*p.shell, grid, p.diameter, p.ullage ? p.ullage->height : 0);
@@ -149,6 +152,10 @@ void TankModel::record_fluid(double t, TankStep& step) const {
   const auto height = [&](auto cell) { return bed_.grid().z[std::size_t(cell - fluid.begin())]; };
   if (*low < step.coldest) step.coldest = *low, step.coldest_z = height(low);
   if (*high > step.hottest) step.hottest = *high, step.hottest_z = height(high);
+  for (std::size_t r = 0; r < bed_.grid().runs.size(); ++r) {
+    const Filler& filler = bed_.filler(r);  // counts as use of its tables
+    for (const double t : {*low, *high}) (void)filler.specific_heat(t), (void)filler.conductivity(t);
+  }
   if (!std::isfinite(*high) || !std::isfinite(*low) || *low < 0)
     throw SolveFailure("A temperature of the bed is not finite or below absolute zero.");
 }

@@ -13,9 +13,8 @@ namespace couplet::thermocline {
 double TankModel::cell_capacity(int i) const {
   const BedGrid& grid = bed_.grid();
   const BedLayer& layer = grid.runs[grid.layer[i]].layer;
-  const Filler& filler = layer.filler ? *layer.filler : setup_->filler;
-  return (layer.porosity * setup_->fluid.volumetric() + (1 - layer.porosity) * filler.volumetric()) *
-         grid.dz[i];
+  const double solid = bed_.filler(grid.layer[i]).volumetric(bed_.fluid()[i]);
+  return (layer.porosity * setup_->fluid.volumetric() + (1 - layer.porosity) * solid) * grid.dz[i];
 }
 
 /// Stability of the lowest cell with the flux computed by the ground: half its capacity over the coefficient.

@@ -40,7 +40,6 @@ void check_together(config::Section& s, TankParameters& p) {
          [&p] { return p.elsewhere && p.elsewhere->insulation && !p.insulation && !p.shell; });
   refuse("insulation", "requires a shell; add one", [&p] { return p.insulation && !p.shell; });
   refuse("bed", "a gas crosses a cell in milliseconds: set bed.advection: implicit", [&p] {
-    constexpr double lightest_liquid = 50;  // [kg/m^3]
     const bool is_light = p.fluid.type == FluidParameters::Type::custom && p.fluid.density < lightest_liquid;
     return (p.fluid.type == FluidParameters::Type::air || is_light) && p.bed.advection != Advection::implicit;
   });

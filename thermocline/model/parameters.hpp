@@ -49,7 +49,7 @@ struct TankParameters {
   double diameter = 0;       ///< inner [m]
   double exchange_step = 0;  ///< longest step between exchanges [s]; 0 means that of the simulation
   FluidParameters fluid;
-  Filler filler;
+  FillerParameters filler;
   BedParameters bed;
   std::optional<ShellParameters> shell;
   std::optional<Present> mechanics;

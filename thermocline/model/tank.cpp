@@ -25,9 +25,9 @@ Inventory inventory_of(const TankSetup& setup) {
   Inventory all;
   all.field_area = p.flow.plant.field_area, all.block_power = p.flow.plant.electric_power;
   for (const auto& layer : p.bed.layers) {
-    const Filler& filler = layer.filler ? *layer.filler : setup.filler;
+    const double density = layer.filler ? layer.filler->density : setup.filler.density;
     all.fluid += area * layer.height * layer.porosity * setup.fluid.density;
-    (layer.melting ? all.capsules : all.filler) += area * layer.height * (1 - layer.porosity) * filler.density;
+    (layer.melting ? all.capsules : all.filler) += area * layer.height * (1 - layer.porosity) * density;
   }
   all.foundation = area;
   if (!setup.rings) return all;

@@ -93,7 +93,7 @@ TEST_P(HardCase, grains_of_a_micrometre) {
 
 TEST_P(HardCase, biot_number_of_a_thousand) {
   const double diameter = 0.2;
-  Audit a = make(diameter, 1e3 * Filler{}.conductivity / (diameter / 2));
+  Audit a = make(diameter, 1e3 * Filler{}.conductivity(300) / (diameter / 2));
   a.bed.prepare(step_of(a, 50), 50);
   for (int i = 0; i < 600; ++i) a.step(50, 300);
   expect_sound(a);

@@ -24,7 +24,7 @@ struct Schumann {
   }
   double z(double xi) const { return xi * flux * fluid.specific_heat / h_v; }
   double time(double xi, double eta) const {
-    return eta * (1 - porosity) * filler.volumetric() / h_v + porosity * fluid.density * z(xi) / flux;
+    return eta * (1 - porosity) * filler.volumetric(300) / h_v + porosity * fluid.density * z(xi) / flux;
   }
   /// Largest error of fluid and grains over the points of the table inside the bed, xi from `first` on.
   double error(int cells, Advection advection, double courant, double first, double longest = 1e300) const {
@@ -266,9 +266,9 @@ TEST(Front, late_width_grows_by_dispersion_film_and_conduction_in_the_grains_tog
   p.advection = Advection::tvd;
   p.initial_temperature = 500;
   PackedBed bed(p, oil, filler, 1);
-  const double effective = porosity * oil.volumetric() + (1 - porosity) * filler.volumetric();
-  const double beta = (1 - porosity) * filler.volumetric() / effective;
-  const double h = 1 / (1 / film + d / (10 * filler.conductivity)), h_v = 6 * (1 - porosity) * h / d;
+  const double effective = porosity * oil.volumetric() + (1 - porosity) * filler.volumetric(300);
+  const double beta = (1 - porosity) * filler.volumetric(300) / effective;
+  const double h = 1 / (1 / film + d / (10 * filler.conductivity(300))), h_v = 6 * (1 - porosity) * h / d;
   const double speed = flux * oil.specific_heat / effective;
   const double total = k + std::pow(flux * oil.specific_heat * beta, 2) / h_v;
   const double start = 5 / speed, later = 20 / speed;
@@ -290,7 +290,7 @@ TEST(Front, numerical_diffusion_of_upwind_is_that_of_theory) {
   const double flux = 0.3, porosity = 0.22;
   const Fluid oil = constant_fluid(692.4, 2700, 0.09);
   const Filler filler;
-  const double effective = porosity * oil.volumetric() + (1 - porosity) * filler.volumetric();
+  const double effective = porosity * oil.volumetric() + (1 - porosity) * filler.volumetric(300);
   const double speed = flux * oil.specific_heat / effective;
   BedParameters p = plain_bed(1000, 25, porosity, 1e-4);
   p.closures.conductivity = 0;

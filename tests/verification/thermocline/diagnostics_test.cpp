@@ -46,7 +46,7 @@ TEST(Diagnostics, findings_turn_at_their_limits_and_belong_to_what_is_left_out) 
   EXPECT_FALSE(finding(p, "resolved-grains")) << "the grains have shells";
   p.bed.shells = 1;
   expect(p, "resolved-grains", 0.05, true);
-  p.filler.conductivity = 0.003;
+  p.filler.conductivity = {"0.003"};
   expect(p, "resolved-grains", 0.05, false);
   TankParameters liquid = p;
   for (BedLayer& layer : liquid.bed.layers) layer.porosity = 1;

@@ -12,9 +12,9 @@ struct Sphere {
 Sphere cool(double biot, int shells, double dt_fourier, double first_fourier) {
   const double diameter = 0.05, radius = diameter / 2;
   const Filler filler;
-  const double diffusivity = filler.conductivity / filler.volumetric();
+  const double diffusivity = filler.conductivity(300) / filler.volumetric(300);
   BedParameters p = plain_bed(1, 1, 0.4, diameter);
-  p.closures.film_coefficient = biot * filler.conductivity / radius;
+  p.closures.film_coefficient = biot * filler.conductivity(300) / radius;
   p.shells = shells;
   p.advection = Advection::tvd;  // its time scheme is of second order
   p.initial_temperature = 300;
@@ -64,20 +64,21 @@ TEST(Grain, one_shell_is_the_linear_driving_force) {
   // Resistance 1/h + d/(10 k) on the surface of the grain.
   const Filler filler;
   const double d = 0.03, h = 70;
-  const Grains grains(filler, 0.4, d, 1);
-  EXPECT_NEAR(grains.exchange(h), 6 * 0.6 / d / (1 / h + d / (10 * filler.conductivity)),
+  const Grains grains(filler, 0.4, d, 1, 300);
+  EXPECT_NEAR(grains.exchange(h), 6 * 0.6 / d / (1 / h + d / (10 * filler.conductivity(300))),
               1e-9 * grains.exchange(h));
 }
 
 TEST(Grain, the_shells_hold_the_heat_of_the_filler) {
   const Filler filler;
-  const Grains grains(filler, 0.4, 0.03, 7);
-  EXPECT_NEAR(grains.capacity * 7, 0.6 * filler.volumetric(), 1e-6);
+  const Grains grains(filler, 0.4, 0.03, 7, 300);
+  EXPECT_NEAR(grains.capacity * 7, 0.6 * filler.volumetric(300), 1e-6);
 }
 
 TEST(Closures, wakao_and_beek_have_the_values_of_their_formulae) {
   // Solar One's mixture at 70 kg/s: 1.67 W/(m K), 37 W/(m^2 K) (independent evaluation).
   ClosureParameters p;
+  p.conduction = Conduction::wakao;
   const Fluid oil = caloria_ht43();
   const double area = 0.25 * 3.14159265358979 * 18.2 * 18.2, g = 70 / area;
   const LayerClosure mixture(p, oil, Filler{}, 0.22, 0.0046);

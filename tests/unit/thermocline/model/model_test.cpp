@@ -38,7 +38,7 @@ TEST_P(Table53, masses_and_capacities_of_the_cases_are_the_published_ones) {
   const std::pair<double, double> pairs[] = {
       {solid * setup.filler.density / 1000, c.filler},
       {liquid * setup.fluid.density / 1000, c.fluid},
-      {solid * setup.filler.volumetric() * span / megawatt_hour, c.filler_capacity},
+      {solid * setup.filler.volumetric(300) * span / megawatt_hour, c.filler_capacity},
       {liquid * setup.fluid.volumetric() * span / megawatt_hour, c.fluid_capacity},
       {bed.heat_capacity() * span / megawatt_hour, c.capacity}};
   double worst = 0;
