@@ -230,7 +230,7 @@ def said(search, series, row, predicted):
                 "lines": [f"No setting was found for an error of {target:.3g}, after {sum(len(s.rows) for s in search.every)} runs:", *lines]}
     if series.known:
         table.set_errors([row], [quantity])
-    true, (error, bound) = row.errors.get(quantity.name), series.left(row)
+    true, (error, bound) = row.errors.get(quantity.name), series.left(row) or (predicted.error, predicted.bound)  # a run more may have left no fit
     elsewhere, who = (0.0, "") if true is not None else seen_from_others(search, series, row)
     reached = true if true is not None else max(error, elsewhere)
     seconds, spent = series.cost(row), search.spent()

@@ -153,7 +153,10 @@ class Series:
     def doubt(self, row):
         """Reason why nothing confirms the extrapolated error of a run: neither the order of the last three sizes nor the run's own estimate. Empty
         if one of them does, or if the error is known."""
-        error = self.left(row)[0]
+        left = self.left(row)
+        if left is None:
+            return self.fit()[1]
+        error = left[0]
         if self.known or error == 0:
             return ""
         last = fits.apart(np.array(self.sizes(), float))[-3:]
@@ -170,7 +173,8 @@ class Series:
         """Returns true if the difference of a run from a finer one confirms its extrapolated error."""
         name = self.quantity.name
         apart = abs(row.values[name] - finer.values[name]) / (self.quantity.size(finer.values[name], finer) or 1)
-        return apart > 0 and 1 / OWN_OFF <= self.left(row)[0] / apart <= OWN_OFF
+        left = self.left(row)
+        return left is not None and apart > 0 and 1 / OWN_OFF <= left[0] / apart <= OWN_OFF
 
     def scatter(self):
         return 0.0 if self.known or (fit := self.fit()[0]) is None else fit.deviation
