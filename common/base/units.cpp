@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/units.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -35,11 +37,23 @@ constexpr Symbol symbols[] = {
     {"N", true, make(1, 1, 1, -2, 0, 0)},
     {"Pa", true, make(1, 1, -1, -2, 0, 0)},
     {"bar", true, make(1e5, 1, -1, -2, 0, 0)},
+    {"atm", false, make(101325, 1, -1, -2, 0, 0)},
+    {"psi", false, make(6894.757293168361, 1, -1, -2, 0, 0)},
+    {"mmHg", false, make(133.322387415, 1, -1, -2, 0, 0)},
+    {"cmHg", false, make(1333.22387415, 1, -1, -2, 0, 0)},
+    {"inHg", false, make(3386.388640341, 1, -1, -2, 0, 0)},
+    {"mmH2O", false, make(9.80665, 1, -1, -2, 0, 0)},
+    {"cmH2O", false, make(98.0665, 1, -1, -2, 0, 0)},
+    {"mH2O", false, make(9806.65, 1, -1, -2, 0, 0)},
+    {"inH2O", false, make(249.08891, 1, -1, -2, 0, 0)},
+    {"P", false, make(0.1, 1, -1, -1, 0, 0)},
+    {"cP", false, make(1e-3, 1, -1, -1, 0, 0)},
     {"J", true, make(1, 1, 2, -2, 0, 0)},
     {"W", true, make(1, 1, 2, -3, 0, 0)},
     {"Wh", true, make(3600, 1, 2, -2, 0, 0)},
     {"K", true, make(1, 0, 0, 0, 1, 0)},
     {"degC", false, make(1, 0, 0, 0, 1, 0, 273.15)},
+    {"degF", false, make(5. / 9, 0, 0, 0, 1, 0, 459.67 * 5 / 9)},
     {"Hz", true, make(1, 0, 0, -1, 0, 0)},
     {"rad", false, make(1, 0, 0, 0, 0, 1)},
     {"deg", false, make(std::numbers::pi / 180, 0, 0, 0, 0, 1)},
@@ -76,8 +90,11 @@ Unit symbol_unit(std::string_view name) {
         unit.factor *= prefix.factor;
         return unit;
       }
-  const bool is_celsius = name == "C" || name == "°C" || name == "Celsius" || name == "celsius";
-  const auto meant = is_celsius ? std::optional<std::string>("degC") : closest(name, usual_names());
+  static constexpr std::array<std::string_view, 8> scales{"C", "°C", "Celsius",    "celsius",
+                                                          "F", "°F", "Fahrenheit", "fahrenheit"};
+  const auto scale = std::ranges::find(scales, name) - scales.begin();
+  const auto meant =
+      scale < 8 ? std::optional<std::string>(scale < 4 ? "degC" : "degF") : closest(name, usual_names());
   throw Error("unknown unit '{}'.{}", name, meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
 }
 
@@ -179,6 +196,8 @@ class UnitParser {
       }
     }
     if (n == 0) fail();
+    // The 2 of mmH2O is not a power.
+    if (rest_[n - 1] == 'H' && rest_.substr(n).starts_with("2O")) n += 2;
     const std::string_view name = rest_.substr(0, n);
     rest_.remove_prefix(n);
     return symbol_unit(name);
@@ -204,10 +223,8 @@ double bare_number(double number, std::string_view text, std::string_view unit) 
 void check_kind(const Unit& given, std::string_view given_text, double number, std::string_view text,
                 std::string_view unit) {
   if (unit == kelvin_difference && given.offset != 0)
-    throw Error(
-        "'{}' is a temperature, but a temperature difference is expected: write {:.10g} K (differences have "
-        "the same value in K and degC).",
-        text, number);
+    throw Error("'{}' is a temperature, but a temperature difference is expected: write {:.10g} K.", text,
+                given.factor * number);
   if (unit != "K") return;
   if (given_text == kelvin_difference)
     throw Error("'{}' is a temperature difference, but a temperature is expected.", text);

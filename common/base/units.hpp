@@ -13,14 +13,15 @@ inline constexpr std::string_view kelvin_difference = "K difference";
 
 /// Returns true if a number requires a unit because two common units make it ambiguous: temperatures (20 K or
 /// 20 degC), angles and rotation speeds (0.5 rad or 0.5 deg). Temperature differences are the same in K and
-/// degC. Everything else is in SI.
+/// degC. A bare number for anything else is in SI.
 constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad" || unit == "rad/s"; }
 
 /// Unit: SI value = factor * number + offset; exponents of kg, m, s, K, rad. Since an angle is no plain number,
 /// 1/min is no speed of rotation and rad/s no frequency.
 struct Unit {
   double factor = 1;
-  double offset = 0;  ///< only for degC by itself; inside a product (W/(m degC)) it is a difference
+  double offset =
+      0;  ///< only for degC and degF by themselves; inside a product (W/(m degC)) it is a difference
   using Dimension = std::array<int, 5>;
   Dimension dimension{};
   bool is_number() const { return dimension == Dimension{}; }

@@ -67,9 +67,9 @@ void check_place_of_unit(const csv::CsvReader& rows, const std::string& name) {
       throw Error("{}: '{}' has its unit in round brackets, where it is not read. Write '{}[{}]'.",
                   rows.place_of_names(), name, name.substr(0, open), unit);
   } else if (line != std::string::npos && name.size() > line + 2) {
-    // A single letter, as in t_h, may be an index, and min a minimum.
+    // A single letter, as in t_h, may be an index, min a minimum, and p_atm the pressure of the atmosphere.
     const std::string unit = name.substr(line + 1);
-    const auto is = unit == "min" ? std::nullopt : known(unit);
+    const auto is = unit == "min" || unit == "atm" ? std::nullopt : known(unit);
     if (is && !is->is_number() && (is->factor != 1 || is->offset != 0))
       throw Error("{}: '{}' ends with a unit, which is not read there. Write '{}[{}]', or another name.",
                   rows.place_of_names(), name, name.substr(0, line), unit);

@@ -107,9 +107,9 @@ check("no unknown key, missing key, wrong word, wrong unit or number out of rang
 from couplet.documents import units  # noqa: E402
 
 UNITS = {"kg/m^3": (["1.2 kg/m^3", "1200 g/l", "1 t/m3", "3 kg m^-3", "1e3 g / l", "2 kg/(m m m)", "1.5 N s^2/m^4"], ["1.2 kg", "5 kg/m^2", "3 Pa", "1 kgs/m^3", "2 kg/m^3 x", "1,2 kg/m^3"]),
-         "Pa": (["4 MPa", "1 bar", "3 N/mm^2", "2 J/m^3", "5 kN/m²", "1 kg/(m s^2)", "2 kPa"], ["4 N", "1 N/m", "3 psi", "2 Pa s"]),
+         "Pa": (["4 MPa", "1 bar", "3 N/mm^2", "2 J/m^3", "5 kN/m²", "1 kg/(m s^2)", "2 kPa", "3 psi", "80 mmHg", "10 cmH2O"], ["4 N", "1 N/m", "3 ksi", "2 Pa s", "5 cP"]),
          "m/s": (["3 m/s", "10 km/h", "5 mm/day", "2 m s^-1", "1 m Hz"], ["3 m", "1 m/s^2", "7 kmh"]), "s": (["5 ms", "2 h", "1 day", "3 min", "1 Hz^-1"], ["2 m", "3 hours", "1 s^2"]),
-         "rad": (["3 deg", "1.5 rad"], ["3 s", "2 grad"]), "rad/s": (["3 deg/s", "1 rad/s"], ["4 Hz", "1 rad", "2 1/s", "60 1/min", "50 %"]), "K difference": (["3 K", "0.5 mK"], ["3 degC", "4 s"]),
+         "rad": (["3 deg", "1.5 rad"], ["3 s", "2 grad"]), "rad/s": (["3 deg/s", "1 rad/s"], ["4 Hz", "1 rad", "2 1/s", "60 1/min", "50 %"]), "K difference": (["3 K", "0.5 mK"], ["3 degC", "3 degF", "4 s"]),
          "K": (["300 K", "20 degC"], ["20 C", "3 W"]), "W/(m^2 K)": (["5 W/(m^2 K)", "3 W/m^2/K", "2 kW/(m² K)"], ["5 W", "3 W/m^2", "1 W/K"])}
 for unit, (good, wrong) in UNITS.items():
     pattern = SCHEMAS["units.json"]["$defs"][units.name_of(unit)]["pattern"]

@@ -35,6 +35,14 @@ TEST(Units, quantities_convert_to_the_unit_of_the_key) {
       {"0.5 W/(m K)", "W/(m K)", 0.5},
       {"0.5 W/m/degC", "W/(m K)", 0.5},
       {"20 degC", "K", 293.15},
+      {"68 degF", "K", 293.15},
+      {"-459.67 degF", "degC", -273.15},
+      {"9 W/(m degF)", "W/(m K)", 16.2},
+      {"1 mmHg", "Pa", 133.322387415},
+      {"2 cmH2O s/m^3", "Pa s/m^3", 196.133},
+      {"1 mmH2O^2", "Pa^2", 96.1703842225},
+      {"14.5 psi", "kPa", 99.97398075094123},
+      {"3 cP", "Pa s", 3e-3},
       {"-10 degC", "K", 263.15},
       {"293.15 K", "degC", 20},
       {"20", "degC", 20},
@@ -73,6 +81,10 @@ TEST(Units, what_does_not_convert_is_refused_with_what_was_expected) {
             "'5 furlong': unknown unit 'furlong'. Expected m or a unit convertible to it.");
   EXPECT_EQ(error_of("120 C", "K"),
             "'120 C': unknown unit 'C'. Did you mean 'degC'? Expected K or a unit convertible to it.");
+  EXPECT_EQ(error_of("120 mmhg", "Pa"),
+            "'120 mmhg': unknown unit 'mmhg'. Did you mean 'mmHg'? Expected Pa or a unit convertible to it.");
+  EXPECT_EQ(error_of("18 degF", kelvin_difference.data()),
+            "'18 degF' is a temperature, but a temperature difference is expected: write 10 K.");
   EXPECT_EQ(error_of("soft", "Pa"), "'soft' is not a number; expected a number in Pa or with its unit.");
   EXPECT_EQ(error_of("5 s", ""), "'5 s' contains more than a number ('s'); expected a plain number.");
   EXPECT_EQ(error_of("1,5 m", "m"), "'1,5 m' has a decimal comma; use a decimal point.");

@@ -43,7 +43,7 @@ def pattern_of(unit, table):
     """Regular expression for the text behind the number."""
     wanted, classes = dimension_of(unit, table), {}
     for name, (_, dimension) in table.items():
-        if not (unit == "K difference" and name == "degC"):
+        if not (unit == "K difference" and name in ("degC", "degF")):
             classes.setdefault(dimension, []).append(name)
     written_as = {dimension: written(names, table) for dimension, names in classes.items()}
     found = []
