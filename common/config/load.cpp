@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/config/document.hpp"
+#include "common/config/missing_physics.hpp"
 #include "common/config/values.hpp"
 
 namespace couplet::config {
@@ -52,6 +53,10 @@ class Reader final {
   void report(const Place& place, const std::string& path, const std::string& text);
   void report_key(const Place& place, const std::string& path, const std::string& text);
   void report_unknown_keys();
+  /// Sentence about missing physics that a key, or else a word of its value, asks for. Empty if there is none.
+  std::string limit_named_by(const std::string& key, const YAML::Node& value) const;
+  /// Text of a wrong value: `problem`, or the missing physics that it asks for.
+  std::string wrong_value(const YAML::Node& value, const char* problem) const;
   /// Text " Its keys: a, b." for a value that should be a mapping.
   std::string keys_of(const Place& place, const std::string& path, const Section::Declare& declare);
   /// Applies a rule across keys, unless a key that it may depend on is invalid.
@@ -180,6 +185,10 @@ void Reader::report_unknown_keys() {
     std::vector<std::string> free;
     for (const std::string& known : frame.known)
       if (!find(frame.node, known).found) free.push_back(known);
+    if (const std::string limit = limit_named_by(name, item.second); !limit.empty()) {
+      report(place_of(item.first), path, "unknown key. " + limit);
+      continue;
+    }
     const auto meant = base::closest(name, free);
     if (meant) forget_missing(join_path(frame.path, *meant));
     // An existing key cannot be meant, but the message shows which keys are allowed.
@@ -187,6 +196,28 @@ void Reader::report_unknown_keys() {
   }
   if (unknown > most)
     report(frame.place, frame.path, fmt::format("{} more unknown keys follow.", unknown - most));
+}
+
+std::string Reader::limit_named_by(const std::string& key, const YAML::Node& value) const {
+  const Entry program = find(frames_.front().node, "program");
+  const std::string name = program.found && program.node.IsScalar() ? program.node.Scalar() : "";
+  if (const std::string limit = config::limit_named_by(key, name); !limit.empty() || !value.IsDefined())
+    return limit;
+  if (value.IsScalar()) return config::limit_named_by(value.Scalar(), name);
+  for (const auto& item : value) {
+    const bool is_map = value.IsMap();
+    const std::string limit =
+        limit_named_by(is_map ? item.first.Scalar() : "", is_map ? item.second : YAML::Node(item));
+    if (!limit.empty()) return limit;
+  }
+  return "";
+}
+
+std::string Reader::wrong_value(const YAML::Node& value, const char* problem) const {
+  const std::string limit = limit_named_by("", value);
+  return limit.empty()
+             ? problem
+             : fmt::format("{} is not available. {}", value.IsMap() ? "a mapping" : kind_of(value), limit);
 }
 
 std::string Reader::problem_of(const KeyFacts& facts, const Slot& slot) const {
@@ -229,7 +260,7 @@ void Reader::key(const KeyFacts& facts, const Slot& slot) {
     if (const std::string doubt = doubt_of_magnitude(facts, slot); !doubt.empty())
       doubts_.push_back(message(entry.place, path, doubt));
   } catch (const Error& error) {
-    report_key(entry.place, path, error.what());
+    report_key(entry.place, path, wrong_value(entry.node, error.what()));
   }
 }
 
@@ -284,7 +315,8 @@ void Reader::variant(const Declaration& d) {
       };
       read_value(entry.node, {}, word);
     } catch (const Error& error) {
-      report_key(entry.found ? entry.place : frames_.back().place, path, error.what());
+      report_key(entry.found ? entry.place : frames_.back().place, path,
+                 entry.found ? wrong_value(entry.node, error.what()) : error.what());
       // The valid keys are unknown now, so all are treated as known, and only the actual mistake is reported.
       for (const auto& [text, declare] : d.cases)
         for (const std::string& key : names_of(declare)) frames_.back().known.push_back(key);
@@ -313,6 +345,7 @@ void Reader::apply_rule(const Declaration& d) {
   if (text.back() != '.') text += '.';
   const std::string& key = d.facts.name;
   const Entry entry = find(frame.node, key);
+  if (entry.found && entry.node.IsScalar()) text = wrong_value(entry.node, text.c_str());
   (d.kind == Declaration::Kind::check ? messages_ : doubts_)
       .push_back(message(entry.found ? entry.place : frame.place,
                          key.empty() ? frame.path : join_path(frame.path, key), text));

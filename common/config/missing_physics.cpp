@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/missing_physics.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "common/base/text.hpp"
+
+namespace couplet::config {
+namespace {
+
+constexpr std::string_view fluid = "fluid_solver", solid = "solid_solver", plate = "plate_modal",
+                           mover = "mesh_mover";
+
+constexpr std::string_view
+    no_plasticity = "no plasticity, creep or viscoelasticity",
+    use_calculix = "give every metal its yield-strength; use CalculiX beyond it",
+    inelastic =
+        "plastic plasticity elastoplastic elasto-plastic elastic-plastic viscoplastic yield-stress "
+        "hardening yield-curve johnson-cook von-mises drucker-prager mohr-coulomb creep norton "
+        "viscoelastic viscoelasticity prony maxwell kelvin-voigt relaxation-time shape-memory";
+
+// A shorter word must be the whole key or value, as "heat", which is also part of "heat-capacity-ratio".
+constexpr std::size_t shortest_part = 5;
+
+constexpr MissingPhysics table[] = {
+    {fluid,
+     "shock shocks supersonic transonic hypersonic mach ideal-gas equation-of-state gas-constant rhocentral",
+     "no shocks and no transonic or supersonic flow; compressibility covers pressure waves of small amplitude",
+     "use a compressible solver, such as OpenFOAM or SU2, and couple it through preCICE's interface"},
+    {fluid,
+     "free-surface vof volume-of-fluid level-set two-phase multiphase phase phases phase-change surface-tension contact-angle "
+     "cavitation vapor-pressure vapour-pressure bubble bubbles",
+     "no free surface, no two-phase flow, no cavitation",
+     "check the lowest pressure; use another fluid solver"},
+    {fluid,
+     "k-omega k-epsilon kepsilon komega komegasst kwsst sst spalart-allmaras rans urans des ddes iddes realizable "
+     "reynolds-stress rsm v2f laminar-turbulent turbulent-kinetic-energy turbulence-intensity turbulent-viscosity "
+     "eddy-viscosity-ratio mixing-length wall-function wall-functions roughness",
+     "no wall functions; Smagorinsky and WALE need a mesh that resolves the wall; no RANS models",
+     "refine at the walls until y+ is about 1, or use another fluid solver"},
+    {fluid,
+     "temperature thermal heat heat-flux heat-transfer conductivity specific-heat thermal-diffusivity prandtl rayleigh "
+     "buoyancy boussinesq expansion conjugate-heat-transfer cht energy-equation natural-convection",
+     "no temperature in the fluid, so no buoyancy and no conjugate heat transfer within Couplet's own fluid",
+     "couple an external program that solves the heat, as in warm-flap"},
+    {fluid,
+     "carreau carreau-yasuda cross power-law powerlaw herschel-bulkley bingham casson quemada non-newtonian nonnewtonian "
+     "generalized-newtonian rheology yield-stress shear-thinning shear-thickening consistency "
+     "sutherland oldroyd viscoelastic mixture",
+     "constant density and viscosity: no mixtures, no non-Newtonian fluids", "another fluid solver"},
+    {fluid,
+     "species scalar passive-scalar concentration mass-fraction diffusivity particle particles dpm sediment combustion "
+     "reaction reactions chemistry radiation magnetic mhd electric",
+     "no transported species or particles, no chemistry, no electromagnetic forces", "another fluid solver"},
+    {fluid, "axisymmetric axisymmetry axi-symmetric axial-symmetry swirl wedge", "no axisymmetric flow",
+     "compute a wedge or the full domain in three dimensions"},
+    {fluid, "steady steady-state stationary pseudo-transient pseudo-time simple simplec",
+     "no steady solver: every flow is computed in time",
+     "start from rest with a constant inflow and run until drag, lift or probes no longer change"},
+    {fluid,
+     "porous porosity permeability darcy forchheimer brinkman porous-zone porous-jump momentum-source actuator fan",
+     "no porous media, no fans and no sources of momentum in a part of the fluid",
+     "mesh the passages, or use another fluid solver"},
+    {fluid,
+     "resistance windkessel rcr lumped impedance compliance capacitance flow-resistance loss-coefficient pressure-drop",
+     "no outlets with a resistance, a loss coefficient or a windkessel",
+     "give the pressure of the outlet as a function or table of time, or mesh a narrow outlet that has the resistance"},
+    {solid, inelastic, no_plasticity, use_calculix},
+    {plate, inelastic, no_plasticity, use_calculix},
+    {solid, "fracture damage crack cohesive delamination debonding failure fatigue phase-field xfem erosion",
+     "no fracture, damage or delamination", "check the largest stress against the strength"},
+    {solid, "contact self-contact contact-pair contact-pairs friction frictional",
+     "no contact between deformable bodies and no self-contact; a plate or solid may meet one rigid seat without "
+     "friction",
+     "check the gap between the bodies; use CalculiX or solids4foam"},
+    {solid, "beam beams shell shells membrane truss cable rod",
+     "no beam, shell or membrane elements; thin plates are linear and given by modes",
+     "use solid_solver with a few cells across the thickness"},
+    {solid,
+     "porous poroelastic poroelasticity biot permeability pore-pressure consolidation piezoelectric magnetic electric "
+     "swelling moisture radiation emissivity phase-change latent-heat melting",
+     "no pore pressure, no electric or magnetic fields, no radiation and no change of phase in solids",
+     "use another solver, or couple a program of your own"},
+    {solid,
+     "harmonic frequency-response steady-state-dynamics random-vibration response-spectrum psd complex-modes",
+     "no response in the frequency domain",
+     "compute the motion in time with output.spectrum, or combine the modes of analysis: modal yourself"},
+    {mover, "remesh remeshing adaptive refinement topology overset chimera sliding-interface ami",
+     "meshes move but are not remade; topology stays the same",
+     "use gaps for valves that close, or bodies for parts that pass each other (immersed-seat)"},
+    {fluid, "overset chimera sliding-interface sliding-mesh ami remesh remeshing adaptive amr refinement",
+     "meshes move but are not remade; topology stays the same",
+     "use gaps for valves that close, or bodies for parts that pass each other (immersed-seat)"},
+};
+
+}  // namespace
+
+std::span<const MissingPhysics> missing_physics() { return table; }
+
+std::string limit_named_by(std::string_view key_or_value, std::string_view program) {
+  std::string text = "-";
+  for (const char c : key_or_value)
+    text += c == '_' || c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  text += '-';
+  for (const MissingPhysics& row : table) {
+    if (row.program != program) continue;
+    for (const std::string& word : base::split(row.words, ' ')) {
+      const bool is_named = word.size() < shortest_part
+                                ? text.size() == word.size() + 2 && text.substr(1, word.size()) == word
+                                : text.find("-" + word + "-") != std::string::npos;
+      if (is_named)
+        return fmt::format("This is a limit of Couplet: {}. Instead: {} (docs/limitations.md).", row.limit,
+                           row.instead);
+    }
+  }
+  return "";
+}
+
+}  // namespace couplet::config

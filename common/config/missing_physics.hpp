@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace couplet::config {
+
+/// Physics that Couplet does not compute, and the words by which cases ask for it. `limit` and `instead` are the
+/// cells of its row in docs/limitations.md, without markup.
+struct MissingPhysics {
+  std::string_view program;
+  std::string_view words;  ///< keys and values, or parts of them between hyphens
+  std::string_view limit, instead;
+};
+
+std::span<const MissingPhysics> missing_physics();
+
+/// Returns a sentence with the limit and what to do instead if a key or value asks a program for such physics.
+/// Otherwise an empty text.
+std::string limit_named_by(std::string_view key_or_value, std::string_view program);
+
+}  // namespace couplet::config
