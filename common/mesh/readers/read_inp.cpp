@@ -307,8 +307,8 @@ class InpMesh {
   /// Names sets with listed members that the deck does not define.
   void name_missing() {
     std::vector<std::string> all;
-    const auto check = [&](const char* kind, const InpSets& sets, const auto&... indices) {
-      for (const InpSet& set : sets.all) {
+    const auto check = [&](const char* kind, const std::vector<InpSet>& sets, const auto&... indices) {
+      for (const InpSet& set : sets) {
         std::int64_t n = 0, missing = 0, first = 0;
         for (const InpRange& r : set.members) {
           if (!set.is_given || r.is_generated) continue;
@@ -324,8 +324,20 @@ class InpMesh {
               fmt::format("{} of {} of {} '{}' (the first is {})", missing, n, kind, set.name, first));
       }
     };
-    check("NSET", deck_.node_sets, deck_.point_of_node);
-    check("ELSET", deck_.element_sets, body_.cell_of_element, deck_.other_elements);
+    check("NSET", deck_.node_sets.all, deck_.point_of_node);
+    check("ELSET", deck_.element_sets.all, body_.cell_of_element, deck_.other_elements);
+    std::vector<InpSet> of_elements, of_nodes;
+    for (const InpSurface& surface : deck_.surfaces) {
+      of_nodes.push_back(surface.nodes);
+      of_elements.emplace_back();
+      for (const InpSurface::Part& part : surface.parts)
+        of_elements.back().members.insert(of_elements.back().members.end(), part.elements.members.begin(),
+                                          part.elements.members.end());
+      for (InpSet* set : {&of_nodes.back(), &of_elements.back()})
+        set->name = surface.name, set->is_given = true;
+    }
+    check("SURFACE", of_nodes, deck_.point_of_node);
+    check("SURFACE", of_elements, body_.cell_of_element, deck_.other_elements);
     if (!all.empty())
       log::warn("'{}': members of sets are not defined in the deck: {}.", lines_.name(), beginning_of(all));
   }

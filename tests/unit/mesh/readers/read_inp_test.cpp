@@ -164,6 +164,10 @@ TEST_F(ReadInp, what_is_not_read_is_named) {
   };
   EXPECT_THAT(log_of("*NSET, NSET=a\n1, 2, 3, 101, 102\n"),
               HasSubstr("2 of 5 of NSET 'a' (the first is 101)"));
+  EXPECT_THAT(log_of("*ELSET, ELSET=e\n10\n*SURFACE, NAME=s\ne, S1\n30, S2\n31, S2\n"),
+              HasSubstr("2 of 3 of SURFACE 's' (the first is 30)"));
+  EXPECT_THAT(log_of("*SURFACE, NAME=s, TYPE=NODE\n1\n2\n3\n4\n90\n"),
+              HasSubstr("1 of 5 of SURFACE 's' (the first is 90)"));
   EXPECT_THAT(log_of("*ELEMENT, TYPE=MASS\n7, 1\n*ELSET, ELSET=e\n7, 10, 11\n"),
               AllOf(HasSubstr("1 of 3 of ELSET 'e' (the first is 11)"), HasSubstr("skipped: MASS")));
   EXPECT_THAT(log_of("*NSET, NSET=a, GENERATE\n1, 90\n"), ::testing::Not(HasSubstr("not defined")));
