@@ -110,6 +110,7 @@ ThermalSolid::ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, So
       context_(std::move(context)),
       heat_(make_heat(mesh_, geometry_, parameters_)),
       series_(context_, mesh_.comm) {
+  check_names(mesh_, parameters_);
   for (const auto& [name, probe] : parameters_.probes)
     probes_.emplace_back(mesh_, geometry_.points, name, probe.point);
   check_heat_quantities(*heat_, parameters_.quantities);

@@ -28,12 +28,15 @@ std::vector<std::string> patch_names(const mesh::Mesh& mesh) {
   return names;
 }
 
+}  // namespace
+
 void check_names(const mesh::Mesh& mesh, const SolidParameters& parameters) {
   const std::vector<std::string> patches = patch_names(mesh);
   for (const auto& [name, boundary] : parameters.boundaries)
     if (std::ranges::find(patches, name) == patches.end())
       throw Error("boundaries.{}: mesh '{}' has no patch with this name. {} The patches are {}.", name,
                   parameters.mesh, base::did_you_mean(name, patches, "patches"), base::join(patches));
+  if (parameters.analysis == SolidParameters::Analysis::thermal) return;
   for (const std::string& name : patches)
     if (!parameters.boundaries.contains(name))
       throw Error(
@@ -42,8 +45,6 @@ void check_names(const mesh::Mesh& mesh, const SolidParameters& parameters) {
           "The patches are {}.",
           name, parameters.mesh, base::join(patches));
 }
-
-}  // namespace
 
 SolidBoundaries::SolidBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                                  const SolidParameters& parameters)

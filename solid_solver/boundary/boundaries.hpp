@@ -16,6 +16,10 @@
 
 namespace couplet::solid {
 
+/// Throws Error if an entry of `boundaries` names no patch of the mesh, or a patch has no entry. In a thermal
+/// analysis a patch needs none.
+void check_names(const mesh::Mesh& mesh, const SolidParameters& parameters);
+
 /// Boundary conditions of a case on the faces of the mesh.
 class SolidBoundaries {
  public:
