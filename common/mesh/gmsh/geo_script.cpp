@@ -154,6 +154,7 @@ class Scan {
     const Tokens tokens = tokens_of(text);
     Facts(script_, tokens);
     open_.push_back(fs::weakly_canonical(file));
+    for (const Token& token : tokens) refuse_endless(token, file);
     for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
       if (!tokens[i].is("Include") && !tokens[i].is("Merge") && !tokens[i].is("ShapeFromFile")) continue;
       const Token& name = tokens[i + (tokens[i + 1].is("(") ? 2 : 1)];
@@ -166,6 +167,17 @@ class Scan {
   }
 
  private:
+  /// Refuses what would let gmsh wait for ever: pauses, and names of devices and pipes.
+  static void refuse_endless(const Token& token, const fs::path& file) {
+    std::error_code ignored;
+    const fs::path named = file.parent_path() / token.text;
+    if (token.is("Sleep"))
+      throw Error("The line {} of '{}' lets gmsh wait (Sleep). Remove it.", token.line, file.string());
+    if (token.is_text() && fs::is_other(named, ignored))
+      throw Error("The line {} of '{}' names '{}', which is a device or a pipe and may have no end.",
+                  token.line, file.string(), named.string());
+  }
+
   std::string add(const fs::path& file) {
     std::string text = read_file(file);
     script_.text += text;

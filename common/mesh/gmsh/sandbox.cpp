@@ -35,6 +35,37 @@ namespace couplet::mesh {
 
 namespace {
 
+// A signal that is to end this process while it waits for a program. It is raised again once the folder of the
+// program is gone.
+volatile std::sig_atomic_t stop_signal = 0, waited_for = 0;
+constexpr std::array stop_signals{SIGTERM, SIGINT, SIGHUP};
+
+extern "C" void end_program(int signal) {
+  stop_signal = signal;
+  if (waited_for > 0) kill(waited_for, SIGKILL);
+}
+
+/// Handles signals that would end this process by ending the program instead. Ignored signals stay ignored.
+class StopHandler {
+ public:
+  StopHandler() {
+    struct sigaction action {};
+    action.sa_handler = end_program;
+    for (std::size_t i = 0; i < stop_signals.size(); ++i) {
+      sigaction(stop_signals[i], nullptr, &before_[i]);
+      if (before_[i].sa_handler != SIG_IGN) sigaction(stop_signals[i], &action, nullptr);
+    }
+  }
+  ~StopHandler() {
+    waited_for = 0;
+    for (std::size_t i = 0; i < stop_signals.size(); ++i) sigaction(stop_signals[i], &before_[i], nullptr);
+  }
+  StopHandler(const StopHandler&) = delete;
+
+ private:
+  std::array<struct sigaction, stop_signals.size()> before_{};
+};
+
 struct ChildProcess {
   std::vector<std::string> command;      ///< program with its full path
   std::vector<std::string> environment;  ///< "NAME=value"
@@ -109,6 +140,7 @@ ProgramEnd run_child(ChildProcess p) {
   std::array<int, 2> pipe{};
   if (pipe2(pipe.data(), O_CLOEXEC) != 0) throw Error("Cannot create a pipe: {}.", std::strerror(errno));
   p.failures = pipe[1];
+  const StopHandler handler;
   const pid_t id = fork();
   if (id == 0) be_child(p);
   const int fork_error = errno;
@@ -117,9 +149,12 @@ ProgramEnd run_child(ChildProcess p) {
   const bool failed = id > 0 && read(pipe[0], &error, sizeof error) == sizeof error;
   close(pipe[0]);
   if (id < 0) throw Error("Cannot start the program '{}': {}.", p.command[0], std::strerror(fork_error));
+  waited_for = id;
+  if (stop_signal != 0) kill(id, SIGKILL);
   int status = 0;
   while (waitpid(id, &status, 0) < 0 && errno == EINTR) {
   }
+  if (stop_signal != 0) throw Error("Stopped by a signal while '{}' was running.", p.command[0]);
   if (failed) throw Error("Cannot start the program '{}': {}.", p.command[0], std::strerror(error));
   if (WIFEXITED(status)) return {WEXITSTATUS(status), 0};
   return {-1, WIFSIGNALED(status) ? WTERMSIG(status) : 0};
@@ -231,6 +266,10 @@ OwnFolder::OwnFolder() {
 OwnFolder::~OwnFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+  if (stop_signal == 0) return;
+  const int signal = stop_signal;
+  stop_signal = 0;
+  raise(signal);
 }
 
 ProgramEnd run_in_sandbox(const Words& command, const fs::path& folder, const fs::path& output,

@@ -29,7 +29,8 @@ class Barrier {
   std::vector<sock_filter> filter_;
 };
 
-/// Private temporary folder of the user for one run of a program. The destructor removes it.
+/// Private temporary folder of the user for one run of a program. The destructor removes it, and raises a signal
+/// that would have ended this process meanwhile.
 class OwnFolder {
  public:
   OwnFolder();

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <sys/stat.h>
+
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::geo_script_test {
 using namespace mesh;
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 class Geo : public testing::Test {
  protected:
@@ -45,6 +49,19 @@ TEST_F(Geo, a_last_line_that_gmsh_would_not_read_is_found) {
   EXPECT_EQ(script("x = 1; Include \"b.geo\";\n").lost, "");
   script("x = 1; y = 2;", "b.geo");
   EXPECT_EQ(script("x = 1; Include \"b.geo\";\n").lost, "line 1 of '" + (folder / "b.geo").string() + "'");
+}
+
+TEST_F(Geo, what_may_have_no_end_is_refused) {
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const auto error = [&](const std::string& text) { return support::error_of([&] { script(text); }); };
+  for (const char* text : {"x = 1;\nMerge \"pipe\";\n", "\nInclude 'pipe';\n",
+                           "\nField[1].FileName = \"pipe\";\n", "\nMerge \"/dev/urandom\";\n"})
+    EXPECT_THAT(error(text),
+                AllOf(HasSubstr("The line 2 of '"), HasSubstr("is a device or a pipe and may have no end")))
+        << text;
+  EXPECT_THAT(error("x = 1;\nSleep 30;\n"),
+              HasSubstr("line 2 of '" + (folder / "a.geo").string() + "' lets gmsh wait (Sleep)"));
+  EXPECT_EQ(error("Physical Curve(\"Sleep\") = {1}; // Sleep 30;\n"), "");
 }
 
 TEST_F(Geo, a_file_that_includes_itself_is_refused) {
