@@ -3,13 +3,16 @@
 themselves. Differences are listed. If an element is not supported, it is named with its line, and no case is written (exit code 2)."""
 import os
 import pathlib
+import subprocess
+import tempfile
 
 import yaml
 
-from couplet import files
+from couplet import files, places
 from couplet.precice.configuration import Import
 from couplet.precice.elements import read
-from couplet.runs.case import CONTROL, Wrong, expect
+from couplet.runs.case import CONTROL, COUPLER, Wrong, expect
+from couplet.runs.job import surroundings
 
 
 def declare(parser):
@@ -29,6 +32,18 @@ def text_of(found, file, output):
     return "\n".join([*lines, ""]) + yaml.dump(case, sort_keys=False, default_flow_style=None, width=160, allow_unicode=True)
 
 
+def refusal(text):
+    """Complaint of the coupler about a case. Empty if there is none, or no coupler."""
+    coupler = places.build() / "bin" / COUPLER
+    if not coupler.is_file():
+        return ""
+    with tempfile.TemporaryDirectory() as folder:
+        case = pathlib.Path(folder) / "case.yaml"
+        case.write_text(text)
+        done = subprocess.run([coupler, case, "--check"], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=surroundings())
+    return done.stderr.replace(str(case), "case.yaml").strip() if done.returncode else ""
+
+
 def run(arguments):
     file = arguments.configuration
     found = Import(read(file))
@@ -41,6 +56,8 @@ def run(arguments):
         return 0
     output = arguments.output or file.with_suffix(".yaml")
     expect(arguments.force or not output.exists(), f"{output}: the file exists; --force overwrites it.")
-    files.write(output.parent, output.name, text_of(found, file, output))
+    text = text_of(found, file, output)
+    expect(not (problem := refusal(text)), f"{file}: the coupler would refuse the case of this configuration:\n{problem}")
+    files.write(output.parent, output.name, text)
     print(f"{output}: a case of {', '.join(found.case['participants'])}. couplet run {output} --with NAME='./program {file.name}' ... starts it")
     return 0

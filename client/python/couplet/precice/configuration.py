@@ -125,12 +125,16 @@ class Import:
         return ordered
 
     def _number(self, element, otherwise=None):
+        return otherwise if element is None else self._finite(element, "value", otherwise)
+
+    def _finite(self, element, key, otherwise=None):
         try:
-            return float(element.get("value"))
-        except (AttributeError, ValueError):
-            if element is not None:
-                self._refuse(element, f"<{element.name}>: '{element.get('value')}' is no number")
-            return otherwise
+            if math.isfinite(number := float(element.get(key))):
+                return number
+        except ValueError:
+            pass
+        self._refuse(element, f"<{element.name}>: '{element.get(key)}' is no finite number")
+        return otherwise
 
     def _times(self):
         sizes = {self._number(s.one("time-window-size")) for s in self.schemes}
@@ -210,7 +214,7 @@ class Import:
             if (e := a.one(element)) and (number := self._number(e)) is not None:
                 values[key] = int(number) if whole else number
         if (f := a.one("filter")) and f.get("limit"):
-            values["filter"] = float(f.get("limit"))
+            values["filter"] = self._finite(f, "limit")
             if f.get("type") != "QR2":
                 self._note(f, f"the filter {f.get('type')} is taken as QR2: a column goes by its own size")
         if kind == "IQN-IMVJ":
