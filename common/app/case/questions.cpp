@@ -48,23 +48,16 @@ class FileCheck {
     std::error_code ignored;
     // Caches are created on demand, some by a script of the case.
     if (name.ends_with(".cache.msh") && !fs::exists(file, ignored)) return;
-    if (!fs::is_regular_file(file, ignored)) {
-      report("mesh", fmt::format("the file '{}' does not exist.", file.string()));
-      return;
-    }
     try {
+      if (!io::is_cut_mesh(file) || !fs::exists(file, ignored)) mesh::check_mesh_file(file);
       if (file.extension() == ".msh") {
         if (!mesh::is_converted(file)) check_patches(mesh::read_msh(file).patches);
-      } else if (file.extension() == ".inp") {
-        check_patches(mesh::read_inp(file).patches);
+      } else if (mesh::is_deck(file)) {
+        check_patches(mesh::read_deck(file).patches);
       } else if (file.extension() == ".geo") {
         check_geo(mesh::read_geo(file));
       } else if (io::is_cut_mesh(file)) {
         check_patches(io::read_cut_mesh_facts(file).patches);
-      } else if (const std::string kind = file.extension().string();
-                 kind != ".cgns" && !mesh::is_foreign(kind)) {
-        report("mesh",
-               fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo, .cgns or .h5 file.", name));
       }
     } catch (const Error& error) {
       report("mesh", error.what());

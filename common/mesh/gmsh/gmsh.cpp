@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -231,9 +232,9 @@ fs::path convert_mesh(const fs::path& file) {
   if (file.extension() == ".msh" && !is_converted(file)) return file;
   if (file.extension() == ".cgns" && !reads_cgns())
     throw Error(
-        "Cannot read the mesh '{}': the gmsh on the PATH was built without CGNS. Convert it elsewhere, for "
-        "example with meshio, to .msh 4.1 with its groups as physical names.",
-        file.string());
+        "Cannot read the mesh '{}': the gmsh on the PATH was built without CGNS. Export it in another format: "
+        "{}.",
+        file.string(), formats_with_names);
   if (!std::ifstream(file))
     throw Error("Cannot open the file '{}'. Check the path and the permissions.", file.string());
   const fs::path result = cache_of(file, text_of(file));
@@ -266,8 +267,10 @@ std::string complaint(std::vector<std::string> lines) {
 
 }  // namespace
 
-bool is_foreign(const std::string& extension) {
-  constexpr std::string_view all[] = {".unv", ".med", ".exo", ".e", ".ex2", ".g", ".gen"};
+bool is_foreign(std::string extension) {
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  constexpr std::string_view all[] = {".unv", ".med", ".exo", ".e",   ".ex2",
+                                      ".g",   ".gen", ".su2", ".bdf", ".nas"};
   return std::ranges::find(all, extension) != std::end(all);
 }
 
@@ -287,9 +290,8 @@ RawMesh read_foreign(const fs::path& file) {
   if (end.code == no_module)
     throw Error(
         "The mesh '{}' is read with the Python module h5py, which python3 on the PATH lacks. Install it "
-        "(Debian: apt install python3-h5py), or convert the mesh elsewhere to .msh 4.1 with its groups as "
-        "physical names.",
-        file.string());
+        "(Debian: apt install python3-h5py), or export the mesh in another format: {}.",
+        file.string(), formats_with_names);
   if (end.code != 0 || !fs::is_regular_file(fs::symlink_status(deck)))
     throw Error(
         "Cannot read the mesh '{}': {}.", file.string(),

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/mesh/distributed/mesh_block.hpp"
@@ -48,6 +49,11 @@ bool is_sound_cache(const std::filesystem::path& file);
 /// Returns the .msh to read: the file itself, or what gmsh makes of a .msh of another version or of a .cgns,
 /// if it supports that, as a cached mesh. Throws Error for a format that gmsh does not read.
 std::filesystem::path convert_mesh(const std::filesystem::path& file);
+
+/// Throws Error with advice if a mesh does not exist, is in a format that is not read, or cannot have these
+/// parameters.
+void check_mesh_file(const std::filesystem::path& file, const MeshParameters& parameters = {});
+
 /// Block of this rank for a mesh in a .msh, .inp, .geo (meshed with these parameters) or foreign file. Throws
 /// Error if it does not have `dim` dimensions. Collective.
 MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
@@ -57,8 +63,18 @@ MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
 /// three-dimensional if it names a physical volume. Throws Error.
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
 
-/// Returns true for the formats of read_foreign(): universal files (.unv), MED and Exodus (.exo, .e, ...).
-bool is_foreign(const std::string& extension);
+/// Returns true for the formats of read_foreign(): universal files (.unv), MED, Exodus (.exo, .e, ...), SU2 and
+/// Nastran (.bdf, .nas).
+bool is_foreign(std::string extension);
+
+/// Formats to export a mesh in, for messages.
+inline constexpr std::string_view formats_with_names =
+    ".su2 (markers), .bdf (sets and properties), .unv, .med or .cgns (groups), .exo (sets of sides), .inp "
+    "(surfaces and sets) or .msh of gmsh (physical groups)";
+
+/// Returns true if a file is an input deck or read as one, see read_foreign().
+bool is_deck(const std::filesystem::path& file);
+RawMesh read_deck(const std::filesystem::path& file);
 
 /// Reads a mesh of another program by a Python script in a sandbox, which passes it on as an input deck
 /// (read_inp). Groups of cells become zones, groups of faces, sets of sides and sets of nodes patches. What

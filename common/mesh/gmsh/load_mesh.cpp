@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <string>
 
@@ -20,16 +21,6 @@ namespace {
 
 // Larger files (about 500 000 cells) are read by all ranks together, so that none holds the mesh.
 constexpr std::uintmax_t bytes_of_large_msh = std::uintmax_t(64) << 20;
-
-/// Returns true if the mesh is read as an input deck. Others are .msh files or converted by gmsh.
-bool is_deck(const std::filesystem::path& file) {
-  const std::string kind = file.extension().string();
-  return kind == ".inp" || is_foreign(kind);
-}
-
-RawMesh read_deck(const std::filesystem::path& file) {
-  return file.extension() == ".inp" ? read_inp(file) : read_foreign(file);
-}
 
 /// Reads this rank's block of a mesh. A .geo is meshed in `dim` dimensions. Collective.
 MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
@@ -58,29 +49,6 @@ MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
   }
 }
 
-void check_file(const std::filesystem::path& file, const MeshParameters& parameters) {
-  if (!std::filesystem::is_regular_file(file))
-    throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
-                file.string());
-  const std::string kind = file.extension().string();
-  const bool foreign = kind == ".cgns" || is_foreign(kind);
-  if (kind == ".vtk")
-    throw Error(
-        "Cannot read the mesh file '{}': this format does not name its parts. Convert it with meshio to "
-        ".msh 4.1 with physical names, or export it as .unv, whose groups become patches and zones.",
-        file.string());
-  if (kind != ".msh" && kind != ".inp" && kind != ".geo" && !foreign)
-    throw Error(
-        "The mesh file '{}' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file. Convert it with "
-        "gmsh or meshio to .msh 4.1 with physical names.",
-        file.string());
-  if (kind != ".geo" && !parameters.empty())
-    throw Error(
-        "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
-        ".geo it was made from.",
-        file.string());
-}
-
 void check_dimension(const std::filesystem::path& file, int found, GlobalIndex cells, int dim) {
   if (cells == 0)
     throw Error(
@@ -93,11 +61,52 @@ void check_dimension(const std::filesystem::path& file, int found, GlobalIndex c
         dim == 3 ? " Put the volume into a physical group; otherwise gmsh does not save its cells." : "");
 }
 
+/// Returns the program whose mesh this is, if it is a known one that is not read. Otherwise an empty text.
+std::string unread_program(const std::filesystem::path& file) {
+  const std::string kind = file.extension().string();
+  if (file.filename() == "polyMesh" || file.parent_path().filename() == "polyMesh" || kind == ".foam" ||
+      std::filesystem::is_directory(file / "polyMesh") ||
+      std::filesystem::is_directory(file / "constant/polyMesh"))
+    return "OpenFOAM";
+  char first = 0;
+  if (kind == ".msh" || kind == ".cas") std::ifstream(file) >> first;
+  return first == '(' ? "Fluent" : "";
+}
+
 }  // namespace
+
+bool is_deck(const std::filesystem::path& file) {
+  const std::string kind = file.extension().string();
+  return kind == ".inp" || is_foreign(kind);
+}
+
+RawMesh read_deck(const std::filesystem::path& file) {
+  return file.extension() == ".inp" ? read_inp(file) : read_foreign(file);
+}
+
+void check_mesh_file(const std::filesystem::path& file, const MeshParameters& parameters) {
+  const std::string program = unread_program(file), kind = file.extension().string();
+  if (!std::filesystem::exists(file) || (program.empty() && !std::filesystem::is_regular_file(file)))
+    throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
+                file.string());
+  if (!program.empty() || (kind != ".msh" && kind != ".geo" && kind != ".cgns" && !is_deck(file)))
+    throw Error(
+        "The mesh file '{}' is {}. Export the mesh from the program that made it, in a format that keeps the "
+        "names of its parts: {}.",
+        file.string(),
+        program.empty() ? "not a .msh, .geo, .inp, .su2, .bdf, .unv, .med, .exo or .cgns file"
+                        : fmt::format("one of {}, which is not read", program),
+        formats_with_names);
+  if (kind != ".geo" && !parameters.empty())
+    throw Error(
+        "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
+        ".geo it was made from.",
+        file.string());
+}
 
 MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                     const MeshParameters& parameters) {
-  on_root(comm, [&] { check_file(file, parameters); });
+  on_root(comm, [&] { check_mesh_file(file, parameters); });
   MeshBlock block = read_block(comm, file, dim, parameters);
   check_dimension(file, block.dim, block.cell_shares.n, dim);
   return block;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""to_deck.py MESH DECK writes a universal file (.unv), MED or Exodus file as an input deck. Part of the programs (gmsh.cpp), which run it in
-their sandbox; prints what it leaves out. Needs h5py for MED and for Exodus in HDF5 (netCDF-4), nothing otherwise."""
-import array, itertools, struct, sys
+"""to_deck.py MESH DECK writes a universal file (.unv), MED, Exodus, SU2 or Nastran file as an input deck. Part of the programs (gmsh.cpp), which run
+it in their sandbox; prints what it leaves out. Needs h5py for MED and for Exodus in HDF5 (netCDF-4), nothing otherwise."""
+import array, itertools, re, struct, sys
 # Cells: dimension and numbers of nodes by family, the first of which are the corners. Faces of Exodus, by corners from 0.
 SHAPES = {'C3D4': (3, 4, (4, 8, 10, 11, 14, 15), ((0, 1, 3), (1, 2, 3), (0, 3, 2), (0, 2, 1))),
           'C3D8': (3, 8, (8, 9, 20, 26, 27), ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2, 1), (4, 5, 6, 7))),
@@ -10,6 +10,7 @@ SHAPES = {'C3D4': (3, 4, (4, 8, 10, 11, 14, 15), ((0, 1, 3), (1, 2, 3), (0, 3, 2
           'CPS3': (2, 3, (3, 4, 6, 7), ((0, 1), (1, 2), (2, 0))), 'CPS4': (2, 4, (4, 5, 8, 9), ((0, 1), (1, 2), (2, 3), (3, 0))),
           'T2D2': (1, 2, (2, 3), ())}
 NODES, CELLS, SETS, LEFT, second = {}, [], {}, {}, 0  # CELLS: family, corners, groups; LEFT: what is not read and how often
+BLOCKS = set()  # groups that name only faces that no set has: blocks of Exodus, properties of Nastran
 class Problem(Exception):
     pass
 def leave(what, n=1):
@@ -252,6 +253,7 @@ def read_exodus(name):
     FAMILIES = (('TET', 'C3D4'), ('HEX', 'C3D8'), ('WED', 'C3D6'), ('PRI', 'C3D6'), ('PEN', 'C3D6'), ('PYR', 'C3D5'), ('TRI', 'CPS3'), ('QUA', 'CPS4'),
                 ('SHE', 'SHELL'), ('BAR', 'T2D2'), ('BEA', 'T2D2'), ('TRU', 'T2D2'), ('ROD', 'T2D2'), ('EDG', 'T2D2'), ('LIN', 'T2D2'))
     where = []
+    BLOCKS.update(names('eb', 'block'))
     for b, title in enumerate(names('eb', 'block'), 1):
         if 'connect%d' % b not in file:
             continue
@@ -291,9 +293,151 @@ def read_exodus(name):
     if any(key in file for key in ('vals_nod_var1', 'vals_nod_var', 'vals_elem_var1eb1')):
         say('results in the file are not read, only its mesh')
 
+def read_su2(name):
+    with open(name, encoding='latin-1') as file:
+        rows = iter([line for line in (line.split('%')[0].strip() for line in file) if line])
+    FAMILIES = {3: 'T2D2', 5: 'CPS3', 9: 'CPS4', 10: 'C3D4', 12: 'C3D8', 13: 'C3D6', 14: 'C3D5'}
+    def elements(n, groups):
+        for line in itertools.islice(rows, n):
+            words = [int(word) for word in line.split()]
+            family = FAMILIES.get(words[0])
+            if family is None:
+                leave('elements of the type %d are not read' % words[0])
+                continue
+            cell(family, [word + 1 for word in words[1:SHAPES[family][1] + 1]], list(groups))
+    dim, tag = 3, ''
+    for line in rows:
+        key, _, value = (part.strip() for part in line.partition('='))
+        if key == 'NDIME':
+            dim = int(value)
+        elif key == 'NZONE' and int(value) > 1:
+            raise Problem('it has several zones; write each to a file of its own')
+        elif key == 'NELEM':
+            elements(int(value), [])
+        elif key == 'NPOIN':
+            for i, line in enumerate(itertools.islice(rows, int(value.split()[0])), 1):
+                NODES[i] = [float(word) for word in line.split()[:dim]]
+        elif key == 'MARKER_TAG':
+            tag = value
+        elif key == 'MARKER_ELEMS':
+            elements(int(value), [tag])
+    if not NODES:
+        raise Problem('it has no points (NPOIN=), so it is no mesh of SU2')
+
+def read_bdf(name):
+    """Bulk data of Nastran, whose fields are 8 or 16 characters wide or end with a comma. Sets and properties are numbers; names are in comments."""
+    with open(name, encoding='latin-1') as file:
+        lines = file.read().splitlines()
+    # Number of nodes and position of the first, after the name of the card.
+    ELEMENTS = {'CTETRA': ('C3D4', 10, 2), 'CHEXA': ('C3D8', 20, 2), 'CPENTA': ('C3D6', 15, 2), 'CPYRAM': ('C3D5', 13, 2), 'CPYRA': ('C3D5', 13, 2),
+                'CTRIA3': ('CPS3', 3, 2), 'CTRIAR': ('CPS3', 3, 2), 'CTRIA6': ('CPS3', 6, 2), 'CQUAD4': ('CPS4', 4, 2), 'CQUADR': ('CPS4', 4, 2),
+                'CQUAD8': ('CPS4', 8, 2), 'CBAR': ('T2D2', 2, 2), 'CBEAM': ('T2D2', 2, 2), 'CROD': ('T2D2', 2, 2), 'PLOTEL': ('T2D2', 2, 1)}
+    property_names, set_names, sets, cards, skipped, unnamed = {}, {}, {}, [], set(), set()
+    def note(text, following):
+        """Names that preprocessors write into comments."""
+        for pattern, names in ((r'HMNAME\s+PROP\w*\s+(\d+)\s*"([^"]*)"', property_names), (r'HMNAME\s+COMP\w*\s+(\d+)\s*"([^"]*)"', component_names),
+                               (r'HMSET\s+(\d+)\s+\d+\s*"([^"]*)"', set_names), (r'\s*Femap.* Property\s+(\d+)\s*:\s*(.*)', property_names),
+                               (r'\s*Femap.* Group\s+(\d+)\s*:\s*(.*)', set_names), (r'ANSA_NAME_COMMENT;(\d+);P\w+;([^;]*);', property_names),
+                               (r'ANSA_NAME_COMMENT;(\d+);SET;([^;]*);', set_names)):
+            found = re.match(pattern, text)
+            if found:
+                names[int(found[1])] = found[2].strip()
+        region = re.match(r'\s*Elements and Element Properties for region\s*:\s*(.*)', text)
+        card = re.match(r'P\w+[\s,*]+(\d+)', following)
+        if region and card:
+            property_names[int(card[1])] = region[1].strip()
+    component_names = {}
+    bulk = not any(re.match(r'\s*BEGIN\s+BULK', line, re.I) for line in lines)
+    rows = iter(enumerate(lines))
+    for i, line in rows:
+        if line.startswith('$'):
+            note(line[1:], lines[i + 1] if i + 1 < len(lines) else '')
+        line = line.split('$')[0].expandtabs(8).rstrip()
+        given = re.match(r'\s*SET\s+(\d+)\s*=\s*(.*)', line, re.I)
+        if given:
+            words = given[2]
+            while words.endswith(','):
+                words += next(rows, (0, ''))[1].split('$')[0].strip() or ' '
+            sets[int(given[1])] = words.upper().replace(',', ' ').split()
+        elif re.match(r'\s*(BEGIN\s+BULK|ENDDATA)', line, re.I):
+            bulk = line.split()[0].upper() == 'BEGIN'
+        elif re.match(r'\s*INCLUDE', line, re.I):
+            raise Problem('it includes other files; write the mesh into one file')
+        elif bulk and line:
+            fields = [word.strip() for word in line.split(',')] if ',' in line else [line[:8].strip()]
+            width = 16 if '*' in fields[0] else 8
+            n = 64 // width
+            fields = fields[:n + 1] if ',' in line else fields + [line[8 + width * k:8 + width * (k + 1)].strip() for k in range(n)]
+            fields += [''] * (n + 1 - len(fields))
+            if fields[0][:1] in ('', '+', '*') and cards:
+                cards[-1] += fields[1:]
+            else:
+                cards.append([fields[0].strip('* ').upper()] + fields[1:])
+    real = lambda word: float(re.sub(r'(?<=[\d.])E?([+-])', r'E\1', word.upper().replace('D', 'E'))) if word else 0.0
+    place = {}
+    for head, *data in cards:
+        if head == 'GRID':
+            if data[1] not in ('', '0'):
+                raise Problem('node %s is in the coordinate system %s; write all nodes in the basic one' % (data[0], data[1]))
+            NODES[int(data[0])] = [real(word) for word in data[2:5]]
+        elif head in ELEMENTS:
+            family, n, first = ELEMENTS[head]
+            nodes = [int(word) for word in data[first:first + n] if word]
+            title = ''
+            if first == 2:
+                number = int(data[1] or data[0])
+                title = property_names.get(number) or component_names.get(number) or 'property_%d' % number
+                BLOCKS.add(title)
+                unnamed.update([title] if title == 'property_%d' % number else [])
+            if len(nodes) < SHAPES[family][1]:
+                raise Problem('%s %s has %d nodes' % (head, data[0], len(nodes)))
+            place[int(data[0])] = cell(family, nodes, [title] if title else [])
+        elif head in ('SET1', 'SET3'):
+            sets[int(data[0])] = [word.upper() for word in data[1 if head == 'SET1' else 2:] if word]
+        elif re.match('C(?!ORD)|R(BE|BAR|ROD)', head):
+            leave("cards '%s' are not read" % head)
+        else:
+            skipped.add(head)
+    if not NODES:
+        raise Problem('it has no nodes (GRID), so it is no bulk data of Nastran or not of a mesh')
+    for number, words in sets.items():
+        members, title = set(), set_names.get(number) or 'set_%d' % number
+        try:
+            for word, before, after in zip(words, [''] + words, words[1:] + ['']):
+                if word == 'THRU':
+                    members.update(range(int(before), int(after) + 1))
+                elif word not in ('ALL', 'EXCEPT', 'ELEM', 'GRID'):
+                    members.add(int(word))
+        except ValueError:
+            members = set()
+        faces = [k for k in members if k in place]
+        if 'EXCEPT' in words or not members:
+            leave("sets such as '%s' are not read" % title)
+        elif len(faces) > sum(k in NODES for k in members) or faces and all(SHAPES[CELLS[place[k]][0]][0] < 3 for k in faces):
+            for k in faces:
+                CELLS[place[k]][2].append(title)
+            unnamed.update([title] if title == 'set_%d' % number else [])
+        else:
+            SETS[title] = sorted(members)
+            unnamed.update([title] if title == 'set_%d' % number else [])
+    if unnamed:
+        say('properties and sets without a name in a comment are called by their number: ' + ', '.join(sorted(unnamed)))
+    if skipped:
+        say('only the mesh is read; skipped: ' + ', '.join(sorted(skipped)))
+
 def write(name):
     if not CELLS:
         raise Problem('it has no elements that can be read')
+    dim = max(SHAPES[family][0] for family, _, _ in CELLS)
+    faces, cells = {}, []
+    for family, corners, groups in CELLS:
+        # A face may be listed by several sets, and by an element of its own.
+        known = faces.setdefault(frozenset(corners), groups) if SHAPES[family][0] < dim else groups
+        if known is groups:
+            cells.append((family, corners, groups))
+        else:
+            known += [group for group in groups if group not in known]
+    CELLS[:] = cells
     size, used, plain = {}, set(), {}
     for _, _, groups in CELLS:
         for group in groups:
@@ -311,7 +455,8 @@ def write(name):
             deck.write('%d, %s\n' % (label, ', '.join(repr(float(v)) for v in x)))
         before, kept = None, set()
         for i, (family, corners, groups) in enumerate(CELLS):
-            group = min(groups, key=lambda g: (size[g], g)) if groups else ''
+            is_face = SHAPES[family][0] < dim
+            group = min(groups, key=lambda g: (is_face and g in BLOCKS, size[g], g)) if groups else ''
             kept.add(group)
             if before != (family, group):
                 deck.write('*ELEMENT, TYPE=%s%s\n' % (family, ', ELSET=' + plain[group] if group else ''))
@@ -322,15 +467,15 @@ def write(name):
             deck.writelines('%d\n' % n for n in nodes)
     lost = sorted(group for group in size if group not in kept)
     if lost:
-        say('all cells or faces of these groups are in smaller groups, which name them: ' + ', '.join(lost))
+        say('all cells or faces of these groups are in sets or smaller groups, which name them: ' + ', '.join(lost))
     if second:
         say('%d elements of second order are reduced to their corners; compensate with about half the element size' % second)
     for what, n in LEFT.items():
         say('%d %s' % (n, what), 'warning')
 
 try:
-    kind = sys.argv[1].rsplit('.', 1)[-1]
-    (read_unv if kind == 'unv' else read_med if kind == 'med' else read_exodus)(sys.argv[1])
+    kind = sys.argv[1].rsplit('.', 1)[-1].lower()
+    {'unv': read_unv, 'med': read_med, 'su2': read_su2, 'bdf': read_bdf, 'nas': read_bdf}.get(kind, read_exodus)(sys.argv[1])
     write(sys.argv[2])
 except Problem as problem:
     print(problem)

@@ -200,10 +200,22 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
   EXPECT_EQ(error(folder / "none.msh", 3),
             "The mesh file '" + (folder / "none.msh").string() +
                 "' does not exist. The path is relative to the folder of the YAML file.");
-  EXPECT_THAT(error(write("mesh.stl", ""), 3),
-              HasSubstr("is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file."));
+  EXPECT_THAT(
+      error(write("mesh.stl", ""), 3),
+      HasSubstr(
+          "is not a .msh, .geo, .inp, .su2, .bdf, .unv, .med, .exo or .cgns file. Export the mesh from the program "
+          "that made it, in a format that keeps the names of its parts: .su2 (markers)"));
   // gmsh would take both for scripts.
-  EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("this format does not name its parts"));
+  EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("is not a .msh"));
+  // Fluent's are in ASCII or binary, and begin alike.
+  for (const char* text : {"(0 \"Fluent mesh\")\n(2 3)\n", "\n(3010 (1 1 8 1 3)\n("})
+    EXPECT_THAT(error(write("fluent.msh", text), 3),
+                HasSubstr("fluent.msh' is one of Fluent, which is not read. Export"));
+  std::filesystem::create_directories(folder / "constant/polyMesh");
+  for (const char* name : {"constant/polyMesh", "constant", "."})
+    EXPECT_THAT(error(folder / name, 3), HasSubstr("' is one of OpenFOAM, which is not read. Export"))
+        << name;
+  EXPECT_THAT(error(folder / "other", 3), HasSubstr("does not exist"));
   EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("mesh.inp: the deck has no solid elements"));
   EXPECT_THAT(error(test::data / "plane_41_ascii.msh", 3),
               HasSubstr("is 2-dimensional, but the case sets 'dimension: 3'."));
