@@ -52,15 +52,17 @@ def expect_bounded(text):
         expect(around[-1][1] <= MOST_VALUES, f"more than {MOST_VALUES} values. Do anchors contain each other?")
 
 
-def expect_plain_keys(node):
-    """Rejects control characters in keys, which are names of files and of columns."""
+def expect_plain(node):
+    """Rejects control characters, as the programs do. Keys are names of files and of columns, and have no line breaks and tabs either."""
     if isinstance(node, dict):
         for key, value in node.items():
             expect(not CONTROL.search(str(key)), f"the key {str(key)!r} contains a control character; remove it.")
-            expect_plain_keys(value)
+            expect_plain(value)
     elif isinstance(node, list):
         for value in node:
-            expect_plain_keys(value)
+            expect_plain(value)
+    elif isinstance(node, str):
+        expect(not CONTROL.search(node.replace("\n", "").replace("\t", "")), f"the value {node!r} contains a control character; remove it.")
 
 
 def load(text, file=None):
@@ -68,7 +70,7 @@ def load(text, file=None):
     try:
         expect_bounded(text)
         found = yaml.load(text, Loader=LOADER)
-        expect_plain_keys(found)
+        expect_plain(found)
         return found
     except Wrong as problem:
         raise Wrong(f"{file or 'YAML'}:1:1: {problem}") from None
