@@ -95,7 +95,7 @@ class LinearTheory final : public diagnostics::Diagnostic {
             fmt::format("nothing holds the solid: {}; a body that can move freely has no buckling load.",
                         base::join(free.modes)));
     const BucklingEstimate found =
-        estimate_buckling(body, view_.fields, view_.now(), *method, compression_seen_);
+        estimate_buckling(body, view_.fields, view_.stepper, *method, compression_seen_);
     if (!found.matters()) return;
     buckling_factor_ = std::min(buckling_factor_, found.factor);
     add(report, body.is_dynamic() ? dynamic_buckling_finding(found) : buckling_finding(found, "at most "));
@@ -399,11 +399,13 @@ std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& fou
                   "state"};
 }
 
-BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, const SolidState& state,
-                                   SolutionMethod& method, double& compression_seen) {
+BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields,
+                                   const SolidStepper& stepper, SolutionMethod& method,
+                                   double& compression_seen) {
   const mesh::Geometry& geometry = body.geometry();
   const mesh::Mesh& mesh = body.mesh();
-  elastic::Prestress prestress = prestress_of(body, fields, state.time);
+  const SolidState& state = stepper.state();
+  elastic::Prestress prestress = prestress_of(body, fields, state.time, stepper.last_solve().interface);
   double softest = 1e300;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const elastic::LameConstants lame = body.elastic().lame(c);

@@ -7,8 +7,8 @@
 
 #include "common/diagnostics/finding.hpp"
 #include "solid_solver/body/solid_body.hpp"
-#include "solid_solver/body/solid_state.hpp"
 #include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 
 namespace couplet::solid {
@@ -71,7 +71,8 @@ std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstim
 /// of the least factor stay far above `low`. Skipped if the compression is far below the
 /// buckling strain of such a slender body, 0.2 (t/L)^2 for a clamped column, or hardly exceeds
 /// `compression_seen` [Pa], which is updated. Collective.
-BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, const SolidState& state,
-                                   SolutionMethod& method, double& compression_seen);
+BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields,
+                                   const SolidStepper& stepper, SolutionMethod& method,
+                                   double& compression_seen);
 
 }  // namespace couplet::solid

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -70,13 +71,36 @@ void add_pressure_slopes(const SolidBody& body, double time, std::vector<elastic
   }
 }
 
+/// Adds the stiffness of the even pressure in a partner's forces f, `dim` values per boundary face of owned cells,
+/// p = -sum f.S / sum S.S over the loaded faces. Pressures of single faces would miss what maps carry around corners.
+void add_partner(const SolidBody& body, std::span<const double> force, std::vector<elastic::PlaceBlock>& to) {
+  const mesh::Mesh& mesh = body.mesh();
+  const auto dim = Eigen::Index(mesh.dim);
+  std::vector<double> pressure(force.size() / std::size_t(dim));
+  std::array<double, 2> sums{};
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
+    const Eigen::Map<const Eigen::VectorXd> f(force.data() + i * std::size_t(dim), dim);
+    const Vec3& area = body.geometry().face_area[mesh.n_interior + Index(i)];
+    pressure[i] = f.isZero(0) ? 0 : 1;
+    sums[0] -= f.dot(area.head(dim));
+    sums[1] += pressure[i] * area.squaredNorm();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  if (sums[1] > 0)
+    for (double& p : pressure) p *= sums[0] / sums[1];
+  const auto blocks = elastic::pressure_stiffness(mesh, body.geometry(), pressure);
+  to.insert(to.end(), blocks.begin(), blocks.end());
+}
+
 }  // namespace
 
-elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time) {
+elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time,
+                                std::span<const double> interface) {
   const mesh::Mesh& mesh = body.mesh();
   elastic::Prestress prestress{
       fields.face_stress(0, mesh.n_flux_faces(), fields.point_displacement()),
       elastic::pressure_stiffness(mesh, body.geometry(), body.boundaries().pressures(time))};
+  add_partner(body, interface, prestress.loads);
   add_body_forces(body, time, prestress.loads);
   add_pressure_slopes(body, time, prestress.loads);
   return prestress;

@@ -40,8 +40,10 @@ modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenMod
 
 /// Prestress of the linear solution in `fields` with the tangent of the loads at `time`. Pressures follow the
 /// surface, and they and body forces are those of the place to which the body moves. A body force without
-/// potential (b_y = f(x)) belongs to the body, and tractions and forces keep their direction. Collective.
-elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time);
+/// potential (b_y = f(x)) belongs to the body, and tractions and forces keep their direction. So do the forces of a partner,
+/// SolidStepper::last_solve().interface, except for their even pressure. Collective.
+elastic::Prestress prestress_of(const SolidBody& body, const SolidFields& fields, double time,
+                                std::span<const double> interface = {});
 
 /// Largest compression in it [Pa], at least 0. Collective.
 double compression(const mesh::Mesh& mesh, const elastic::Prestress& prestress);

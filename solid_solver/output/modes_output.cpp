@@ -104,7 +104,8 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
 
 void SolidOutput::write_preloaded_modes() {
   if (context_.output_folder.empty()) return;
-  const elastic::Prestress prestress = prestress_of(body_, derived_, stepper_.state().time);
+  const elastic::Prestress prestress =
+      prestress_of(body_, derived_, stepper_.state().time, stepper_.last_solve().interface);
   try {
     const modes::EigenModes found = preloaded_modes(body_, prestress, body_.parameters().output.modes);
     write_vibrations({body_.mesh(), body_.elastic(), {}, body_.kernel(), 0}, found,
@@ -120,7 +121,8 @@ void SolidOutput::write_buckling() {
   const int asked = body_.parameters().output.buckling;
   Buckling found;
   try {
-    found = find_buckling(body_, prestress_of(body_, derived_, stepper_.state().time), asked);
+    found = find_buckling(
+        body_, prestress_of(body_, derived_, stepper_.state().time, stepper_.last_solve().interface), asked);
   } catch (const SolveFailure& e) {
     throw Error("output.buckling: {}", e.what());
   }

@@ -171,8 +171,8 @@ TEST(BucklingEstimate, finds_low_factors_and_leaves_others_alone) {
       const auto solid = stepped(bar(cells, 40, dimension_of(cells) == 2 ? 4 : 2, 0.05),
                                  column(dimension_of(cells), part * critical));
       double seen = 0;
-      const BucklingEstimate found = estimate_buckling(
-          solid->body(), solid->fields(), solid->stepper().state(), *solid->stepper().method(), seen);
+      const BucklingEstimate found = estimate_buckling(solid->body(), solid->fields(), solid->stepper(),
+                                                       *solid->stepper().method(), seen);
       RecordProperty(fmt::format("factor_{}", part), fmt::format("{:.4f}", found.factor));
       if (part == 0.1 || part < 0)
         EXPECT_EQ(found.factor, 0);
