@@ -28,9 +28,10 @@ int main(int argc, char** argv) {
               link = [peer = context.mesh_peer](const mesh::Mesh& m, std::span<const Vec3> points) {
                 return coupling::make_mesh_motion_source(peer, m, points);
               };
-            return fluid::make_participant(
-                std::move(loaded), parameters,
-                {context.name, context.output_folder, context.restart_time, context.simulation.fields}, link);
+            return fluid::make_participant(std::move(loaded), parameters,
+                                           {context.name, context.output_folder, context.restart_time,
+                                            context.simulation.fields, context.loads_at_rest},
+                                           link);
           },
       .diagnose = [](const coupling::Participant& participant,
                      diagnostics::Diagnostics& all) { fluid::add_diagnostics(participant, all); },

@@ -96,7 +96,7 @@ std::vector<double> FluidParticipant<D>::wall_load(const coupling::Exchange& in)
   const std::vector<double> at_faces = interface_->scatter_faces(datum(in, "own-wall-force"), 1);
   const std::vector<Index>& faces = interface_->faces();
   for (std::size_t i = 0; i < faces.size(); ++i)
-    load[faces[i] - mesh_.n_interior] = at_faces[i] / interface_area_[i];
+    load[faces[i] - mesh_.n_interior] = at_faces[i] / interface_area_[i].norm();
   return load;
 }
 
@@ -121,6 +121,7 @@ FluidParticipant<D>::FluidParticipant(mesh::LoadedMesh loaded, const FluidParame
                                       FluidContext context, const MotionLink& link)
     : mesh_(std::move(loaded.mesh)),
       fluid_(std::make_unique<Fluid<D>>(mesh_, loaded.geometry, parameters, bool(link) || parameters.motion)),
+      loads_at_rest_(context.loads_at_rest),
       output_(*fluid_, loaded.geometry, std::move(context)) {
   if (link) motion_ = link(mesh_, fluid_->points_at_rest());
   set_up_motion();
@@ -140,10 +141,14 @@ void FluidParticipant<D>::set_up_interface(const mesh::Geometry& geometry) {
       row.push_back(
           static_cast<Index>(std::lower_bound(points.begin(), points.end(), point) - points.begin()));
     interface_vertices_.push_row(row);
-    interface_area_.push_back(geometry.face_area[face].norm());
+    interface_area_.push_back(geometry.face_area[face].template head<D>());
     const Vec3 arm = geometry.face_centre[face] - geometry.cell_centre[mesh_.owner[face]];
     cell_height_.push_back(2 * std::abs(arm.dot(geometry.face_area[face].normalized())));
   }
+  structure_area_.assign(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  for (std::size_t i = 0; i < interface_area_.size(); ++i)
+    structure_area_[interface_->faces()[i] - mesh_.n_interior] = interface_area_[i];
+  trial_area_ = structure_area_;
 }
 
 template <int D>
@@ -237,14 +242,51 @@ std::vector<Vec3> FluidParticipant<D>::receive_points() {
   return points;
 }
 
+namespace {
+
+/// Area vector of the face with these corners; in 2-D of an edge, 1 m deep.
+template <int D>
+Vec<D> area_of(const std::vector<Vec3>& places, std::span<const Index> corners) {
+  const auto edge = [&](std::size_t k) { return Vec3(places[corners[k]] - places[corners[0]]); };
+  if constexpr (D == 2) return edge(1).cross(Vec3::UnitZ()).template head<D>();
+  Vec3 area = Vec3::Zero();
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) area += 0.5 * edge(k).cross(edge(k + 1));
+  return area.template head<D>();
+}
+
+}  // namespace
+
+/// Sets the area of the structure at the end of the step. That of a linear structure stays as it was at rest.
+template <int D>
+void FluidParticipant<D>::place_structure(const coupling::Exchange& in) {
+  if (loads_at_rest_) return;
+  const std::vector<double> u = interface_->scatter_vertices(datum(in, "displacement"), D);
+  std::vector<Vec3> places;
+  for (const Index point : interface_->points()) {
+    const std::size_t first = places.size() * D;
+    places.push_back(fluid_->points_at_rest()[point]);
+    places.back().template head<D>() += Eigen::Map<const Vec<D>>(u.data() + first);
+  }
+  for (std::size_t i = 0; i < interface_area_.size(); ++i)
+    trial_area_[interface_->faces()[i] - mesh_.n_interior] =
+        area_of<D>(places, interface_vertices_[static_cast<Index>(i)]);
+}
+
+/// The pressure acts on the structure, from which the mesh of a guess differs. With their mean areas S' and S over the step,
+///   F' = F + F.S/|S|^2 (S' - S)                                                                        (15a)
 template <int D>
 coupling::Exchange FluidParticipant<D>::forces() const {
   if (!interface_) return {};
   const std::vector<Index>& faces = interface_->faces();
+  const bool is_carried = !prescribed_ && step_.scheme != coupling::Scheme::standalone;
   std::vector<double> pressure(faces.size() * D), viscous(faces.size() * D);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Index b = faces[i] - mesh_.n_interior;
-    Eigen::Map<Vec<D>>(pressure.data() + i * D) = fluid_->pressure_force()[b];
+    Vec<D> force = fluid_->pressure_force()[b];
+    const Vec<D> mean = 0.5 * (fluid_->state().placement->area[faces[i]] + fluid_->end().area[faces[i]]);
+    const Vec<D> change = 0.5 * (structure_area_[b] + trial_area_[b]) - mean;
+    if (is_carried) force += force.dot(mean) / mean.squaredNorm() * change;
+    Eigen::Map<Vec<D>>(pressure.data() + i * D) = force;
     Eigen::Map<Vec<D>>(viscous.data() + i * D) = fluid_->viscous_force()[b];
   }
   coupling::Exchange out;
@@ -253,7 +295,7 @@ coupling::Exchange FluidParticipant<D>::forces() const {
   if (yields()) {
     std::vector<double> wall(faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i)
-      wall[i] = fluid_->boundary_pressure()[faces[i] - mesh_.n_interior] * interface_area_[i];
+      wall[i] = fluid_->boundary_pressure()[faces[i] - mesh_.n_interior] * interface_area_[i].norm();
     out["own-wall-force"] = interface_->gather_faces(wall, 1);
   }
   if (holds_volume(fluid_->parameters()))
@@ -297,6 +339,7 @@ coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
   fluid_->set_turn(std::move(turn));
   fluid_->solve_pressure(w, answer());
   if (stands_still()) trial_displacement_ = wall_displacement(in);
+  if (interface_) place_structure(in);
   return forces();
 }
 
@@ -307,6 +350,7 @@ coupling::StepReport FluidParticipant<D>::accept_step() {
   };
   const long before = effort();
   displacement_ = trial_displacement_;
+  structure_area_.swap(trial_area_);
   fluid_->accept();
   tell_sub_steps();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
@@ -319,6 +363,7 @@ void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
   file.on(mesh_);
   write_state(file, fluid_->state());
   fluid_->solvers().save(file);
+  if (interface_) file.write(mesh::Entries::owned_boundary, "structure-area", flat(structure_area_));
   // Writing changes nothing.
   if (statistics_) const_cast<RunningStatistics<D>&>(*statistics_).visit(io::Archive(file));
 }
@@ -328,6 +373,7 @@ void FluidParticipant<D>::load(io::CheckpointReader& file) {
   file.on(mesh_);
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   fluid_->solvers().load(file);
+  if (interface_) file.read(mesh::Entries::owned_boundary, "structure-area", flat(structure_area_));
   if (statistics_) statistics_->visit(io::Archive(file));
 }
 

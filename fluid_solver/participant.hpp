@@ -72,19 +72,22 @@ class FluidParticipant final : public coupling::Participant {
   void set_up_interface(const mesh::Geometry& geometry);
   void tell_impulse() const;
   std::vector<Vec3> receive_points();
+  void place_structure(const coupling::Exchange& in);
   coupling::Exchange forces() const;
   void tell_sub_steps();
 
   const mesh::Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
-  std::unique_ptr<coupling::InterfaceMap> interface_;   // nullptr without an interface patch
-  coupling::Interface description_;                     // this rank's part of the interface
-  mesh::Csr interface_vertices_;                        // per interface face: entries of interface_->points()
-  std::vector<double> interface_area_;                  // per interface face, at rest [m^2]
-  std::vector<double> cell_height_;                     // of the cells at the interface faces, at rest [m]
+  std::unique_ptr<coupling::InterfaceMap> interface_;  // nullptr without an interface patch
+  coupling::Interface description_;                    // this rank's part of the interface
+  mesh::Csr interface_vertices_;                       // per interface face: entries of interface_->points()
+  Vectors<D> interface_area_;                          // per interface face, at rest [m^2]
+  Vectors<D> structure_area_, trial_area_;  // of the structure at t^n and t^{n+1}, per boundary face [m^2]
+  std::vector<double> cell_height_;         // of the cells at the interface faces, at rest [m]
   std::unique_ptr<coupling::MeshMotionSource> motion_;  // from a mesh mover
   std::unique_ptr<fv::PrescribedMotion> prescribed_;    // from the case
   std::optional<RunningStatistics<D>> statistics_;
+  const bool loads_at_rest_;  // see FluidContext
   FluidOutput<D> output_;
   coupling::Step step_;
   std::vector<Vec3> points_;  // points of the first guess; semi-implicit only

@@ -265,6 +265,14 @@ const Member* Job::find(const std::string& participant) const {
   return nullptr;
 }
 
+bool Job::has_linear_structure() const {
+  const auto structure = config::text_of(*document, "coupling.structure.participant");
+  const std::string path = "participants." + structure.value_or("");
+  const auto program = structure ? config::text_of(*document, path + ".program") : std::nullopt;
+  return program == "plate_modal" ||
+         (program == "solid_solver" && config::text_of(*document, path + ".kinematics") != "finite-strain");
+}
+
 MPI_Comm Job::connect(const std::string& participant) const {
   const Member* other = find(participant);
   if (other == nullptr)

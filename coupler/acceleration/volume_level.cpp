@@ -31,7 +31,7 @@ constexpr double fading = 0.98;
 
 VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                          const Schedule& schedule, const std::vector<std::size_t>& group)
-    : comm_(comm), links_(&links) {
+    : comm_(comm), links_(&links), loads_at_rest_(schedule.loads_at_rest) {
   const auto takes_of_cavity = [&](std::size_t i) {
     return std::ranges::any_of(links.all(), [&](const Links::Link& l) {
       return l.taker == i && l.datum.name == load_name &&
@@ -76,7 +76,7 @@ void VolumeLevel::start_step(double dt) {
   }
 }
 
-/// Applies the level to the mean area of the step, so that its work is that on the volume.
+/// Applies the level to the mean area of the step, so that its work is that on the volume, or to that of a linear structure.
 void VolumeLevel::loaded(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given) {
   const auto found = std::ranges::find(cavities_, i, &Cavity::side);
   if (found == cavities_.end()) return;
@@ -87,6 +87,7 @@ void VolumeLevel::loaded(std::size_t i, const coupling::Exchange& taken, couplin
                 found->name);
   const std::vector<Vec3> begin = found->wall.areas(found->place);
   for (std::size_t f = 0; f < begin.size(); ++f) found->areas[f] = (found->areas[f] + begin[f]) / 2;
+  if (loads_at_rest_) found->areas = found->wall.areas({});
   put(*found, given);
 }
 

@@ -89,6 +89,7 @@ class VolumeLevel {
   MPI_Comm comm_;
   const Links* links_;
   int dim_ = 3;
+  bool loads_at_rest_;  // see Schedule
   std::vector<Cavity> cavities_;
   std::vector<std::size_t> structures_;
   double dt_ = 0, slope_dt_ = 0;

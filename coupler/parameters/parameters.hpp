@@ -84,6 +84,7 @@ struct CouplingParameters {
   std::map<std::string, double> sub_steps;  // by participant
   enum class Waveform { linear, constant } waveform = Waveform::linear;
   bool mesh_on_guess = false;  // in each pass of the implicit scheme
+  bool loads_at_rest = false;  // on the undeformed surface of a linear structure; not a key
   MappingParameters mapping;
   bool interface_output = false;  // for ParaView
   std::map<std::string, IntegralParameters> watch;

@@ -22,6 +22,7 @@ struct Schedule {
   bool iterates = true;
   std::optional<std::string> mover, moved;  ///< participant that moves the mesh, and the one whose mesh it is
   bool mesh_on_guess = false;               ///< moved in each pass to the same position, that of the first
+  bool loads_at_rest = false;               ///< pressures act on the undeformed surface of a linear structure
   int predictor = 2;
   std::map<std::string, int> sub_steps;  ///< of participants with several
   bool waveform = true;                  ///< linear in time as input of sub-steps

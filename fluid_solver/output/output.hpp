@@ -99,6 +99,8 @@ struct FluidContext {
   std::filesystem::path output_folder;  ///< empty if nothing is written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
   io::FieldChoice fields{};
+  /// True if the structure obeys linear theory, so that pressures act along the normals of its undeformed surface.
+  bool loads_at_rest = false;
 };
 
 /// Writes the files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, fluxes.csv, flow-areas.csv,

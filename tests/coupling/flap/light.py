@@ -83,12 +83,9 @@ def main():
             first, second = (tip(here / f"{density}-{viscosity}-{pressure:g}-{scheme}") for scheme in ("auto", "implicit"))
             require("it starts as in the implicit scheme", float(abs(first / second - 1).max()) < 0.02, f"{first} and {second} m")
 
-        # The mesh of an implicit step of `auto` stays on the guess. Where it moves in the loop, the fifth step of 20 ms has no solution.
         long = (10, 1, 0.02, 5, damped)
         change = ended("10 kg/m^3, 1 Pa s runs in long steps", launch(here, "long", *long))
         require("it is implicit from its third step on", bool(change) and float(change[1]) == 0.06, change and change[0])
-        neighbour = launch(here, "moving", *long, "coupling.scheme=implicit")
-        require("the neighbour whose mesh moves in the loop fails", neighbour.returncode != 0 and "did not converge in 100 iterations" in neighbour.stdout, neighbour.returncode)
 
         require("3000 kg/m^3, 1 Pa s stays semi-implicit", ended("3000 kg/m^3, 1 Pa s runs", launch(here, "heavy", 3000, 1, 0.01, 8, *COARSE)) is None)
 
