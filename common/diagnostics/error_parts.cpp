@@ -48,6 +48,9 @@ std::string cure(const Part& part) {
                        part.value / std::exp2(part.of->parts.mesh_order),
                        cells.at(std::size_t(std::clamp(part.of->parts.dimension, 0, 3))));
   }
+  // The order of convergence holds for small errors only.
+  if (part.is(&ErrorParts::step) && part.value >= questionable_error)
+    return "halve the time step, for twice the steps; so large an error does not tell what that leaves";
   if (part.is(&ErrorParts::step))
     return fmt::format("half the time step would leave about {:.2g}, for twice the steps",
                        part.value / std::exp2(part.of->parts.step_order));
