@@ -100,11 +100,12 @@ bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, dou
 
 namespace {
 
-constexpr double adams_bashforth_error = 5. / 12;
-// Error constants of driven flows: 1/24 for forces at mid-step, 1/12 for friction by the trapezoidal rule,
-// 5/12 for the little convection. For a flow held by friction at rate r, u' = f - r u, the error is r u''
-// dt^3/8, reduced by 1 + r dt/2 with that rule. Adams-Bashforth gives 5/12 + 1/24.
-constexpr double driven_error = 1. / 12, held_error = 1. / 8, held_explicitly = 11. / 24;
+// Errors of a step over dt^3: of the explicit rates R by Adams-Bashforth 5/12 R'', of implicit friction F by the trapezoidal rule
+// -(1/12 + 1/16) F'', of forces f at mid-step 1/24 f'' with f = u' - R - F. Walls that move are met at the end of a step, so the part of u'
+// that follows them has no error.
+constexpr double adams_bashforth_error = 5. / 12, trapezoidal_error = 1. / 12, mid_step_error = 1. / 24;
+constexpr double friction_error = trapezoidal_error + 1. / 16;  // its rule has weights of 9/16, 3/8 and 1/16
+constexpr double three_level_error = 1. / 3;
 constexpr double hardly = 0.1;  // share of convection in the rate of change of a flow that answers linearly
 constexpr double quasi_steady = 0.2;  // phase of sound across the mesh [rad] below which there are no waves
 constexpr double window = 0.25;       // recent means cover about this part of the elapsed time
@@ -133,20 +134,30 @@ struct Differences {
   Vec<D>*u, *rate, *change;
   double per_step, per_apart;  ///< 0 if there is none yet
   Vec<D>* left;                ///< nullptr if nothing drives the flow, or there is no third difference yet
-  double of_third, of_second;  ///< weights in the local error of a step that a clock drives
-  const Vec<D>* carried;       ///< rates by convection, times the volume; nullptr for other schemes
+  const Vec<D>*
+      carried;  ///< explicit rates at the start of the step, times the volume; nullptr for other schemes
+  const Vec<D>* friction;   ///< implicit friction there, times the volume; nullptr if it is explicit
+  Vec<D>*splitting, *turn;  ///< rates by their weights in the local error, and their last change
+  double of_carried, of_friction, of_third;  ///< these weights
+  double step;                               ///< factor of the second difference of the rates
 };
 /// Sums over the volume of the squares of u, its rate, the change of that and the change of that, the volume, and the squares of
-/// what is left; outflow (added later), of what is carried, and the power of the pressure's filter (added later).
+/// what is left; outflow (added later), of what is carried, the power of the pressure's filter (added later), of the local error.
 template <int D>
-COUPLET_PROCESSOR_CLONES std::array<double, 9> renew(const Differences<D>& d) {
-  std::array<double, 9> sums{};
+COUPLET_PROCESSOR_CLONES std::array<double, 10> renew(const Differences<D>& d) {
+  std::array<double, 10> sums{};
   for (std::size_t c = 0; c < d.volume.size(); ++c) {
     const double volume = d.volume[c];
     const Vec<D> rate = (d.now[c] - d.u[c]) * d.per_step, change = (rate - d.rate[c]) * d.per_apart;
     const Vec<D> third = change - d.change[c];
+    Vec<D> by_weight = d.of_third * rate;
+    if (d.carried) by_weight += d.of_carried / volume * d.carried[c];
+    if (d.friction) by_weight += d.of_friction / volume * d.friction[c];
+    const Vec<D> turn = by_weight - d.splitting[c], error = d.step * (turn - d.turn[c]);
+    d.splitting[c] = by_weight, d.turn[c] = turn;
+    sums[9] += volume * error.squaredNorm();
     if (d.left) {
-      d.left[c] += d.of_third * third + d.of_second * change;
+      d.left[c] += error;
       sums[5] += volume * d.left[c].squaredNorm();
       sums[7] += d.carried ? d.carried[c].squaredNorm() / volume : volume * rate.squaredNorm();
     }
@@ -199,7 +210,7 @@ class EnergyMeans {
 ///   mesh    difference of u from a linear fit through the neighbors of each cell, h^2/4 times the Laplacian
 ///           of u on equal cells (recovery of the values); and the share that the pressure's filter took:
 ///           the sum of its power dt/(2 E) with the recent mean of E, which decays as the step's errors do
-///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams-Bashforth, see StepErrors; k^-3 each with k
+///   step    sum of the local errors of the rates that the scheme extrapolates, see StepErrors; k^-3 each with k
 ///           sub-steps. Errors decay with outflow over volume and with dissipation, (W' - E')/(2 E). In a
 ///           driven flow (Driving) with a linear response, errors cancel within half a period, so the vector
 ///           sum is used if smaller. If friction balances the forces (r dt > 1), the error of an oscillation
@@ -216,8 +227,11 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   void visit(io::Archive& archive) override {
     archive.common("numbers", seen_, dt_old_, energy_, left_of_late_, carried_, changed_, largest_, steps_,
                    drift_, filtered_);
-    for (const auto& [name, vectors] :
-         {std::pair{"left", &left_}, {"rate", &rate_}, {"rate-change", &rate_change_}}) {
+    for (const auto& [name, vectors] : {std::pair{"left", &left_},
+                                        {"rate", &rate_},
+                                        {"rate-change", &rate_change_},
+                                        {"splitting", &splitting_},
+                                        {"splitting-change", &turn_}}) {
       const std::span<const double> numbers = flat<D>(*vectors);
       std::vector<double> values(numbers.begin(), numbers.end());
       archive.field(mesh::Entries::owned_cells, name, values, D);
@@ -237,19 +251,23 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const auto n = std::size_t(view_.mesh.cells.n_owned());
     const double apart = 0.5 * (dt + dt_old_);
     const bool knows_third = seen_ > 2;
-    for (Vectors<D>* v : {&u_, &rate_, &rate_change_}) v->resize(n, Vec<D>::Zero());
+    for (Vectors<D>* v : {&u_, &rate_, &rate_change_, &splitting_, &turn_}) v->resize(n, Vec<D>::Zero());
     if (driving_.is_possible()) left_.resize(n, Vec<D>::Zero());
     const State<D>& state = view_.fluid.state();
     const double sub_step = dt / std::max(1, view_.fluid.statistics().sub_steps),
                  step = dt * sub_step * sub_step;
     const double held = energy_.friction(), less = state.implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
-    const Vectors<D>& carried = state.rates_old.rate;
-    std::array<double, 9> squares = renew(Differences<D>{
-        std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
-        rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
-        knows_third && !left_.empty() ? left_.data() : nullptr, less * driven_error * step / apart,
-        less * (state.implicit ? held_error : held_explicitly) * held * step,
-        carried.empty() ? nullptr : carried.data()});
+    const Rates<D>& rates = state.rates_old;
+    const double forced = driving_.is_possible() ? mid_step_error : 0;
+    std::array<double, 10> squares = renew(
+        Differences<D>{std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
+                       rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
+                       knows_third && !left_.empty() ? left_.data() : nullptr,
+                       rates.rate.empty() ? nullptr : rates.rate.data(),
+                       rates.viscous.empty() ? nullptr : rates.viscous.data(), splitting_.data(),
+                       turn_.data(), adams_bashforth_error - forced, -friction_error - forced,
+                       rates.rate.empty() ? adams_bashforth_error : std::max(forced, error_of_waves()),
+                       less * step / (apart * apart)});
     if (knows_third) {
       for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
         squares[6] += std::max(0., view_.fluid.state().phi[f]);
@@ -271,10 +289,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       const double faded = std::exp(-dt / (window * energy_.time()));
       left_of_late_ = std::max(mean(5), left_of_late_ * faded);
       carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
-      const bool trapezoidal = view_.parameters().is_compressible() &&
-                               view_.parameters().compressibility->scheme == WaveScheme::trapezoidal &&
-                               driving_.is_possible() && mean(7) <= hardly * mean(1);
-      steps_.add({.error = (trapezoidal ? driven_error : adams_bashforth_error) * step / apart * mean(3),
+      steps_.add({.error = mean(9),
                   .rate = mean(1),
                   .size = mean(0),
                   .dt = dt,
@@ -286,6 +301,12 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     }
     dt_old_ = dt;
     ++seen_;
+  }
+  /// Error of a step by the scheme of the waves, over dt^3 u'''; 0 without waves.
+  double error_of_waves() const {
+    if (!view_.parameters().is_compressible()) return 0;
+    return view_.parameters().compressibility->scheme == WaveScheme::trapezoidal ? trapezoidal_error
+                                                                                 : three_level_error;
   }
   /// True if sound crosses the mesh in no small part of the time in which the flow changes. Collective.
   bool has_waves() {
@@ -435,6 +456,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
 
   FluidView<D> view_;
   Vectors<D> u_, rate_, rate_change_;  // u of the last accepted step, first and second differences in time
+  Vectors<D> splitting_, turn_;        // rates by their weights in the local error, their last change
   int seen_ = 0;                       // steps that these hold
   double dt_old_ = 0;
   time::StepErrors steps_;
