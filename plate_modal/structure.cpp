@@ -294,7 +294,12 @@ void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
 std::vector<std::string> Structure::finish() {
   results_->tell();
-  return {};
+  if (parameters_.analysis != Parameters::Analysis::modal) return {};
+  std::vector<std::string> planes;
+  for (const auto& [name, edge] : parameters_.boundaries)
+    if (edge.support == Support::symmetry) planes.push_back(name);
+  if (planes.empty()) return {};
+  return {modes::missing_by_symmetry(planes, "'type: simply-supported'")};
 }
 
 }  // namespace couplet::plate

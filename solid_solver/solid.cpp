@@ -12,6 +12,7 @@
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 
@@ -73,6 +74,8 @@ std::vector<std::string> Solid::finish() {
     if (const double size = elastic::vector_at(u, v, dim).norm(); size > most.first)
       most = {size, body_.geometry().points[v]};
   diagnostics::set_largest(body_.mesh().comm, "largest displacement", "m", most.first, most.second);
+  const std::string missing = chosen.modes > 0 || chosen.buckling > 0 ? missing_shapes(body_) : "";
+  if (!missing.empty()) return {missing};
   return {};
 }
 

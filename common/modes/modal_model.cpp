@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/modes/modal_checks.hpp"
 
@@ -210,6 +211,14 @@ ModalModel read_modes(const std::filesystem::path& file) {
     throw Error("The modes file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
   return read_model(io::hdf5::Reader(file, what, advice));
+}
+
+std::string missing_by_symmetry(const std::vector<std::string>& patches, const char* instead) {
+  if (patches.empty()) return "";
+  return fmt::format(
+      "symmetry ('{}'): only shapes that are symmetric about it were sought; those of the other symmetry are missing. Repeat the run "
+      "with {} there, on one plane at a time and on all of them (a patch that holds two planes must be split).",
+      base::join(patches, "', '"), instead);
 }
 
 std::string key_of_modes(const std::filesystem::path& file) {

@@ -49,6 +49,10 @@ struct RigidMotion {
 /// Fits a rigid motion by least squares over the vertices. Collinear vertices do not rotate about their line.
 RigidMotion rigid_motion(const ModalModel& model, std::size_t mode);
 
+/// Sentence about the shapes that planes of symmetry exclude from a search. Empty without such `patches`. `instead`: condition that
+/// finds them, as in the YAML.
+std::string missing_by_symmetry(const std::vector<std::string>& patches, const char* instead);
+
 /// Writes a modal model to an HDF5 file (docs/formats.md), which gets its name when it is complete.
 /// `key` identifies the source of the modes. Only on this rank. Throws Error.
 void write_modes(const std::filesystem::path& file, const ModalModel& model, const std::string& key);

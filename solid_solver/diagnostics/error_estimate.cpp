@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
@@ -30,6 +31,15 @@ constexpr double grown =
 
 double product(MPI_Comm comm, std::span<const double> a, std::span<const double> b) {
   return parallel::sum(comm, std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
+}
+
+/// Relative error that the results state beside the frequencies; NaN if none were sought. Collective.
+double stated_error_of_modes(MPI_Comm comm) {
+  double error = -1;
+  for (const diagnostics::Result& result : diagnostics::results())
+    if (result.name.starts_with("free vibrations")) error = result.error;
+  error = parallel::max(comm, error);
+  return error < 0 ? diagnostics::ErrorParts::unknown : error;
 }
 
 /// Strains of all flux faces: Green's strain of u, and its change by x.
@@ -340,6 +350,9 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
   // Nothing estimates the error of load factors, the answer of a search for them. That of frequencies is bounded only.
   if (body_.parameters().seeks_buckling) parts.mesh = std::numeric_limits<double>::quiet_NaN();
   if (strain_) add_heat(parts);
+  // The frequencies are the answer of a body at rest whose modes were sought.
+  if (const double error = stated_error_of_modes(view_.comm()); parts.too_few_steps && !std::isnan(error))
+    parts = {.mesh = error, .dimension = parts.dimension};
 }
 
 void ErrorEstimate::visit(io::Archive& archive) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/elasticity/finite/stress_stiffness.hpp"
@@ -61,6 +62,9 @@ Buckling find_buckling(const SolidBody& body, const elastic::Prestress& prestres
 /// Lowest n free vibrations about the loaded equilibrium, (K + K_sigma) x = omega^2 M x. Sets the density of
 /// the kernel. Throws SolveFailure, also for an unstable equilibrium. Collective.
 modes::EigenModes preloaded_modes(const SolidBody& body, const elastic::Prestress& prestress, int n);
+
+/// Sentence about the shapes that planes of symmetry exclude from modes and buckling; empty without such planes.
+std::string missing_shapes(const SolidBody& body);
 
 /// y = A x on the packed rows of this rank (owned cells, then unknown faces). Collective.
 using ElasticApplication = std::function<void(std::span<const double> x, std::span<double> y)>;

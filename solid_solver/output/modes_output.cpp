@@ -26,6 +26,17 @@ std::vector<double> cell_masses(const SolidBody& body) {
 
 }  // namespace
 
+std::string missing_shapes(const SolidBody& body) {
+  const SolidParameters& p = body.parameters();
+  std::vector<std::string> planes;
+  for (const mesh::Patch& patch : body.mesh().patches) {
+    const auto found = p.boundaries.find(patch.name);
+    if (found != p.boundaries.end() && is_symmetry_plane(found->second)) planes.push_back(patch.name);
+  }
+  return couplet::modes::missing_by_symmetry(
+      planes, "'type: fixed-displacement' with 'components' of 0 along the plane");
+}
+
 void SolidOutput::write_modes() {
   if (context_.output_folder.empty() || modes_written_) return;
   modes_written_ = true;
