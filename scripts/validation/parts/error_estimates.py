@@ -223,6 +223,27 @@ def fresh_targets(job):
     return f"{good} of {len(lines)} met: {'; '.join(lines)}", good >= 0.95 * len(lines)
 
 
+def coupled_steps(job, **motions):
+    """`motions`: {name: [case of estimates/cases.yaml with its size, or a shipped file, participant and column of its probes, period in s, steps a period,
+    periods, settings]}. The estimated error of the step beside the true one, from a run with a quarter of the step; both over the largest motion."""
+    ratios, lines = [], []
+    for name, (case, participant, column, period, steps, periods, *sets) in motions.items():
+        if not isinstance(case, str):
+            one, n = yaml.safe_load((FRESH / "cases.yaml").read_text())[case[0]], case[1]
+            case = json.loads(re.sub(r'"<([^">]+)>"', lambda m, n=n: json.dumps(eval(m[1], {}, {"n": n})), json.dumps(one["case"])))
+        found = []
+        for parts in (1, 4):
+            folder = job.scratch / f"motion-{re.sub('[ :,]+', '-', name)}-{parts}"
+            times = [f"simulation.time-step={period / steps / parts!r}", f"simulation.end-time={period / steps * round(steps * periods)!r}"]
+            reports = launched(job, folder, case, [*sets, *times])
+            found.append((ablation.probe(column, participant=participant, history=True)(folder / "out"), ablation.estimated(reports, "step")))
+        truth = 16 / 15 * ablation.distance(found[0][0], found[1][0])
+        ratios.append((found[0][1] or math.nan) / truth)
+        lines.append(f"{name} {ratios[-1]:.2g} of {truth:.1e}")
+    near = sum(1 / 3 <= r <= 3 for r in ratios)
+    return f"{near} of {len(ratios)} within 3, the largest {max(ratios):.2g}; estimate over truth: {'; '.join(lines)}", near >= 0.8 * len(ratios) and max(ratios) <= 10
+
+
 # -- positions on the atlas --------------------------------------------------------------------------------------------
 def placed(folder):
     """Largest share of the way to a limit in any run.json of the folder; None without one."""
