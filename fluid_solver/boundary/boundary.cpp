@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <unordered_set>
 #include <utility>
@@ -410,6 +411,19 @@ void Boundary<D>::pressure_at(double t, const std::vector<Vec3>& centres, std::v
                           : fv::mean_over_face(corners[std::size_t(i)], Vec3::Zero(), given).whole[0];
     }
   }
+}
+
+template <int D>
+double Boundary<D>::pressure_of_rest(double t, const std::vector<Vec3>& centres) const {
+  std::vector<double> p(centres.size(), std::numeric_limits<double>::infinity());
+  pressure_at(t, centres, p);
+  const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto nearest = [&](const std::vector<double>& values) {
+    const auto found = std::ranges::min_element(values, nearer);
+    return found == values.end() ? std::numeric_limits<double>::infinity() : *found;
+  };
+  const double rest = nearest(parallel::all_gather(comm_, std::vector<double>{nearest(p)}));
+  return std::isfinite(rest) ? rest : 0;
 }
 
 /// u_b = t w + (1 - t) u_P + (1 - q - t) n n.(w - u_P), q = 1 if the pressure is given.

@@ -156,6 +156,9 @@ class Boundary {
   void add_turn(const mesh::Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const;
   /// Sets p at time t [Pa] at faces with given pressure; the others keep their value.
   void pressure_at(double t, const std::vector<Vec3>& centres, std::vector<double>& p) const;
+  /// Given pressure at time t that is nearest to zero [Pa]: a second outlet may drive the flow or send a pulse. 0 if none is
+  /// given. Collective.
+  double pressure_of_rest(double t, const std::vector<Vec3>& centres) const;
   /// Computes the velocity at all boundary faces from that in the cells, see FaceRow.
   void close(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
              Vectors<D>& u_boundary) const;

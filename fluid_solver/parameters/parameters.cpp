@@ -208,8 +208,8 @@ void declare_start(config::Section& s, FluidParameters& p) {
       .unit("Pa", 1e-9, 1e11)
       .doc(
           "expression of x, y, z [m]; an initial guess only, but with `compressibility` the state to start from, beside an "
-          "initial velocity that is then taken as it is. Absent: zero, in a moving compressible fluid that of an "
-          "incompressible one");
+          "initial velocity that is then taken as it is. Absent: zero; with `compressibility` and `initial-velocity` the pressure of "
+          "the outlets at the start (of several the one nearest to zero)");
   s.value("body-force", p.body_force)
       .unit("m/s^2", 1e-4, 1e6)
       .doc("force per mass, one expression of x, y, z [m] and t [s] per component; default: none");

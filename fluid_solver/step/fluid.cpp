@@ -233,15 +233,18 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   step_.project_initial(s);
   const fv::Expression initial_pressure(parameters_.initial_pressure.value_or(config::ExpressionText{}),
                                         "initial-pressure");
-  const bool is_state =
-      step_.pressure_is_state() && (parameters_.initial_pressure || s.start == Start::at_rest);
-  if (is_state || !initial_pressure.is_zero()) {
+  if (step_.pressure_is_state() || !initial_pressure.is_zero()) {
     auto level = std::make_shared<PressureLevel<D>>();
     level->time = time;
     level->p.resize(mesh_.cells.n_local());
     level->boundary.resize(s.w.size());
     initial_pressure.evaluate(geometry.cell_centre, time, level->p);
     initial_pressure.evaluate(at.boundary_centre, time, level->boundary);
+    if (s.start == Start::flowing && !parameters_.initial_pressure) {
+      const double rest = boundary_.pressure_of_rest(time, at.boundary_centre);
+      level->p.assign(level->p.size(), rest);
+      level->boundary.assign(level->boundary.size(), rest);
+    }
     step_.scene().add_potential(at, -parameters_.density, *level);
     step_.start_level(at, *level);
     s.pressure[0] = level;
