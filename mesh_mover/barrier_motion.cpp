@@ -93,7 +93,7 @@ class BarrierMotion final : public MotionMethod {
     const Vec3 x = system_.worst_place(u);
     throw SolveFailure(
         "method: barrier: no valid mesh was found; the cells near ({:.6g}, {:.6g}, {:.6g}) m leave "
-        "no room for the motion. Try a smaller time step, or let the walls there slide (type: slip).",
+        "no room for the motion. Let the walls there slide (type: slip).",
         x.x(), x.y(), x.z());
   }
   linalg::SolveStatistics last() const override { return last_; }

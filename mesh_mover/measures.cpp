@@ -154,12 +154,11 @@ std::string CellMeasures::refusal(const mesh::Geometry& moved) const {
   const auto at = [](const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); };
   if (const auto trouble = mesh::find_inverted(mesh_, moved))
     return fmt::format(
-        "inverts cell {} at {} (volume {:.3e} m^3). Try a smaller step, more stiffening, or a coarser mesh there.",
+        "inverts cell {} at {} (volume {:.3e} m^3). Try more stiffening or a coarser mesh there.",
         trouble->cell_id, at(trouble->centre), trouble->volume);
   if (const auto trouble = mesh::find_crossed(mesh_, moved))
-    return fmt::format(
-        "makes cell {} at {} intersect itself. Try a smaller step, more stiffening, or a coarser mesh there.",
-        trouble->cell_id, at(trouble->centre));
+    return fmt::format("makes cell {} at {} intersect itself. Try more stiffening or a coarser mesh there.",
+                       trouble->cell_id, at(trouble->centre));
   if (smallest_volume_ratio_ <= 0 && !limits_.judges_shape()) return "";
   const MeshState state = measure(moved);
   using Limit = std::pair<std::optional<double>, const char*>;

@@ -206,7 +206,7 @@ void ResidualGrowth::pass(double residual, double omega, AccelerationParameters:
   if (type == Type::constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
   throw SolveFailure(
       "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
-      "one. If smaller steps do not help, {}.",
+      "one; {}.",
       factor(), growing_, omega,
       type == Type::aitken ? "`acceleration.type: iqn-ils` handles several modes at once"
                            : "the participants' own tolerances may be too loose for quasi-Newton");

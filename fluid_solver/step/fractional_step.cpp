@@ -335,10 +335,6 @@ void FractionalStep<D>::check(const State<D>& from) {
   if (worst.here >= 0)
     cause = likely_cause(mesh_, scene_.boundary, energy_step(from), worst.here, scene_.fluid.nu,
                          step_.by.implicit);
-  for (const auto& force : scene_.forces)
-    if (worst.here >= 0 && cause.empty())
-      cause = force->cause(step_.begin(), step_.dt, step_.to->volume[worst.here], scene_.fluid.nu);
-  if (cause.empty()) cause = "Try a smaller time step.";
   parallel::broadcast(mesh_.comm, cause, worst.rank);
   if (const std::string shut = scene_.obstacles->cause(*step_.to); !shut.empty()) cause = shut;
   const EnergyChange& e = judgement_.energy;
@@ -350,8 +346,9 @@ void FractionalStep<D>::check(const State<D>& from) {
                      "forces supplied {:.3g} J",
                     e.gain, e.ledger.energy, e.work);
   throw SolveFailure(
-      "The flow diverges at t = {:.6g} s: {}, mostly in cell {} at ({:.6g}, {:.6g}, {:.6g}) m. {}",
-      step_.end(), what, worst.id, worst.place.x(), worst.place.y(), worst.place.z(), cause);
+      "The flow diverges at t = {:.6g} s: {}, mostly in cell {} at ({:.6g}, {:.6g}, {:.6g}) m.{}{}",
+      step_.end(), what, worst.id, worst.place.x(), worst.place.y(), worst.place.z(),
+      cause.empty() ? "" : " ", cause);
 }
 
 template class FractionalStep<2>;

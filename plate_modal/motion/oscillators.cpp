@@ -129,7 +129,7 @@ void Oscillators::solve_contact(const time::Stage& stage, const ModalState& at) 
     if (i == most_iterations)
       throw SolveFailure(
           "The impact on the seat did not converge in {} iterations of Newton's method (residual {:.2e} of "
-          "{:.2e}). Try a smaller step.",
+          "{:.2e}).",
           most_iterations, size, scale);
     jacobian_ = shown.x * seat_.tangent;
     for (std::size_t m = 0; m < n; ++m) jacobian_(m, m) += diagonal_[m];

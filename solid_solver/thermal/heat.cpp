@@ -167,7 +167,7 @@ void Heat::solve(const coupling::Step& step, std::span<const double> source) {
     if (iteration == parameters_.max_iterations)
       throw SolveFailure(
           "The temperature at t = {:g} s still changes by {:.1e} of its range after {} iterations over the "
-          "temperature-dependent properties (tolerance {:.0e}); try a smaller time step.",
+          "temperature-dependent properties (tolerance {:.0e}).",
           end, change, iteration, parameters_.tolerance);
     filled_for_ = -1;
   }
