@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/motion/scene.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -29,12 +27,11 @@ RotatingFrame<D>::RotatingFrame(const RotationParameters& p)
 
 template <int D>
 void RotatingFrame<D>::add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
-                           const Vectors<D>& u_old, std::array<double, 2> factors, Vectors<D>& force) const {
+                           Vectors<D>& force) const {
   const Vec3 omega = speed(t + dt / 2) * axis_, change = (speed(t + dt) - speed(t)) / dt * axis_;
   for (std::size_t c = 0; c < places.size(); ++c) {
     Vec3 velocity = Vec3::Zero();
-    velocity.template head<D>() = factors[0] * u[c];
-    if (factors[1] != 0) velocity.template head<D>() += factors[1] * u_old[c];
+    velocity.template head<D>() = u[c];
     force[c] -= (2 * omega.cross(velocity) + change.cross(places[c] - centre_)).template head<D>();
   }
 }
@@ -49,19 +46,6 @@ std::function<double(const Vec3&)> RotatingFrame<D>::potential(double t) const {
   return [omega = Vec3(speed(t) * axis_), centre = centre_](const Vec3& x) {
     return 0.5 * omega.cross(x - centre).squaredNorm();
   };
-}
-
-template <int D>
-std::string RotatingFrame<D>::cause(double t, double dt, double volume, double nu) const {
-  // omega h^2/nu above which friction no longer stabilizes the wall layer (docs/theory/fluid-models.md).
-  constexpr double fast = 4;
-  const double beside_friction = 0.5 * rate(t, dt) * std::pow(volume, 2. / D) / nu;
-  if (!(beside_friction > fast)) return {};
-  return fmt::format(
-      "The frame rotates too fast for the friction: omega h^2/nu = {:.3g} in that cell (limit about "
-      "{:g}); the wall layer is not damped. A smaller step does not help; use finer cells, or a mesh that "
-      "rotates in a frame at rest ('motion').",
-      beside_friction, fast);
 }
 
 template class RotatingFrame<2>;
@@ -127,8 +111,8 @@ class GivenForce final : public Force<D> {
   }
 
   bool acts() const override { return !std::ranges::all_of(balanced_, std::identity()); }
-  void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>&, const Vectors<D>&,
-           std::array<double, 2>, Vectors<D>& force) const override {
+  void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>&,
+           Vectors<D>& force) const override {
     std::vector<double> values(places.size());
     for (int c = 0; c < D; ++c) {
       if (balanced_[c]) continue;

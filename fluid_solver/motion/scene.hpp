@@ -30,18 +30,13 @@ class Force {
   virtual void start(const Placement<D>&) {}
   /// True if a part of it is no gradient.
   virtual bool acts() const = 0;
-  /// Adds the mean of that part over the step from t to t + dt. `u`, `u_old`: velocity at t and one step before, extrapolated to
-  /// mid-step by the factors (u_old is not read if its factor is 0).
+  /// Adds the mean of that part over the step from t to t + dt. `u`: velocity at mid-step; empty if no force needs it.
   virtual void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
-                   const Vectors<D>& u_old, std::array<double, 2> factors, Vectors<D>& force) const = 0;
+                   Vectors<D>& force) const = 0;
   /// Returns the potential at time t, a function of the place [m^2/s^2]; empty if no part is a gradient.
   virtual std::function<double(const Vec3&)> potential(double t) const = 0;
   /// Largest rate of the force over the velocity at the two ends of a step [1/s].
   virtual double rate(double, double) const { return 0; }
-  /// Likely cause of a failed step in a cell of this volume, as a sentence; empty if it is another.
-  virtual std::string cause(double /*t*/, double /*dt*/, double /*volume*/, double /*nu*/) const {
-    return {};
-  }
 };
 
 /// Creates the forces of a case. Throws Error for invalid expressions and axes. Collective.
@@ -60,12 +55,11 @@ class RotatingFrame final : public Force<D> {
   explicit RotatingFrame(const RotationParameters& parameters);
 
   bool acts() const override { return true; }
-  void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u, const Vectors<D>& u_old,
-           std::array<double, 2> factors, Vectors<D>& force) const override;
+  void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
+           Vectors<D>& force) const override;
   std::function<double(const Vec3&)> potential(double t) const override;
   /// |2 omega|, the rate of the Coriolis force.
   double rate(double t, double dt) const override;
-  std::string cause(double t, double dt, double volume, double nu) const override;
 
  private:
   double speed(double t) const { return speed_(Vec3::Zero(), t); }

@@ -239,6 +239,9 @@ class PressureProjection {
   PressureEquation<D>& equation() { return equation_; }
   const Terms<D>& terms() const { return terms_; }
   int iterations() const { return iterations_; }
+  /// Projects a velocity by the adjoint of a step on a mesh at rest, in the inner product of the kinetic energy. If a skew force acts on
+  /// the result, the step lets it do no work. `u_boundary`: at the boundary faces. Collective.
+  Vectors<D> adjoint(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary);
   /// State of the solvers in addition to the level, as of the last accept(). load() is collective.
   void accept();
   void save(io::CheckpointWriter& file) const;
@@ -250,6 +253,9 @@ class PressureProjection {
   void set_obliqueness(const Placement<D>& at);
   void add_oblique_pressure(const std::vector<double>& phi);
   bool mix_gradients(int pass);
+  void transposed_flux(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
+                       std::vector<double>& flux) const;
+  Vectors<D> transposed_mean(const Placement<D>& at, const std::vector<double>& value) const;
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
   void set_boundary_pressure(const State<D>& from);
   void set_gradient(const Placement<D>& at, PressureLevel<D>& level, const FluxCorrection* correction) const;

@@ -258,6 +258,8 @@ void PressureProjection<D>::set_boundary_pressure(const State<D>& from) {
     const Vec<D> acceleration = (out_.w[b] - from.w[b]) / step_.dt;
     double normal = -scene_.fluid.rho * acceleration.dot(now.area[f]);
     if (!prediction_.force.empty()) normal += scene_.fluid.rho * prediction_.force[p].dot(now.area[f]);
+    if (!prediction_.beside_walls.empty())
+      normal += scene_.fluid.rho * prediction_.beside_walls[b].dot(now.area[f]);
     if (!out_.gradient.empty()) normal -= out_.gradient[p].dot(now.oblique_of(f));
     out_.boundary[b] = out_.p[p] + normal / now.conductance[f];
   }
@@ -333,6 +335,114 @@ void PressureProjection<D>::solve_initial(const Placement<D>& at) {
   equation_.solve(at, side_.b, out_.p, std::min(1e-8, scene_.parameters.pressure_tolerance),
                   std::max(floor, std::numeric_limits<double>::min()));
   scene_.obstacles->after(at, out_.p);
+}
+
+/// With A = 1 - W - V^-1 G (L + O)^-1 D M of a step, where W is the part of the wall pressure and O the oblique part of L:
+///   A* u = u - W u - V^-1 M^T D^T (L + O^T)^-1 G^T u
+template <int D>
+Vectors<D> PressureProjection<D>::adjoint(const Placement<D>& at, const Vectors<D>& u,
+                                          const Vectors<D>& u_boundary) {
+  const FaceRows& rows = scene_.boundary.rows();
+  std::vector<double> flux(mesh_.n_flux_faces(), 0.0), jump = flux, psi(mesh_.cells.n_local(), 0.0);
+  Vectors<D> known = u;
+  for (int pass = 1;; ++pass) {
+    transposed_flux(at, known, u_boundary, flux);
+    std::vector<double> side(mesh_.cells.n_local(), 0.0);
+    subtract_outflow(mesh_, 1, flux, side);
+    for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) side[mesh_.owner[f]] -= flux[f];
+    side.resize(mesh_.cells.n_owned());
+    iterations_ +=
+        equation_
+            .solve(at, side, psi, scene_.parameters.pressure_tolerance, std::numeric_limits<double>::min())
+            .iterations;
+    for (Index f = 0; f < mesh_.n_interior; ++f) jump[f] = psi[mesh_.neighbour[f]] - psi[mesh_.owner[f]];
+    for (const Index b : rows.of_pressure)
+      jump[mesh_.n_interior + b] = -psi[mesh_.owner[mesh_.n_interior + b]];
+    if (!scene_.oblique || pass > oblique_passes) break;
+    known = u;
+    for (Index f = 0; f < mesh_.n_interior; ++f) {
+      const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+      const Vec<D> part = jump[f] * at.oblique_of(f);
+      known[p] -= at.weight[f] / at.volume[p] * part;
+      known[n] -= (1 - at.weight[f]) / at.volume[n] * part;
+    }
+    mesh_.cells.update_ghosts(flat<D>(known), D);
+  }
+  Vectors<D> less = transposed_mean(at, jump), result = u;
+  for (const Index b : rows.of_flux) {
+    const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+    less[p] += at.area[f].dot(u[p] - u_boundary[b]) / at.conductance[f] * at.area[f];
+  }
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) result[c] -= less[c] / at.volume[c];
+  return result;
+}
+
+/// Flux of a velocity with G^T u as its outflow: pressure_gradient() transposed, with the given flux through walls.
+template <int D>
+void PressureProjection<D>::transposed_flux(const Placement<D>& at, const Vectors<D>& u,
+                                            const Vectors<D>& u_boundary, std::vector<double>& flux) const {
+  Vectors<D> v = u;
+  if (at.skewed()) {
+    Vectors<D> moved(u.size(), Vec<D>::Zero());
+    for (Index f = 0; f < mesh_.n_interior; ++f) {
+      const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+      const Vec<D> part = at.area[f].dot(u[p] - u[n]) * at.skew[f];
+      moved[p] += at.weight[f] * part;
+      moved[n] += (1 - at.weight[f]) * part;
+    }
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) v[c] += at.gradient_cure[c] * moved[c] / at.volume[c];
+    mesh_.cells.update_ghosts(flat<D>(v), D);
+  }
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const double w = at.weight[f];
+    flux[f] = ((1 - w) * v[mesh_.owner[f]] + w * v[mesh_.neighbour[f]]).dot(at.area[f]);
+  }
+  const FaceRows& rows = scene_.boundary.rows();
+  for (std::size_t b = 0; b < u_boundary.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    flux[f] = (rows.pressure[b] > 0 ? v[mesh_.owner[f]] : u_boundary[b]).dot(at.area[f]);
+  }
+}
+
+/// mean_flux() transposed: per cell, from a value per flux face.
+template <int D>
+Vectors<D> PressureProjection<D>::transposed_mean(const Placement<D>& at,
+                                                  const std::vector<double>& value) const {
+  Vectors<D> sum(mesh_.cells.n_local(), Vec<D>::Zero());
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Vec<D> half = 0.5 * value[f] * at.area[f];
+    sum[mesh_.owner[f]] += half;
+    sum[mesh_.neighbour[f]] += half;
+  }
+  const FaceRows& rows = scene_.boundary.rows();
+  for (const Index b : rows.of_pressure) {
+    const Index f = mesh_.n_interior + b;
+    sum[mesh_.owner[f]] += value[f] * at.area[f];
+  }
+  if (!at.skewed()) return sum;
+  std::vector<Tensor<D>> of_gradient(sum.size(), Tensor<D>::Zero());
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Tensor<D> half = 0.5 * value[f] * at.area[f] * at.offset(f).transpose();
+    of_gradient[mesh_.owner[f]] += half;
+    of_gradient[mesh_.neighbour[f]] += half;
+  }
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    of_gradient[c] = (of_gradient[c] * at.gradient_cure[c].transpose() / at.volume[c]).eval();
+  mesh_.cells.update_ghosts(
+      {of_gradient.empty() ? nullptr : of_gradient.front().data(), of_gradient.size() * D * D}, D * D);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> part = (of_gradient[p] - of_gradient[n]) * at.area[f];
+    sum[p] += at.weight[f] * part;
+    sum[n] += (1 - at.weight[f]) * part;
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const Index b = f - mesh_.n_interior, p = mesh_.owner[f];
+    const Vec<D> part = of_gradient[p] * at.area[f], n = at.area[f].normalized();
+    const double t = rows.friction(at, b, f);
+    sum[p] += (1 - t) * part - (1 - rows.pressure[b] - t) * part.dot(n) * n;
+  }
+  return sum;
 }
 
 template <int D>

@@ -292,9 +292,12 @@ struct Step : SubStep<D> {
 /// Result of the prediction, the first stage of a step.
 template <int D>
 struct Prediction {
-  Vectors<D> w;             ///< given velocities at t^{n+1} per boundary face, as far as known [m/s]
-  Vectors<D> u;             ///< u^p per local cell [m/s]
-  Vectors<D> force;         ///< f at t^{n+1/2} per local cell [m/s^2]; empty if there is none
+  Vectors<D> w;      ///< given velocities at t^{n+1} per boundary face, as far as known [m/s]
+  Vectors<D> u;      ///< u^p per local cell [m/s]
+  Vectors<D> force;  ///< f at t^{n+1/2} per local cell [m/s^2]; empty if there is none
+  /// R/V of the cell at t^{n+1/2}, per boundary face [m/s^2], which the pressure of walls balances as it does f. Empty in a frame
+  /// at rest.
+  Vectors<D> beside_walls;
   Vectors<D> viscous_flux;  ///< momentum flux to the surroundings, per boundary face [N]
   double weight = 0;        ///< weight of t^{n+1} in it; 0 with an explicit predictor
   Rates<D> rates;           ///< R^n

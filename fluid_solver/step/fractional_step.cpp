@@ -127,7 +127,17 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
 
 template <int D>
 void FractionalStep<D>::predict_from_guess(const State<D>& from) {
-  predictor_.predict(from);
+  Vectors<D> turned, at_boundary = from.u_boundary;
+  if (scene_.parameters.rotating_frame) {
+    turned = from.u;
+    const double ratio = step_.ratio();
+    for (std::size_t c = 0; ratio > 0 && c < turned.size(); ++c)
+      turned[c] += 0.5 * ratio * (from.u[c] - from.u_old[c]);
+    for (std::size_t b = 0; ratio > 0 && b < at_boundary.size(); ++b)
+      at_boundary[b] += 0.5 * ratio * (from.u_boundary[b] - from.u_boundary_old[b]);
+    turned = projection_.adjoint(*step_.to, turned, at_boundary);
+  }
+  predictor_.predict(from, turned);
   mesh_.cells.update_ghosts(flat<D>(prediction_.u), D);
   scene_.obstacles->hold(*step_.to, step_.dt, prediction_.u);
   flux_.predict(from, prediction_.u);

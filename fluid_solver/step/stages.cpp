@@ -93,7 +93,7 @@ Predictor<D>::Predictor(const Scene<D>& scene, const Step<D>& step, const KnownG
       friction_(scene, step, rate_operator_) {}
 
 template <int D>
-void Predictor<D>::predict(const State<D>& from) {
+void Predictor<D>::predict(const State<D>& from, const Vectors<D>& turned) {
   const bool moving = step_.moving(), implicit = step_.by.implicit;
   const double dt = step_.dt, ratio = step_.ratio();
   const double e0 = 1 + ratio / 2, e1 = -ratio / 2;
@@ -115,7 +115,7 @@ void Predictor<D>::predict(const State<D>& from) {
     side_[c] = volume[c] * from.u[c] + (given ? dt * step_.rate[c] : dt * e0 * out_.rates.rate[c]);
   if (ratio > 0 && !given)
     for (Index c = 0; c < mesh_.cells.n_local(); ++c) side_[c] += dt * e1 * from.rates_old.rate[c];
-  if (forced) add_forces(from, e0, e1);
+  if (forced) add_forces(from, turned, e0, e1);
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   if (implicit) {
@@ -150,18 +150,46 @@ template <int D>
 void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   rate_operator_.apply(from, implicit, scene_.oblique, out_.rates, gradient_.of(from));
   wall_flux<D>(mesh_, *from.placement, scene_.fluid.mu, from.u, from.u_boundary, out_.shear);
+  if (scene_.parameters.rotating_frame) add_wall_convection(from);
   scene_.obstacles->clear(out_.rates.rate);
   scene_.obstacles->clear(out_.rates.viscous);
 }
 
+/// The pressure of a wall takes the part W f = sum S S.f/(g V) of the acceleration f in the cell beside it. Convection A is skew;
+/// (1 - W) A would do work, and (1 - W) A (1 - W) does none. This adds the right factor, relative to the wall.
+template <int D>
+void Predictor<D>::add_wall_convection(const State<D>& from) {
+  Vectors<D> change(from.u.size(), Vec<D>::Zero());
+  for (const Index b : scene_.boundary.rows().of_flux) {
+    const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+    const Placement<D>& at = *from.placement;
+    change[p] -=
+        at.area[f].dot(from.u[p] - from.u_boundary[b]) / (at.conductance[f] * at.volume[p]) * at.area[f];
+  }
+  mesh_.cells.update_ghosts(flat<D>(change), D);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> carried = 0.5 * from.phi[f] * (change[p] + change[n]);
+    out_.rates.rate[p] -= carried;
+    out_.rates.rate[n] += carried;
+  }
+}
+
 // Volume-integrated at t^{n+1/2}, the time of the pressure that may balance it.
 template <int D>
-void Predictor<D>::add_forces(const State<D>& from, double e0, double e1) {
+void Predictor<D>::add_forces(const State<D>& from, const Vectors<D>& turned, double e0, double e1) {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
   out_.force.assign(places.size(), Vec<D>::Zero());
-  for (const auto& force : scene_.forces)
-    force->add(step_.begin(), step_.dt, places, from.u, from.u_old, {e0, e1}, out_.force);
+  if (scene_.parameters.rotating_frame) {
+    out_.beside_walls.resize(out_.w.size());
+    for (std::size_t b = 0; b < out_.w.size(); ++b) {
+      const Index p = mesh_.owner[mesh_.n_interior + static_cast<Index>(b)];
+      out_.beside_walls[b] = e0 / step_.to->volume[p] * out_.rates.rate[p];
+      if (e1 != 0) out_.beside_walls[b] += e1 / step_.to->volume[p] * from.rates_old.rate[p];
+    }
+  }
+  for (const auto& force : scene_.forces) force->add(step_.begin(), step_.dt, places, turned, out_.force);
   for (std::size_t c = 0; c < places.size(); ++c) side_[c] += step_.dt * step_.to->volume[c] * out_.force[c];
 }
 

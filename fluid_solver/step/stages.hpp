@@ -33,8 +33,9 @@ class Predictor {
   Predictor(const Scene<D>& scene, const Step<D>& step, const KnownGradient<D>& gradient,
             Prediction<D>& result);
 
-  /// Computes u^p in the owned cells and the viscous force of the walls. Collective.
-  void predict(const State<D>& from);
+  /// Computes u^p in the owned cells and the viscous force of the walls. `turned`: velocity at t^{n+1/2} on which the forces of a
+  /// rotating frame act; empty without one. Collective.
+  void predict(const State<D>& from, const Vectors<D>& turned);
   /// Sets R of a state and its viscous force on the boundary faces in the prediction. Collective.
   void set_rates(const State<D>& from, bool implicit);
   RateOperator<D>& rate_operator() { return rate_operator_; }
@@ -44,7 +45,8 @@ class Predictor {
 
  private:
   void set_explicit_friction(const State<D>& from, double e0, double e1);
-  void add_forces(const State<D>& from, double e0, double e1);
+  void add_forces(const State<D>& from, const Vectors<D>& turned, double e0, double e1);
+  void add_wall_convection(const State<D>& from);
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
   void solve_viscous(const State<D>& from, double a);

@@ -36,19 +36,14 @@ TEST(RotatingFrame, forces_on_a_fluid_at_rest_outside_of_it) {
   const double t = 0.3, dt = 0.1;
   const Vec3 axis = Vec3(1, 2, 2) / 3, omega = (0.5 + 2 * (t + dt / 2)) * axis, x(0.7, 0.3, -0.2),
              r = x - p.centre;
-  const Vectors<3> u{-omega.cross(r)}, none;
+  const Vectors<3> u{-omega.cross(r)};
   Vectors<3> force{Vec3::Zero()};
-  frame.add(t, dt, std::vector<Vec3>{x}, u, none, {1, 0}, force);
+  frame.add(t, dt, std::vector<Vec3>{x}, u, force);
   Vec3 all = force[0];
   const auto potential = frame.potential(t + dt / 2);
   for (int c = 0; c < 3; ++c)  // the slope of the potential, which is quadratic
     all[c] += (potential(x + Vec3::Unit(c)) - potential(x - Vec3::Unit(c))) / 2;
   EXPECT_LT((all - omega.cross(omega.cross(r)) + 2 * axis.cross(r)).norm(), 1e-13);
-  // 1.5 and -0.5 times the levels make the same of them
-  const Vectors<3> later{Vec3(2 * u[0])}, before{Vec3(4 * u[0])};
-  Vectors<3> again{Vec3::Zero()};
-  frame.add(t, dt, std::vector<Vec3>{x}, later, before, {1.5, -0.5}, again);
-  EXPECT_LT((again[0] - force[0]).norm(), 1e-13);
   EXPECT_DOUBLE_EQ(frame.rate(t, dt), 2 * 1.3);
 }
 
@@ -154,7 +149,7 @@ TEST(RotatingFrame, loads_are_those_of_a_mesh_that_turns) {
   EXPECT_LT(fine.moment, 0.02);
   RecordProperty("gap_of_force", std::to_string(fine.force));
   EXPECT_LT(fine.force, 0.03);
-  EXPECT_LT(fine.pressure, 0.03);
+  EXPECT_LT(fine.pressure, 0.04);
   EXPECT_LT(fine.moment, 0.5 * coarse.moment);
   EXPECT_LT(fine.pressure, 0.5 * coarse.pressure);
 }
@@ -193,24 +188,20 @@ TEST(RotatingFrame, goes_on_from_a_checkpoint_bit_for_bit_and_alike_on_any_numbe
   EXPECT_GT(max(MPI_COMM_WORLD, largest), 0.05);
 }
 
-/// The step obeys the Coriolis force: a frame at 40 rad/s cuts it, and the fluid keeps less speed than it began with. With
-/// a tenth of the friction (omega h^2 / nu = 40 instead of 4) the frame makes energy at the walls: the run ends and says so.
-TEST(RotatingFrame, its_forces_bound_the_step) {
+/// The step obeys the Coriolis force: a frame at 40 rad/s cuts it. The force does no work, not even on skewed cells where it
+/// dominates friction (omega h^2 / nu = 4, 40): friction slows the fluid down.
+TEST(RotatingFrame, its_forces_bound_the_step_and_do_no_work) {
   FluidParameters p = in_a_box("40");
   p.initial_velocity = {{"0.1*y"}, {"-0.1*x"}};
-  FluidParameters viscous = p;
-  viscous.viscosity = 0.1;
-  const auto run = box_run(viscous);
-  take_steps(*run, 0, 40, 0.05);
-  EXPECT_GE(run->fluid().statistics().sub_steps, 20);  // 2 * 40 * 0.05 / (0.8 * 0.25)
-  double largest = 0;
-  for (const Vec<2>& u : run->fluid().state().u) largest = std::max(largest, u.norm());
-  EXPECT_LT(largest, 0.01);
-  const auto thin = box_run(p);
-  const auto goes_on = [&] { take_steps(*thin, 0, 40, 0.05); };
-  const std::string said = support::error_of<SolveFailure>([&] { goes_on(); });
-  EXPECT_THAT(said, ::testing::HasSubstr("omega h^2/nu = "));
-  EXPECT_THAT(said, ::testing::HasSubstr("A smaller step does not help"));
+  for (const double viscosity : {0.1, 0.01}) {
+    p.viscosity = viscosity;
+    const auto run = box_run(p);
+    take_steps(*run, 0, 1, 0.05);
+    const double first = run->fluid().state().ledger.energy;
+    take_steps(*run, 1, 20, 0.05);
+    EXPECT_GE(run->fluid().statistics().sub_steps, 20);  // 2 * 40 * 0.05 / (0.8 * 0.25)
+    EXPECT_LT(run->fluid().state().ledger.energy, 0.5 * first);
+  }
 }
 
 std::string refusal(const FluidParameters& p, const std::vector<std::array<std::string, 2>>& periodic = {}) {
