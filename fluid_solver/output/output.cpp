@@ -36,7 +36,9 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, const mesh::Geometry& geometr
       root_(parallel::comm_rank(mesh_.comm) == 0) {
   set_up_points(geometry);
   for (const mesh::Patch& patch : mesh_.patches)
-    if (is_wall(fluid.parameters().boundaries.at(patch.name))) walls_.push_back(&patch);
+    if (const BoundaryParameters& b = fluid.parameters().boundaries.at(patch.name);
+        is_wall(b) || b.type == BoundaryType::slip)
+      walls_.push_back(&patch);
   check_coefficients();
   if (!fluid.parameters().output.surfaces.empty()) surfaces_.emplace(fluid);
   tables_ = tables_of(fluid_, walls_);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "common/base/constants.hpp"
@@ -252,13 +253,16 @@ template <int D>
 std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const WallPatches& walls) {
   const FluidParameters& p = fluid.parameters();
   std::vector<SeriesTable> all;
+  WallPatches with_friction;
+  std::ranges::copy_if(walls, std::back_inserter(with_friction),
+                       [&](const mesh::Patch* patch) { return is_wall(p.boundaries.at(patch->name)); });
   const auto add = [&](bool wanted, const char* file, const auto& row) {
     if (wanted) all.push_back({file, row});
   };
   add(!walls.empty(), "forces.csv", [&] { return forces(fluid, walls); });
   add(!p.output.coefficients.empty(), "coefficients.csv", [&] { return coefficients(fluid); });
-  add(!walls.empty() && (p.turbulence || p.output.walls), "walls.csv",
-      [&] { return wall_layers(fluid, walls); });
+  add(!with_friction.empty() && (p.turbulence || p.output.walls), "walls.csv",
+      [&fluid, with_friction] { return wall_layers(fluid, with_friction); });
   add(p.output.fluxes, "fluxes.csv", [&] { return fluxes(fluid); });
   add(!p.output.flow_areas.empty(), "flow-areas.csv", [&] { return flow_areas(fluid); });
   add(true, "balance.csv", [&] { return balance(fluid); });
