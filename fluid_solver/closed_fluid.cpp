@@ -146,18 +146,8 @@ void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme) {
              alone = scheme == coupling::Scheme::standalone, waves = fluid.parameters().is_compressible(),
              walled = !boundary.interface_patches().empty();
   if (fluid.parameters().volume_level == VolumeLevelBy::structure) {
-    const std::pair<bool, const char*> refused[] = {
-        {alone, "this fluid runs alone, without a structure; remove the key."},
-        {waves, "a compressible fluid has a pressure level of its own; remove the key."},
-        {boundary.yields(),
-         "walls with a surface-density get their level from the pressure equation; remove one of the two keys."},
-        {!closed, "this fluid has an outlet, so a structure cannot set its pressure level; remove the key."},
-        {!boundary.body_patches().empty(),
-         "this fluid has bodies that move as prescribed, so a structure cannot set its pressure level; remove the key."},
-        {!walled,
-         "this fluid has no wall of type interface, so a structure cannot set its pressure level; remove the key."}};
-    for (const auto& [applies, message] : refused)
-      if (applies) throw Error("volume-level: structure: {}", message);
+    if (alone)
+      throw Error("volume-level: structure: this fluid runs alone, without a structure; remove the key.");
     return;
   }
   const bool is_set = alone || !closed || !walled || boundary.yields() || waves;

@@ -56,6 +56,6 @@ int main(int argc, char** argv) {
                                               parameters.mesh_scale));
           },
       .problems_of_files =
-          [&](const std::filesystem::path& folder) { return fluid::problems_of_files(parameters, folder); }};
+          [&](const diagnostics::CaseScene& scene) { return fluid::problems_of_files(parameters, scene); }};
   return app::run_program(argc, argv, program);
 }

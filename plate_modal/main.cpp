@@ -27,8 +27,8 @@ int main(int argc, char** argv) {
                 couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
           },
       .problems_of_files =
-          [&](const std::filesystem::path& folder) {
-            return couplet::plate::problems_of_files(parameters, folder);
+          [&](const couplet::diagnostics::CaseScene& scene) {
+            return couplet::plate::problems_of_files(parameters, scene.folder);
           }};
   return couplet::app::run_program(argc, argv, program);
 }

@@ -24,8 +24,8 @@ int main(int argc, char** argv) {
             return couplet::diagnostics::effects_of(couplet::thermocline::effect_cards(), parameters);
           },
       .problems_of_files =
-          [&](const std::filesystem::path& folder) {
-            return couplet::thermocline::problems_of_files(parameters, folder);
+          [&](const couplet::diagnostics::CaseScene& scene) {
+            return couplet::thermocline::problems_of_files(parameters, scene.folder);
           }};
   return couplet::app::run_program(argc, argv, program);
 }

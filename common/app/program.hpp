@@ -60,7 +60,7 @@ struct Program {
   std::function<diagnostics::ExpectedCost(const diagnostics::CaseScene&)> expected = {};
   /// Finds problems of the files that the parameters name, for --check. If empty, only the general checks are
   /// done.
-  std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
+  std::function<std::vector<ProblemOfKey>(const diagnostics::CaseScene&)> problems_of_files = {};
   /// Reads `coupling` instead of a participant's section and creates no participant.
   bool is_coupler = false;
 };

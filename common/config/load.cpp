@@ -344,11 +344,17 @@ void Reader::apply_rule(const Declaration& d) {
   if (text.empty()) return;
   if (text.back() != '.') text += '.';
   const std::string& key = d.facts.name;
-  const Entry entry = find(frame.node, key);
+  Entry entry{.found = true, .place = frame.place, .node = frame.node};
+  for (const std::string& part : base::split(key, '.')) {
+    const Entry next = find(entry.node, part);
+    entry.found = next.found;
+    if (!next.found) break;
+    entry.place = next.place;
+    entry.node.reset(next.node);
+  }
   if (entry.found && entry.node.IsScalar()) text = wrong_value(entry.node, text.c_str());
   (d.kind == Declaration::Kind::check ? messages_ : doubts_)
-      .push_back(message(entry.found ? entry.place : frame.place,
-                         key.empty() ? frame.path : join_path(frame.path, key), text));
+      .push_back(message(entry.place, key.empty() ? frame.path : join_path(frame.path, key), text));
 }
 
 void Reader::on(const Declaration& d) {

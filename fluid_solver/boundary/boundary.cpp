@@ -193,12 +193,19 @@ fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::O
 }
 
 std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
-                                                 const std::filesystem::path& case_folder) {
+                                                 const diagnostics::CaseScene& scene) {
   std::vector<app::ProblemOfKey> all;
+  if (parameters.volume_level == VolumeLevelBy::structure && !scene.coupled)
+    all.push_back({"volume-level", "this fluid runs alone, without a structure; remove the key."});
   for (const auto& [patch, boundary] : parameters.boundaries) {
+    if (condition_of(boundary).velocity == GivenBy::motion && !parameters.motion && !scene.has_mover)
+      all.push_back(
+          {"boundaries." + patch + ".type",
+           "a body moves by the section 'motion' or with a mesh mover (`coupling.mesh`); both are missing."});
     if (!boundary.table) continue;
     try {
-      (void)velocity_table(case_folder / boundary.table->file, boundary.table->outside, parameters.dimension);
+      (void)velocity_table(scene.folder / boundary.table->file, boundary.table->outside,
+                           parameters.dimension);
     } catch (const Error& error) {
       all.push_back({"boundaries." + patch + ".table.file", error.what()});
     }
@@ -301,7 +308,6 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const mesh::Geometry& geo
   const bool compressible = parameters.is_compressible();
   const bool has_line = compressible && parameters.compressibility->upstream_line;
   const bool has_upstream = has_line || (compressible && parameters.compressibility->upstream_volume > 0);
-  const std::string upstream = has_line ? "upstream-line" : "upstream-volume";
   // The fluid accelerates from Q/A in a line, from rest in a volume: it loses rho/2 (u^2 - (Q/A)^2) of the pressure.
   double inflow = 0.5;
   if (has_line) {
@@ -315,25 +321,8 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const mesh::Geometry& geo
   for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     const FaceRange faces{patch.first - mesh.n_interior, patch.count};
-    const Condition& condition = condition_of(b);
-    const bool inlet = condition.passage == Passage::in;
-    if (b.absorbing) {
-      if (!compressible)
-        throw Error(
-            "boundaries.{}.absorbing: an incompressible fluid has no pressure waves to let out; add 'compressibility', or "
-            "remove the key.",
-            patch.name);
-      if (inlet && has_upstream)
-        throw Error(
-            "boundaries.{}.absorbing: the '{}' behind this inlet already responds to the waves; remove one of the two.",
-            patch.name, upstream);
-      absorbing_patches_.push_back({faces, inlet});
-    }
-    if (compressible && condition.velocity == GivenBy::flow)
-      throw Error(
-          "boundaries.{}: a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' "
-          "with 'absorbing: true'.",
-          patch.name);
+    const bool inlet = condition_of(b).passage == Passage::in;
+    if (b.absorbing) absorbing_patches_.push_back({faces, inlet});
     if (!has_upstream || !inlet) continue;
     if (has_line && parameters.compressibility->upstream_line->end == UpstreamLineParameters::End::open &&
         prescribes_flow(b, "boundaries." + patch.name, D))
@@ -345,8 +334,6 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const mesh::Geometry& geo
     upstream_patches_.push_back(faces);
     closed_ = false;
   }
-  if (has_upstream && upstream_patches_.empty())
-    throw Error("compressibility.{}: this fluid has no inlet; remove the key.", upstream);
 }
 
 template <int D>

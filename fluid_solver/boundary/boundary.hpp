@@ -109,9 +109,9 @@ class GivenVelocity {
 fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
                              int dimension);
 
-/// Missing or invalid tables of boundaries, for --check.
+/// Missing or invalid tables of boundaries, and walls that nothing moves, for --check.
 std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
-                                                 const std::filesystem::path& case_folder);
+                                                 const diagnostics::CaseScene& scene);
 
 /// A patch that lets pressure waves out.
 struct AbsorbingPatch {

@@ -20,10 +20,8 @@ namespace {
 
 /// Refuses what no scheme combines with this mesh or its motion. The first one that applies is told.
 template <int D>
-void check_effects(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
-                   bool moving) {
-  const bool bodies = !parameters.bodies.empty(), gaps = !parameters.gaps.empty(),
-             frame = parameters.rotating_frame.has_value(), waves = parameters.is_compressible(),
+void check_effects(const mesh::Mesh& mesh, const FluidParameters& parameters, bool moving) {
+  const bool bodies = !parameters.bodies.empty(), frame = parameters.rotating_frame.has_value(),
              stages = parameters.scheme == ExplicitScheme::runge_kutta;
   const bool cut = bodies && parameters.bodies.begin()->second.surface == BodySurface::cut;
   bool across = false;
@@ -43,8 +41,6 @@ void check_effects(const mesh::Mesh& mesh, const Boundary<D>& boundary, const Fl
       {cut && parameters.projection == Projection::incremental,
        "projection: incremental does not support cells that bodies cut; use flux-memory, or on a mesh at rest "
        "'surface: steps' of the bodies."},
-      {gaps && boundary.closed() && !waves,
-       "gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their fluid."},
       {stages && moving, "scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover."}};
   for (const auto& [applies, message] : refused)
     if (applies) throw Error("{}", message);
@@ -114,7 +110,7 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
                     bool moving) {
   check_axes(parameters, D);
   check_parts(mesh, boundary);
-  check_effects(mesh, boundary, parameters, moving);
+  check_effects<D>(mesh, parameters, moving);
   if (parameters.face_values != FaceValues::second_order) check_order(parameters, moving);
   // Bodies act on the explicit step, and the stages are explicit.
   const bool is_explicit = !parameters.bodies.empty() || parameters.scheme == ExplicitScheme::runge_kutta;

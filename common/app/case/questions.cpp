@@ -153,10 +153,10 @@ namespace {
 
 /// Problems of a participant's files: general ones, or else those found by its program.
 std::vector<std::string> problems(const CaseFile& file, const Program& program,
-                                  const std::filesystem::path& case_folder) {
-  std::vector<std::string> all = problems_of_files(*file.document, file.participant, case_folder);
+                                  const diagnostics::CaseScene& scene) {
+  std::vector<std::string> all = problems_of_files(*file.document, file.participant, scene.folder);
   if (!all.empty() || !program.problems_of_files) return all;
-  for (const ProblemOfKey& problem : program.problems_of_files(case_folder))
+  for (const ProblemOfKey& problem : program.problems_of_files(scene))
     all.push_back(fmt::format(
         "{}: {}", config::where(*file.document, "participants." + file.participant + "." + problem.key),
         problem.what));
@@ -166,7 +166,7 @@ std::vector<std::string> problems(const CaseFile& file, const Program& program,
 int check(const CommandLine& command_line, const Program& program, bool print) {
   CaseFile file = read_case(command_line, program);
   if (!print && file.errors.empty() && !program.is_coupler)
-    file.errors = problems(file, program, command_line.case_file.parent_path());
+    file.errors = problems(file, program, scene_of(command_line, file));
   if (!print && file.errors.empty())
     if (std::string problem = problem_of_restart(command_line, file, program.is_coupler); !problem.empty())
       file.errors.push_back(std::move(problem));
