@@ -13,6 +13,16 @@
 
 namespace couplet::mesh_mover {
 
+namespace {
+
+// Largest relative error of an affine fit. No point moves by more than its boundary, so it bounds the error
+// everywhere.
+constexpr double round_off = 1e-12;
+// Relative difference of displacements that count as equal.
+constexpr double same_displacement = 1e-6;
+
+}  // namespace
+
 std::vector<Index> points_of(const mesh::Mesh& mesh, const mesh::Patch& patch) {
   std::vector<Index> points;
   for_faces(patch, [&](Index f) {
@@ -29,7 +39,8 @@ MovingPatches::MovingPatches(const mesh::Mesh& mesh, const mesh::Geometry& geome
   for (const mesh::Patch& patch : mesh.patches) {
     const Boundary& boundary = parameters.boundaries.at(patch.name);
     if (boundary.motion == BoundaryMotion::moving)
-      patches_.push_back({points_of(mesh, patch), fv::PrescribedMotion(boundary.prescribed, mesh.dim)});
+      patches_.push_back(
+          {patch.name, points_of(mesh, patch), fv::PrescribedMotion(boundary.prescribed, mesh.dim)});
   }
 }
 
@@ -40,12 +51,28 @@ std::vector<Vec3> MovingPatches::at_rest(const Moving& moving) const {
 }
 
 void MovingPatches::displace(double time, std::vector<double>& values) const {
+  std::vector<const Moving*> mover_of(std::size_t(mesh_.points.n_local()), nullptr);
+  std::string trouble;
   for (const Moving& moving : patches_) {
     const std::vector<Vec3> reference = at_rest(moving), places = moving.motion.places(reference, time);
-    for (std::size_t i = 0; i < places.size(); ++i)
-      for (int c = 0; c < mesh_.dim; ++c)
-        values[std::size_t(moving.points[i]) * mesh_.dim + c] = places[i][c] - reference[i][c];
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Moving*& other = mover_of[std::size_t(moving.points[i])];
+      double* const d = &values[std::size_t(moving.points[i]) * std::size_t(mesh_.dim)];
+      const Vec3 own = places[i] - reference[i];
+      Vec3 before = own;
+      if (other != nullptr) std::copy_n(d, mesh_.dim, before.data());
+      if ((own - before).norm() >
+          same_displacement * std::max(own.norm(), before.norm()) + round_off * places[i].norm())
+        trouble = fmt::format(
+            "boundaries: '{}' and '{}' move differently at ({:.6g}, {:.6g}, {:.6g}), a common point: by {:.6g} m and {:.6g} m "
+            "at t = {:g} s. Give them the same motion there, or let one of them follow ('slip' or 'free').",
+            other->name, moving.name, reference[i][0], reference[i][1], reference[i][2], before.norm(),
+            own.norm(), time);
+      other = &moving;
+      std::copy_n(own.data(), mesh_.dim, d);
+    }
   }
+  parallel::throw_together(mesh_.comm, trouble);
 }
 
 std::vector<double> MovingPatches::velocities(double time, double dt) const {
@@ -63,9 +90,6 @@ std::vector<double> MovingPatches::velocities(double time, double dt) const {
 
 namespace {
 
-// Largest relative error of the fit. No point moves by more than its boundary, so it bounds the error
-// everywhere.
-constexpr double round_off = 1e-12;
 // Squared relative extent of the points below which a direction has none.
 constexpr double least_extent = 1e-10;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/fv/prescribed_motion.hpp"
@@ -27,13 +28,15 @@ class MovingPatches {
   /// Keeps references.
   MovingPatches(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
   bool empty() const { return patches_.empty(); }
-  /// Sets the displacement of their points from the mesh as read [m] in `values`, dim per local point.
+  /// Sets the displacement of their points from the mesh as read [m] in `values`, dim per local point. Throws
+  /// Error if two patches move a common point differently. Collective.
   void displace(double time, std::vector<double>& values) const;
   /// Velocities, dim values per local point, zero elsewhere; empty without such patches. Collective.
   std::vector<double> velocities(double time, double dt) const;
 
  private:
   struct Moving {
+    std::string name;
     std::vector<Index> points;  // local
     fv::PrescribedMotion motion;
   };

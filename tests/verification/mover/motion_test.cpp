@@ -152,6 +152,26 @@ TEST(Rotations, a_body_without_room_is_refused_by_name) {
               ::testing::HasSubstr("patch 'floor' extends"));
 }
 
+TEST(Mover, patches_that_move_a_common_point_apart_are_refused_by_name) {
+  const auto error = [](const char* floor, const char* right) {
+    Parameters p = plate_in_a_square(Method::laplacian, Form::total);
+    for (const auto& [name, up] : {std::pair{"floor", floor}, std::pair{"right", right}}) {
+      p.boundaries[name].motion = BoundaryMotion::moving;
+      p.boundaries[name].prescribed.translation = {{"0"}, {up}};
+    }
+    return support::error_of([&] {
+      Mover mover(p, context());
+      mover.initialise();
+      run(mover, 0, 0.1, 1);
+    });
+  };
+  EXPECT_EQ(error("0.1*t", "t/10"), "");
+  const std::string refused = error("0.1*t", "0.2*t");
+  for (const char* text :
+       {"'floor'", "'right'", " move differently at (", "0.01 m", "0.02 m", "at t = 0.1 s."})
+    EXPECT_THAT(refused, ::testing::HasSubstr(text));
+}
+
 class EveryMethod : public ::testing::TestWithParam<std::pair<Method, Form>> {};
 
 /// Half a swing and back: the total form forgets the path, the incremental one does not.
