@@ -39,7 +39,7 @@ def refusal(text):
         return ""
     with tempfile.TemporaryDirectory() as folder:
         case = pathlib.Path(folder) / "case.yaml"
-        case.write_text(text)
+        files.write(folder, case.name, text)
         done = subprocess.run([coupler, case, "--check"], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=surroundings())
     return done.stderr.replace(str(case), "case.yaml").strip() if done.returncode else ""
 
