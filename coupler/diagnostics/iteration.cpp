@@ -161,6 +161,7 @@ class AddedMass final : public CouplingDiagnostic {
                                  returned_, limit_),
              .advice = "iterate the added mass: 'scheme: semi-implicit'",
              .left_out = false,
+             .wrong_from = limit_,
              .share = std::min(returned_, 1.)}))  // what the load of this step leaves to the next
       report.findings.push_back(std::move(*finding));
   }

@@ -68,10 +68,7 @@ void Fluid<D>::restore(State<D> state) {
 
 template <int D>
 void Fluid<D>::begin_step(double time, double dt) {
-  if (time == time_ && dt < dt_) {  // the last one was rejected, and what led to it is no measure
-    accepted_.ledger.largest = std::max(0., accepted_.ledger.energy);
-    accepted_.largest_speed = 0;
-  }
+  rejected_ = time == time_ && dt < dt_;
   time_ = time;
   dt_ = dt;
   split_ = false;
@@ -186,7 +183,9 @@ template <int D>
 void Fluid<D>::accept() {
   if (split_) std::swap(accepted_, trial_);
   split_ = false;
+  if (rejected_) accepted_.largest_speed = 0;
   step_.commit(accepted_);
+  if (rejected_) accepted_.ledger.largest = std::max(0., accepted_.ledger.energy);
   step_.keep();
   accepted_.time = time_ + dt_;
   accepted_.turn.swap(turn_);
