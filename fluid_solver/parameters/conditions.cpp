@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -237,6 +240,51 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
     if (!condition.about.empty()) about.push_back(condition.about);
   }
   s.variant("type", b.type, cases, base::join(about, "; "), true);
+}
+
+void declare_levels(config::Section& s, const FluidParameters& p) {
+  const bool waves = p.is_compressible(), line = waves && p.compressibility->upstream_line,
+             upstream = line || (waves && p.compressibility->upstream_volume > 0),
+             held = p.volume_level == VolumeLevelBy::structure;
+  const std::string behind = line ? "upstream-line" : "upstream-volume";
+  const auto refuse = [&s](bool applies, const std::string& key, const std::string& message) {
+    s.check([told = applies ? message : ""] { return told; }, key);
+  };
+  bool given = false, convective = false, inlet = false, moves = false, walled = false, yields = false;
+  for (const auto& [patch, b] : p.boundaries) {
+    const Condition& condition = condition_of(b);
+    const bool enters = condition.passage == Passage::in, flows = condition.velocity == GivenBy::flow;
+    given = given || gives_pressure(b), convective = convective || flows, inlet = inlet || enters;
+    moves = moves || condition.velocity == GivenBy::motion, yields = yields || b.surface_density;
+    walled = walled || condition.velocity == GivenBy::structure;
+    const std::string where = "boundaries." + patch;
+    refuse(
+        b.absorbing && !waves, where + ".absorbing",
+        "an incompressible fluid has no pressure waves to let out; add 'compressibility', or remove the key");
+    refuse(b.absorbing && enters && upstream, where + ".absorbing",
+           fmt::format("the '{}' behind this inlet already responds to the waves; remove one of the two",
+                       behind));
+    refuse(
+        waves && flows, where + ".type",
+        "a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' with "
+        "'absorbing: true'");
+  }
+  refuse(upstream && !inlet, "compressibility." + behind, "this fluid has no inlet; remove the key");
+  refuse(!p.gaps.empty() && !given && !waves, "gaps",
+         "a fluid with closing gaps needs an outlet, because its blocked cells retain their fluid");
+  refuse(held && waves, "volume-level",
+         "a compressible fluid has a pressure level of its own; remove the key");
+  refuse(
+      held && yields, "volume-level",
+      "walls with a surface-density get their level from the pressure equation; remove one of the two keys");
+  refuse(held && (given || convective), "volume-level",
+         "this fluid has an outlet, so a structure cannot set its pressure level; remove the key");
+  refuse(
+      held && moves, "volume-level",
+      "this fluid has bodies that move as prescribed, so a structure cannot set its pressure level; remove the key");
+  refuse(
+      held && !walled, "volume-level",
+      "this fluid has no wall of type interface, so a structure cannot set its pressure level; remove the key");
 }
 
 }  // namespace couplet::fluid

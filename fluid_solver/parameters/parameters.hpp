@@ -299,6 +299,8 @@ struct FluidParameters {
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
 
 void declare(config::Section& section, FluidParameters& parameters);
+/// Rules for openings, and for what sets the pressure level. Reads all other keys.
+void declare_levels(config::Section& section, const FluidParameters& parameters);
 /// Declares the section `output`.
 void declare_output(config::Section& section, FluidOutputParameters& parameters);
 
