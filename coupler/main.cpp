@@ -13,7 +13,7 @@ namespace {
 int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters& read) {
   using namespace couplet;
   coupler::CouplingParameters parameters = read.in_force();
-  parameters.loads_at_rest = job.has_linear_structure();
+  parameters.loads_at_rest = job.has_linear_structures();
   std::vector<std::unique_ptr<coupling::Channel>> channels;
   for (const app::Member& m : job.members)
     if (m.participant != app::coupler_name)

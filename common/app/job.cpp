@@ -265,12 +265,15 @@ const Member* Job::find(const std::string& participant) const {
   return nullptr;
 }
 
-bool Job::has_linear_structure() const {
-  const auto structure = config::text_of(*document, "coupling.structure.participant");
-  const std::string path = "participants." + structure.value_or("");
-  const auto program = structure ? config::text_of(*document, path + ".program") : std::nullopt;
-  return program == "plate_modal" ||
-         (program == "solid_solver" && config::text_of(*document, path + ".kinematics") != "finite-strain");
+bool Job::has_linear_structures() const {
+  bool found = false;
+  for (const Member& m : members) {
+    if (m.program != "solid_solver" && m.program != "plate_modal") continue;
+    if (config::text_of(*document, "participants." + m.participant + ".kinematics") == "finite-strain")
+      return false;
+    found = true;
+  }
+  return found;
 }
 
 MPI_Comm Job::connect(const std::string& participant) const {

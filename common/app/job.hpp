@@ -39,8 +39,8 @@ struct Job {
     faults->at(couplet::app::name(phase));
   }
   const Member* find(const std::string& participant) const;
-  /// True if the coupling has a structure that obeys linear theory, so that loads act on its undeformed surface.
-  bool has_linear_structure() const;
+  /// True if all structures of the job obey linear theory, so that loads act on their undeformed surfaces.
+  bool has_linear_structures() const;
   /// Intercommunicator between this participant and another. Both must call it in a deadlock-free order: the
   /// coupler first, by order of members. Collective over both.
   MPI_Comm connect(const std::string& participant) const;

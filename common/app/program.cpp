@@ -69,7 +69,7 @@ int run(const Job& job, const Program& program) {
   context.coupled = !job.alone;
   context.scheme = scheme_of(job);
   context.restart_time = job.restart_time;
-  context.loads_at_rest = job.has_linear_structure();
+  context.loads_at_rest = job.has_linear_structures();
   MPI_Comm coupler = MPI_COMM_NULL;
   if (!job.alone) {
     coupler = job.connect(coupler_name);

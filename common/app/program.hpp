@@ -30,7 +30,7 @@ struct ParticipantContext {
   /// Intercommunicator to the mesh mover (for a fluid) or to the fluid (for a mover), or MPI_COMM_NULL.
   MPI_Comm mesh_peer = MPI_COMM_NULL;
   double restart_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN for a fresh start
-  bool loads_at_rest = false;                                      ///< see Job::has_linear_structure()
+  bool loads_at_rest = false;                                      ///< see Job::has_linear_structures()
 };
 
 /// Problem with a file that a participant's key names.

@@ -20,8 +20,8 @@ constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit ==
 /// 1/min is no speed of rotation and rad/s no frequency.
 struct Unit {
   double factor = 1;
-  double offset =
-      0;  ///< only for degC and degF by themselves; inside a product (W/(m degC)) it is a difference
+  /// Only for degC and degF by themselves; inside a product (W/(m degC)) it is a difference.
+  double offset = 0;
   using Dimension = std::array<int, 5>;
   Dimension dimension{};
   bool is_number() const { return dimension == Dimension{}; }

@@ -122,8 +122,7 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
                                                                : "not reliable");
     return f;
   }
-  // The number rests on a value that the case does not give, such as a direction of gravity.
-  if (std::isinf(e.limit)) {
+  if (e.limit == no_verdict) {
     f.severity = Severity::note;
     f.sentence = fmt::format("{}: {} (for information)", f.effect, e.what);
     return f;

@@ -129,11 +129,14 @@ class Diagnostics {
   bool concluding_ = false;
 };
 
+/// Limit of a number that rests on a value that the case does not give: it is stated for information, without a verdict.
+constexpr double no_verdict = std::numeric_limits<double>::infinity();
+
 /// Finding about an effect that a scene neglects or includes. Not reported if `number` is unknown.
 struct EffectFinding {
   const char* effect = "";  ///< its name; the finding's id is the name in lower case with hyphens
   double number = 0;        ///< its size; NaN if unknown
-  double limit = 0;         ///< of the number, up to which an effect is adequate; infinity: for information
+  double limit = 0;         ///< of the number, up to which an effect is adequate, or no_verdict
   std::string what;         ///< the number in words, with its unit: "max |grad u| = 0.29"
   std::string advice{};
   bool left_out = true;  ///< false if the scene includes it

@@ -41,8 +41,8 @@ class Reference {
  private:
   const ReferenceEntry* entry_;
   double value_ = 0;
-  double time_ =
-      std::numeric_limits<double>::infinity();  // since the last rejected step [s]; infinite without one
+  // Since the last rejected step [s]; infinite without one.
+  double time_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace couplet::diagnostics

@@ -161,7 +161,7 @@ class AddedMass final : public CouplingDiagnostic {
                                  returned_, limit_),
              .advice = "iterate the added mass: 'scheme: semi-implicit'",
              .left_out = false,
-             .wrong_from = limit_,
+             .wrong_from = 1,                     // a pass returns more than it was given
              .share = std::min(returned_, 1.)}))  // what the load of this step leaves to the next
       report.findings.push_back(std::move(*finding));
   }

@@ -173,10 +173,13 @@ std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const int dimension = is_plane(view) ? 2 : 3;
   if (p.turbulence && dimension == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
   if (!(p.viscosity > 0)) return {};
-  // At the walls of a flow that starts, layers are as thick as friction has reached: below U^2 t/nu = 9e4 (a displacement thickness of
-  // 520 nu/U), no disturbance of them grows [Schlichting]. Two of them fill this width.
-  const double nu = p.kinematic_viscosity(), reached = 11.5 * std::sqrt(nu * (view.step.time + view.step.dt));
-  const double reynolds = largest_speed(view) * std::min(hydraulic_diameter(view.fluid), reached) / nu;
+  const double nu = p.kinematic_viscosity();
+  double width = hydraulic_diameter(view.fluid);
+  // At the walls of a flow that starts from rest, layers are as thick as friction has reached: below U^2 t/nu = 9e4 (a displacement
+  // thickness of 520 nu/U), no disturbance of them grows [Schlichting]. Two of them fill this width.
+  if (p.initial_velocity.empty())
+    width = std::min(width, 11.5 * std::sqrt(nu * (view.step.time + view.step.dt)));
+  const double reynolds = largest_speed(view) * width / nu;
   return diagnostics::finding_of(
       unresolved_layers(dimension, largest_shear(view), largest_yplus(view), reynolds));
 }

@@ -75,7 +75,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
     if (view_.parameters.gravity.empty() && !moves_freely() && view_.fluid_force.empty())
       report_neglected(report, "gravity", weight,
                        fmt::format("across the plate its weight would add {:.2g} of the motion", weight), "",
-                       unknown, no_verdict);
+                       unknown, diagnostics::no_verdict);
   }
   void visit(io::Archive& archive) override {
     archive.common("largest", displacement_, rotation_, largest_, added_, rate_);

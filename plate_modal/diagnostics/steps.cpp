@@ -38,7 +38,7 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
     report_neglected(
         report, "damping", share,
         fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual_damping, share), "",
-        unknown, no_verdict);
+        unknown, diagnostics::no_verdict);
   }
   void visit(io::Archive& archive) override {
     archive.common("energies", mismatch_, largest_, moved_, turns_);

@@ -47,8 +47,6 @@ std::optional<double> time_to_look(const PlateView& view);
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all);
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// Limit of a number that rests on a value that the case does not give.
-constexpr double no_verdict = std::numeric_limits<double>::infinity();
 /// Reports a neglected effect unless its number is unknown. `share`: see diagnostics::Finding. `limit`: of the number, from which
 /// an unknown share is a warning.
 void report_neglected(diagnostics::Report& report, const char* effect, double number, std::string what,

@@ -322,7 +322,7 @@ void HeatStorage::look(diagnostics::Report& report) {
   if (auto finding = diagnostics::finding_of(
           {.effect = "storage of heat",
            .number = stored > 0 ? lag : 1,
-           .limit = std::numeric_limits<double>::infinity(),
+           .limit = diagnostics::no_verdict,
            .what = stored > 0 ? fmt::format("heat needs about {:.2g} s to spread through the solid, the "
                                             "temperature changes within {:.2g} s",
                                             time, range / rate)

@@ -24,9 +24,6 @@ namespace {
 
 using P = SolidParameters;
 
-/// Limit of a number that rests on a value that the case does not give.
-constexpr double no_verdict = std::numeric_limits<double>::infinity();
-
 bool deforms(const P& p) { return p.analysis != P::Analysis::thermal; }
 
 bool has_interface(const P& p) {
@@ -80,7 +77,7 @@ Opinion neglected_damping(const P& p, double turns) {
   return diagnostics::finding_of(
       {.effect = "damping",
        .number = share,
-       .limit = no_verdict,
+       .limit = diagnostics::no_verdict,
        .what = fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual, share)});
 }
 
@@ -187,7 +184,7 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
   return diagnostics::finding_of(
       {.effect = "thermal strain",
        .number = share,
-       .limit = no_verdict,
+       .limit = diagnostics::no_verdict,
        .what = fmt::format(
            "a temperature {} of {:.3g} K would strain a free body with {:.3g} 1/K by {:.2g}; max |grad u| = {:.2g}",
            own ? "change" : "range", kelvins, coefficient, strain, gradient),
@@ -208,7 +205,7 @@ Opinion properties_of_temperature(const P& p, double kelvins) {
   return diagnostics::finding_of(
       {.effect = "properties of temperature",
        .number = lost,
-       .limit = no_verdict,
+       .limit = diagnostics::no_verdict,
        .what = fmt::format(
            "up to {:.3g} K from the temperature of a room a metal loses about {:.2g} of its modulus", kelvins,
            lost)});
@@ -295,7 +292,7 @@ class NeglectedWeight final : public diagnostics::Diagnostic {
     add(report, diagnostics::finding_of(
                     {.effect = "gravity",
                      .number = share,
-                     .limit = no_verdict,
+                     .limit = diagnostics::no_verdict,
                      .what = fmt::format(
                          "along {} the weight would change the displacement under the loads by {:.2g} of it",
                          "xyz"[axis], share)}));
