@@ -192,25 +192,6 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
        .share = own ? share : std::nan("")});
 }
 
-// Metals lose 4 to 6 % of Young's modulus per 100 K; the others differ too much for an estimate.
-Opinion properties_of_temperature(const P& p, double kelvins) {
-  constexpr double metal = 10e9, per_kelvin = 5e-4;  // [Pa], [1/K]
-  double stiffest = 0;
-  for (const SolidMaterial& m : materials_of(p)) {
-    if (m.heat.youngs_modulus) return {};
-    stiffest = std::max(stiffest, m.youngs_modulus);
-  }
-  if (!deforms(p) || stiffest < metal) return {};
-  const double lost = std::min(0.9, per_kelvin * kelvins);
-  return diagnostics::finding_of(
-      {.effect = "properties of temperature",
-       .number = lost,
-       .limit = diagnostics::no_verdict,
-       .what = fmt::format(
-           "up to {:.3g} K from the temperature of a room a metal loses about {:.2g} of its modulus", kelvins,
-           lost)});
-}
-
 Opinion thermoelastic_coupling(const P& p, double coupling_number) {
   diagnostics::EffectFinding found{
       .effect = "thermoelastic coupling",
@@ -366,8 +347,6 @@ class NeglectedOfHeat final : public diagnostics::Diagnostic {
     largest_gradient_ = std::max(largest_gradient_, gradient);
     add(report, neglected_thermal_strain(p, largest_gradient_, high - low,
                                          std::max(std::abs(high - reference), std::abs(low - reference))));
-    constexpr double room = 293.15;  // [K]
-    add(report, properties_of_temperature(p, std::max(std::abs(high - room), std::abs(low - room))));
     if (const double number = thermal.coupling_number(); number > 0)
       add(report, thermoelastic_coupling(p, number));
   }

@@ -33,8 +33,6 @@ Opinion near_incompressibility(const SolidParameters& parameters);
 /// `gradient`: largest displacement gradient. `range`, `change`: of the temperatures, and from the reference [K].
 Opinion neglected_thermal_strain(const SolidParameters& parameters, double gradient, double range,
                                  double change);
-/// `kelvins`: farthest temperature from that of a room.
-Opinion properties_of_temperature(const SolidParameters& parameters, double kelvins);
 /// Stiffening by the heat of deformation, thesis (2.27), needed or not.
 Opinion thermoelastic_coupling(const SolidParameters& parameters, double coupling_number);
 
