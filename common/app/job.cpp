@@ -179,9 +179,11 @@ int code_of_findings(const Job& job, CommandLine::Strict strict) {
   return exit_failed;
 }
 
-/// Exit code that all programs share: 4 if a finding requires it and no program failed or was stopped.
+/// Exit code of a program: 4 if a finding of any program requires it, unless one failed or was stopped. The launcher
+/// gives the first code that is not 0.
 int agreed(const std::array<int, 2>& worst, int code) {
   const auto [failed, found_wrong] = worst;
+  if (code == exit_wrong && failed) return failed;
   return code == 0 && !failed && found_wrong ? exit_wrong : code;
 }
 
@@ -189,7 +191,7 @@ int agreed(const std::array<int, 2>& worst, int code) {
 /// MPI_Finalize, Open MPI's launcher (4.1 with PMIx 4.2) may deadlock forever; while they wait here it does
 /// not. Returns the exit code required by the findings of all programs.
 int leave_together(MPI_Comm programs, int code) {
-  std::array<int, 2> worst{code != 0 && code != exit_wrong, code == exit_wrong};
+  std::array<int, 2> worst{code == exit_wrong ? 0 : code, code == exit_wrong};
   MPI_Request all_here;
   MPI_Iallreduce(MPI_IN_PLACE, worst.data(), 2, MPI_INT, MPI_MAX, programs, &all_here);
   coupling::wait_politely(all_here, "the other programs to end");
