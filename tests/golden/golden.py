@@ -6,8 +6,9 @@
   golden.py compare [--bin FOLDER] [CASE ...]   runs them and lists what differs from golden.json
   golden.py resume  [--bin FOLDER] [CASE ...]   runs them whole, and again from a checkpoint in their middle; lists what differs
 
-Cases run for at most STEPS of their steps. Recorded are the exit code, each participant's findings, error budget and place on the
-maps (run.json), and the last row of each of its tables."""
+A CASE is a file below configs, such as cavity/case.yaml, or the name of a folder there, for all its cases. Cases run for at most
+STEPS of their steps. Recorded are the exit code, each participant's findings, error budget and place on the maps (run.json), and
+the last row of each of its tables."""
 import argparse
 import csv
 import json
@@ -18,6 +19,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 import yaml
 
@@ -36,6 +38,14 @@ def cases():
         data = yaml.safe_load(path.read_text())
         if "participants" in data:
             yield path.relative_to(ROOT / "configs").as_posix()
+
+
+def chosen(names):
+    """The shipped cases of these names, all of them without names, and files of other folders as they are."""
+    shipped = list(cases())
+    found = [case for name in names for case in ([name] if pathlib.Path(name).is_absolute() else
+             [one for one in shipped if name in (one, one.partition("/")[0])] or sys.exit(f"golden.py: configs has no case '{name}'"))]
+    return found or shipped
 
 
 def seconds(value):
@@ -133,13 +143,16 @@ def answers(outcome):
 def compare(args):
     golden, bad = json.loads(args.file.read_text()), 0
     for case in args.cases:
-        if case not in golden or golden[case]["exit code"] == "timeout":
+        if case not in golden:
+            sys.exit(f"golden.py: {case} is not recorded: golden.py record {case}")
+        if golden[case]["exit code"] == "timeout":
             continue
+        start = time.monotonic()
         with tempfile.TemporaryDirectory() as folder:
             found, _, _, text = whole(case, args.bin, folder)
         apart = differences(answers(golden[case]), answers(found))
         bad += bool(apart)
-        print(case, "same" if not apart else "DIFFERS", flush=True)
+        print(case, "same" if not apart else "DIFFERS", f"{time.monotonic() - start:.1f} s", flush=True)
         for line in apart[:12]:
             print("  ", line, flush=True)
         if found["exit code"] != golden[case]["exit code"]:
@@ -179,7 +192,7 @@ def main():
     parser.add_argument("--file", type=pathlib.Path, default=HERE / "golden.json")
     parser.add_argument("cases", nargs="*")
     args = parser.parse_intermixed_args()
-    args.cases = args.cases or list(cases())
+    args.cases = chosen(args.cases)
     return {"record": record, "compare": compare, "resume": resume}[args.task](args)
 
 

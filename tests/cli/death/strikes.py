@@ -55,7 +55,9 @@ def name_of(pid):
 
 
 def with_names(session, program):
-    return [pid for pid, name in living(session).items() if name == program]
+    """Not the copies that have yet to become a mesh generator."""
+    found, every = [pid for pid, name in living(session).items() if name == program], stats()
+    return [pid for pid in found if pid in every and every[pid][1] not in found]
 
 
 def stats():
