@@ -144,7 +144,9 @@ def compare(args):
     golden, bad = json.loads(args.file.read_text()), 0
     for case in args.cases:
         if case not in golden:
-            sys.exit(f"golden.py: {case} is not recorded: golden.py record {case}")
+            bad += 1
+            print(case, f"is not recorded: golden.py record {case}", flush=True)
+            continue
         if golden[case]["exit code"] == "timeout":
             continue
         start = time.monotonic()
