@@ -13,8 +13,8 @@ constexpr const char* checkpoint_format = "couplet checkpoint";
 // Version 3 added the errors of steps, the net heat of a tank's report and the source of the pressure
 // preconditioner. 4: order of the errors. 5: fields by the numbers of cells, points and faces. 6: the scheme
 // that a coupling chose. 7: the memory of diagnostics. 9: no checksums beside the digests of the set.
-// 10: single values are arrays. 11: the largest speed of a flow. 12: what the filter of the pressure took.
-constexpr int checkpoint_version = 13;
+// 10: single values are arrays. 11: the largest speed of a flow. 12: what the filter of the pressure took; until 13.
+constexpr int checkpoint_version = 14;
 
 // arrays/NAME with layout/NAME: values rank by rank; count of each rank.
 // fields/NAME with checks/NAME: rows by the entries' numbers; rows, values per row.

@@ -142,10 +142,10 @@ struct Differences {
   double step;                               ///< factor of the second difference of the rates
 };
 /// Sums over the volume of the squares of u, its rate, the change of that and the change of that, the volume, and the squares of
-/// what is left; outflow (added later), of what is carried, the power of the pressure's filter (added later), of the local error.
+/// what is left; outflow (added later), of what is carried, of the local error.
 template <int D>
-COUPLET_PROCESSOR_CLONES std::array<double, 10> renew(const Differences<D>& d) {
-  std::array<double, 10> sums{};
+COUPLET_PROCESSOR_CLONES std::array<double, 9> renew(const Differences<D>& d) {
+  std::array<double, 9> sums{};
   for (std::size_t c = 0; c < d.volume.size(); ++c) {
     const double volume = d.volume[c];
     const Vec<D> rate = (d.now[c] - d.u[c]) * d.per_step, change = (rate - d.rate[c]) * d.per_apart;
@@ -155,7 +155,7 @@ COUPLET_PROCESSOR_CLONES std::array<double, 10> renew(const Differences<D>& d) {
     if (d.friction) by_weight += d.of_friction / volume * d.friction[c];
     const Vec<D> turn = by_weight - d.splitting[c], error = d.step * (turn - d.turn[c]);
     d.splitting[c] = by_weight, d.turn[c] = turn;
-    sums[9] += volume * error.squaredNorm();
+    sums[8] += volume * error.squaredNorm();
     if (d.left) {
       d.left[c] += error;
       sums[5] += volume * d.left[c].squaredNorm();
@@ -183,8 +183,6 @@ class EnergyMeans {
     energy_ += share * (held - energy_);
     work_ = ledger.work, held_ = held;
   }
-  /// [J]
-  double energy() const { return energy_; }
   /// Time of the steps added [s].
   double time() const { return time_; }
   /// Dissipation rate of the work [1/s], without the flow's own decay, which reduces errors and solution
@@ -208,8 +206,7 @@ class EnergyMeans {
 
 /// Shares of the error in the velocity over its size, as norms over the volume. Collective.
 ///   mesh    difference of u from a linear fit through the neighbors of each cell, h^2/4 times the Laplacian
-///           of u on equal cells (recovery of the values); and the share that the pressure's filter took:
-///           the sum of its power dt/(2 E) with the recent mean of E, which decays as the step's errors do
+///           of u on equal cells (recovery of the values)
 ///   step    sum of the local errors of the rates that the scheme extrapolates, see StepErrors; k^-3 each with k
 ///           sub-steps. Errors decay with outflow over volume and with dissipation, (W' - E')/(2 E). In a
 ///           driven flow (Driving) with a linear response, errors cancel within half a period, so the vector
@@ -226,7 +223,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override { report.errors = parts(); }
   void visit(io::Archive& archive) override {
     archive.common("numbers", seen_, dt_old_, energy_, left_of_late_, carried_, changed_, largest_, steps_,
-                   drift_, filtered_);
+                   drift_);
     for (const auto& [name, vectors] : {std::pair{"left", &left_},
                                         {"rate", &rate_},
                                         {"rate-change", &rate_change_},
@@ -259,7 +256,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const double held = energy_.friction(), less = state.implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
     const Rates<D>& rates = state.rates_old;
     const double forced = driving_.is_possible() ? mid_step_error : 0;
-    std::array<double, 10> squares = renew(
+    std::array<double, 9> squares = renew(
         Differences<D>{std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
                        rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
                        knows_third && !left_.empty() ? left_.data() : nullptr,
@@ -272,7 +269,6 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
         squares[6] += std::max(0., view_.fluid.state().phi[f]);
       if (driving_.is_possible() && has_waves()) squares[6] += waves_out();
-      squares[8] = filter_power();
       MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
@@ -284,12 +280,10 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       // Errors leave with the outflow and the waves, and are dissipated by friction.
       const double forgotten = energy_.friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
       for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
-      if (energy_.energy() > 0) filtered_ += dt * squares[8] / (2 * energy_.energy());
-      filtered_ *= std::exp(-forgotten * dt);
       const double faded = std::exp(-dt / (window * energy_.time()));
       left_of_late_ = std::max(mean(5), left_of_late_ * faded);
       carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
-      steps_.add({.error = mean(9),
+      steps_.add({.error = mean(8),
                   .rate = mean(1),
                   .size = mean(0),
                   .dt = dt,
@@ -330,22 +324,6 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     }
     return p.sound_speed() * area;
   }
-  /// Power that cell velocities lose to the pressure beyond its work at the boundaries, of this rank [W]; 0 where it is not
-  /// known, because the fluid stores energy or bodies are immersed.
-  double filter_power() const {
-    const State<D>& s = view_.fluid.state();
-    const PressureLevel<D>* latest = s.pressure[0].get();
-    const FluidParameters& p = view_.parameters();
-    if (!latest || p.is_compressible() || !p.bodies.empty()) return 0;
-    double sum = 0;
-    const auto flows = [&s](Index c) { return !s.blocked || !(*s.blocked)[c]; };
-    for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c)
-      if (flows(c)) sum += s.placement->volume[c] * latest->gradient[c].dot(s.u[c]);
-    for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
-      if (flows(view_.mesh.owner[f]))
-        sum -= (latest->boundary[f - view_.mesh.n_interior] - s.ledger.level) * s.phi[f];
-    return sum;
-  }
   diagnostics::ErrorParts parts() {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
@@ -361,7 +339,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       return parts;
     }
     const double scale = diagnostics::scale_of(size, falls);
-    parts.mesh = (recovered_difference() + std::max(0., filtered_) * speed) / scale;
+    parts.mesh = recovered_difference() / scale;
     parts.step = step_part() * steps_.size() / scale;
     parts.too_few_steps = std::isnan(parts.step);
     // The trapezoidal rule also knows the divergence before.
@@ -466,8 +444,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
   double left_of_late_ = 0;  // norm, the largest of late
   diagnostics::Reference largest_{"fluid: mean speed"};
-  double filtered_ = 0;  // share of the velocity that the pressure's filter took
-  double across_ = 0;    // largest extent of the mesh at rest [m]; 0 if not known
+  double across_ = 0;  // largest extent of the mesh at rest [m]; 0 if not known
   double carried_ = 0,
          changed_ = 0;  // largest of late: the part of the rates that is convection, and the rates [m/s^2]
 };

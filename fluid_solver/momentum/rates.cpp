@@ -70,19 +70,20 @@ COUPLET_PROCESSOR_CLONES void rates_pass(const mesh::Mesh& mesh, double nu, bool
 
 /// (mean u).S, or its difference from `whole`.
 template <bool Rest, int D>
-[[gnu::always_inline]] inline void mean_fluxes(const mesh::Mesh& mesh, const Vectors<D>& area,
+[[gnu::always_inline]] inline void mean_fluxes(const mesh::Mesh& mesh, const Placement<D>& at,
                                                const Vectors<D>& u, const double* whole, double* flux) {
   const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
-  const Vec<D>*value = u.data(), *s = area.data();
+  const Vec<D>*value = u.data(), *s = at.area.data();
   for (Index f = 0; f < mesh.n_interior; ++f) {
-    const double mean = 0.5 * (value[owner[f]] + value[neighbour[f]]).dot(s[f]);
+    const double w = at.flux_weight(f);
+    const double mean = (w * value[owner[f]] + (1 - w) * value[neighbour[f]]).dot(s[f]);
     flux[f] = Rest ? whole[f] - mean : mean;
   }
 }
 template <int D>
-COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Vectors<D>& area,
+COUPLET_PROCESSOR_CLONES void mean_flux_pass(const mesh::Mesh& mesh, const Placement<D>& at,
                                              const Vectors<D>& u, const double* whole, double* flux) {
-  whole ? mean_fluxes<true>(mesh, area, u, whole, flux) : mean_fluxes<false>(mesh, area, u, nullptr, flux);
+  whole ? mean_fluxes<true>(mesh, at, u, whole, flux) : mean_fluxes<false>(mesh, at, u, nullptr, flux);
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ template <int D>
 void mean_flux(const mesh::Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient, std::span<double> flux,
                std::span<const double> whole) {
-  mean_flux_pass<D>(mesh, at.area, u, whole.data(), flux.data());
+  mean_flux_pass<D>(mesh, at, u, whole.data(), flux.data());
   if (!at.skewed()) return;
   velocity_gradient<D>(mesh, at, u, u_boundary, gradient);
   const double sign = whole.empty() ? 1 : -1;

@@ -223,13 +223,6 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
       .doc(
           "time scheme of the explicit terms. runge-kutta: three stages with a projection each, 2.5 times "
           "longer steps at three times the work, explicit viscous term, mesh at rest");
-  s.choice("projection", p.projection,
-           {{"flux-memory", Projection::flux_memory}, {"incremental", Projection::incremental}})
-      .doc(
-          "treatment of the difference between face fluxes and averaged cell velocities. flux-memory: "
-          "carried over from step to step and smoothed by friction and convection, robust, steady loads "
-          "independent of the step. incremental: driven by pressure changes only, second order in time with "
-          "the lowest loss of kinetic energy, but pressure noise is not damped");
   s.choice("face-values", p.face_values,
            {{"second-order", FaceValues::second_order},
             {"fourth-order", FaceValues::fourth_order},
@@ -423,8 +416,6 @@ void declare_conflicts(config::Section& s, const FluidParameters& p) {
              waves = p.is_compressible(), stages = p.scheme == ExplicitScheme::runge_kutta,
              implicit = p.viscous == ViscousTreatment::implicit, motion = p.motion.has_value(),
              fourth = p.face_values == FaceValues::fourth_order;
-  const bool cut =
-      std::ranges::any_of(p.bodies, [](const auto& b) { return b.second.surface == BodySurface::cut; });
   const bool coupled = std::ranges::any_of(
       p.boundaries, [](const auto& b) { return b.second.type == BoundaryType::interface; });
   const struct {
@@ -447,8 +438,6 @@ void declare_conflicts(config::Section& s, const FluidParameters& p) {
        "runge-kutta needs a mesh at rest; use 'adams-bashforth', or remove 'motion'"},
       {"face-values", fourth && (bodies || gaps || motion),
        "fourth-order is not supported together with 'bodies', 'gaps' or 'motion'; use second-order"},
-      {"projection", cut && p.projection == Projection::incremental,
-       "incremental does not support cells that bodies cut; use flux-memory, or 'surface: steps' of the bodies"},
       {"compressibility", waves && bodies,
        "not supported together with immersed bodies; remove 'bodies', or set 'scheme: none'"},
       {"compressibility", waves && frame,

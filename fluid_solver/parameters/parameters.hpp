@@ -170,8 +170,6 @@ double solved_sound(const std::optional<CompressibilityParameters>& parameters, 
 enum class ViscousTreatment { automatic, explicit_, implicit };
 /// Scheme of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
 enum class ExplicitScheme { adams_bashforth, runge_kutta };
-/// Update of the face fluxes from the cell velocities between steps.
-enum class Projection { flux_memory, incremental };
 
 /// Order of the operators along lines of hexahedra and quadrilaterals.
 enum class FaceValues { second_order, fourth_order, automatic };
@@ -283,7 +281,6 @@ struct FluidParameters {
   std::optional<fv::MotionParameters> motion;        // of the mesh; absent if it is at rest
   std::optional<RotationParameters> rotating_frame;  // frame of mesh and velocities; absent if it is inertial
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
-  Projection projection = Projection::flux_memory;
   FaceValues face_values = FaceValues::second_order;
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
   std::optional<CompressibilityParameters> compressibility;  // absent if neglected, which the density checks

@@ -146,15 +146,16 @@ void PressureProjection<D>::add_oblique_pressure(const std::vector<double>& phi)
 }
 
 /// Non-orthogonal meshes use passes: the first with the extrapolated gradient, later ones with that of the
-/// previous pass. Two suffice without an old pressure in the predictor (|z| = q, see extrapolate_pressure()),
-/// or for small q. An implicit predictor returns the old pressure without smoothing, and above about 45
-/// degrees the rest of two passes grows; then passes continue until the gradient converges.
+/// previous pass. Two suffice without an old pressure in the prediction (|z| = q, see extrapolate_pressure()),
+/// or for small q. An implicit predictor and a flux with the smooth excess return the old pressure without smoothing,
+/// and above about 45 degrees the rest of two passes grows; then passes continue until the gradient converges.
 template <int D>
 void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, const std::vector<double>& phi,
                                     double answer) {
   out_.w = prediction_.w;
   out_.gradient = gradient_start_;
-  const bool to_the_end = scene_.oblique && step_.by.implicit && degrees_ > largest_degrees;
+  const bool to_the_end =
+      scene_.oblique && degrees_ > largest_degrees && (step_.by.implicit || scene_.has_smooth_excess());
   const int passes = to_the_end ? most_oblique_passes : scene_.oblique ? oblique_passes : 1;
   for (int pass = 1; pass <= passes; ++pass) {
     if (out_.gradient.empty())
@@ -410,9 +411,10 @@ Vectors<D> PressureProjection<D>::transposed_mean(const Placement<D>& at,
                                                   const std::vector<double>& value) const {
   Vectors<D> sum(mesh_.cells.n_local(), Vec<D>::Zero());
   for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Vec<D> half = 0.5 * value[f] * at.area[f];
-    sum[mesh_.owner[f]] += half;
-    sum[mesh_.neighbour[f]] += half;
+    const double w = at.flux_weight(f);
+    const Vec<D> part = value[f] * at.area[f];
+    sum[mesh_.owner[f]] += w * part;
+    sum[mesh_.neighbour[f]] += (1 - w) * part;
   }
   const FaceRows& rows = scene_.boundary.rows();
   for (const Index b : rows.of_pressure) {

@@ -23,7 +23,6 @@ template <int D>
 void check_effects(const mesh::Mesh& mesh, const FluidParameters& parameters, bool moving) {
   const bool bodies = !parameters.bodies.empty(), frame = parameters.rotating_frame.has_value(),
              stages = parameters.scheme == ExplicitScheme::runge_kutta;
-  const bool cut = bodies && parameters.bodies.begin()->second.surface == BodySurface::cut;
   bool across = false;
   const Vec3 axis =
       frame && D == 3 ? Vec3(parameters.rotating_frame->axis.normalized()) : Vec3(Vec3::UnitZ());
@@ -38,9 +37,6 @@ void check_effects(const mesh::Mesh& mesh, const FluidParameters& parameters, bo
        "mesh mover."},
       {frame && parallel::any(mesh.comm, across),
        "rotating-frame: the centrifugal force differs between periodic patches that are not shifted along the axis."},
-      {cut && parameters.projection == Projection::incremental,
-       "projection: incremental does not support cells that bodies cut; use flux-memory, or on a mesh at rest "
-       "'surface: steps' of the bodies."},
       {stages && moving, "scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover."}};
   for (const auto& [applies, message] : refused)
     if (applies) throw Error("{}", message);

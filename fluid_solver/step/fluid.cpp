@@ -135,9 +135,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
       if (!step_.pressure_is_state()) history_.pressure = {};
       history_.start = Start::flowing;
     }
-    const bool needs_pressure =
-        history_.implicit || step_.oblique() || parameters_.projection == Projection::incremental;
-    if (needs_pressure && !history_.pressure[0]) start_pressure(sub_step, last_w_);
+    if ((history_.implicit || step_.oblique()) && !history_.pressure[0]) start_pressure(sub_step, last_w_);
     if (parameters_.scheme == ExplicitScheme::runge_kutta) run_stages(sub_step, end - dt, wall_velocity);
     sub_step.yields = last && yields_;
     step_.predict(level(), history_, std::move(sub_step), last_w_);

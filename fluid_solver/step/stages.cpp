@@ -34,6 +34,8 @@ COUPLET_PROCESSOR_CLONES void explicit_pass(std::span<const double> volume, cons
 
 // Largest decay of the flux memory per step for which AB2 is stable without overshoot.
 constexpr double largest_decay = 2.0 / 3;
+// Applications of the filter F to the excess e of the pressure: the smooth part is [1 - (1 - F)^2] e.
+constexpr int smoothings = 2;
 
 /// Weights for add_memory().
 struct MemoryWeights {
@@ -76,6 +78,36 @@ COUPLET_PROCESSOR_CLONES Index memory_pass(const mesh::Mesh& mesh, const MemoryW
     phi[f] += memory[f] - std::min(decay, largest_decay) * mid;
   }
   return n;
+}
+
+/// Perot's vectors of the cells, V E = sum e_f (x_f - x_P), from the fluxes e_f out of each cell [perot2000].
+template <int D>
+COUPLET_PROCESSOR_CLONES void vectors_pass(const mesh::Mesh& mesh, const Placement<D>& at, const double* flux,
+                                           Vectors<D>& vectors) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  const bool skewed = at.skewed(), oblique = !at.oblique.empty();
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    Vec<D> apart = at.area[f];
+    if (oblique) apart -= at.oblique[f];
+    apart *= flux[f] / at.conductance[f];
+    Vec<D> reach = (1 - at.weight[f]) * apart;
+    if (skewed) reach += flux[f] * at.skew[f];
+    vectors[owner[f]] += reach;
+    vectors[neighbour[f]] += apart - reach;
+  }
+}
+
+/// Moves (mean E).S from `rest` to `smooth`.
+template <int D>
+COUPLET_PROCESSOR_CLONES void smooth_pass(const mesh::Mesh& mesh, const Placement<D>& at,
+                                          const Vectors<D>& vectors, double* rest, double* smooth) {
+  const Index *owner = mesh.owner.data(), *neighbour = mesh.neighbour.data();
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const double w = at.flux_weight(f);
+    const double part = (w * vectors[owner[f]] + (1 - w) * vectors[neighbour[f]]).dot(at.area[f]);
+    smooth[f] += part;
+    rest[f] -= part;
+  }
 }
 
 }  // namespace
@@ -285,17 +317,13 @@ void FaceFlux<D>::predict(const State<D>& from, const Vectors<D>& u) {
   // Without pressure the wall velocity is still that of level n; its change comes with grad p.
   if (now.skewed()) scene_.boundary.close(mesh_, now, u, from.w, u_boundary_);
   gradient_.number = 0;
-  mean_flux<D>(mesh_, now, scene_.flux_velocity(now, increment_of_fourth() ? without_pressure(u) : u),
-               u_boundary_, gradient_.values, phi_);
+  mean_flux<D>(mesh_, now, scene_.flux_velocity(now, u), u_boundary_, gradient_.values, phi_);
   for (const Index b : scene_.boundary.rows().of_pressure) {
     const Index f = mesh_.n_interior + b;
     phi_[f] = u[mesh_.owner[f]].dot(now.area[f]);
   }
   scene_.obstacles->carry(now, u, phi_);
-  if (scene_.parameters.projection == Projection::incremental)
-    add_increment(from);
-  else if (!from.memory.empty())
-    add_memory(from);
+  add_memory(from);
   scene_.obstacles->block(step_, phi_);
 }
 
@@ -312,11 +340,13 @@ void FaceFlux<D>::set_relaxation(const State<D>& from) {
   mesh_.cells.update_ghosts(relaxation_);
 }
 
-/// d delta/dt = e - a delta. e is the effect of the pressure on the flux beyond that on the mean velocity,
-/// O(h^2). a is the rate of smoothing by friction and convection, as in implicit momentum interpolation.
-/// Without a, the memory would grow forever in a steady flow; without the memory, the steady flow would
-/// depend on dt. The decay uses AB2 for small a dt. For large a dt, the projection's dt e would be too much,
-/// so with the previous e delta becomes (delta + dt e)/(1 + a dt), and a steady flow keeps e/a for any step.
+/// d delta/dt = e - F e - a delta. e is the effect of the pressure on the flux beyond that on the mean velocity,
+/// O(h^2). Its smooth part F e of the last pressure enters the flux in advance, as in an incremental projection,
+/// so that a steady flow loses nothing to it. The rest alternates between cells. a is the rate of its smoothing by
+/// friction and convection, as in implicit momentum interpolation. Without a, the memory would grow forever in a
+/// steady flow; without the memory, the pressure would keep a rest that depends on dt. The decay uses AB2 for
+/// small a dt. For large a dt, the projection's dt e would be too much, so with the previous e delta becomes
+/// (delta + dt e)/(1 + a dt), and a steady flow keeps e/a for any step.
 template <int D>
 void FaceFlux<D>::add_memory(const State<D>& from) {
   set_relaxation(from);
@@ -325,48 +355,42 @@ void FaceFlux<D>::add_memory(const State<D>& from) {
   far_.resize(std::size_t(mesh_.n_interior) + 1);
   const Index n_far = memory_pass(mesh_, {step_.dt, now, before}, relaxation_.data(), from.memory.data(),
                                   ratio > 0 ? from.memory_old.data() : nullptr, phi_.data(), far_.data());
+  far_.resize(n_far);
+  ahead_.assign(mesh_.n_interior, 0.0);
   if (!step_.guess) return;
-  const Vectors<D>& gradient = scene_.flux_velocity(guess_at(from), step_.guess->gradient);
-  for (const Index f : std::span(far_).first(n_far)) {
+  if (scene_.has_smooth_excess()) {
+    if (smooth_of_ != step_.guess) set_smooth(guess_at(from), step_.guess);
+    ahead_ = smooth_;
+  }
+  const Placement<D>& at = guess_at(from);
+  const Vectors<D>& gradient = scene_.flux_velocity(at, step_.guess->gradient);
+  for (const Index f : far_) {
     const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
     const double decay = rate * step_.dt, share = decay / (1 + decay);
     const double mid = ratio > 0 ? now * from.memory[f] + before * from.memory_old[f] : from.memory[f];
-    phi_[f] += largest_decay * mid - share * (from.memory[f] + step_.dt * pressure_excess(from, gradient, f));
+    phi_[f] += largest_decay * mid -
+               share * (from.memory[f] + step_.dt * pressure_excess(at, *step_.guess, gradient, f));
+    ahead_[f] = 0;
   }
+  for (Index f = 0; f < mesh_.n_interior; ++f) phi_[f] -= step_.dt * ahead_[f];
 }
 
-/// Incremental projection: delta' = -dt e^{n-1/2} gives the equation of the increment p - p^{n-1/2}, and the
-/// flux keeps dt (e^{n+1/2} - e^{n-1/2}), second order in time. The initial difference of flux and mean
-/// velocity decays at the rate a. Removing it at once would be an impulse that stays in checkerboard modes of
-/// p.
+/// Splits e of a pressure into its smooth part and the rest.
 template <int D>
-void FaceFlux<D>::add_increment(const State<D>& from) {
-  set_relaxation(from);
-  fading_.resize(mesh_.n_interior);
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
-    const double decay = rate * step_.dt;
-    fading_[f] = from.memory[f] / (1 + decay * (1 + decay / 2));  // exp(-decay) to second order
-    phi_[f] += fading_[f];
-    if (!step_.guess) continue;
-    phi_[f] += step_.dt * (scene_.fourth ? pressure_flux(from, f) / scene_.fluid.rho
-                                         : -pressure_excess(from, step_.guess->gradient, f));
+void FaceFlux<D>::set_smooth(const Placement<D>& at, std::shared_ptr<const PressureLevel<D>> of) {
+  smooth_of_ = std::move(of);
+  const PressureLevel<D>& level = *smooth_of_;
+  const Vectors<D>& gradient = scene_.flux_velocity(at, level.gradient);
+  rest_.resize(mesh_.n_interior);
+  for (Index f = 0; f < mesh_.n_interior; ++f) rest_[f] = pressure_excess(at, level, gradient, f);
+  smooth_.assign(rest_.size(), 0.0);
+  for (int k = 0; k < smoothings; ++k) {
+    vectors_.assign(mesh_.cells.n_local(), Vec<D>::Zero());
+    vectors_pass<D>(mesh_, at, rest_.data(), vectors_);
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) vectors_[c] /= at.volume[c];
+    mesh_.cells.update_ghosts(flat<D>(vectors_), D);
+    smooth_pass<D>(mesh_, at, vectors_, rest_.data(), smooth_.data());
   }
-}
-
-/// A fourth-order flux already contains the old pressure's gradient in its mean velocity.
-template <int D>
-bool FaceFlux<D>::increment_of_fourth() const {
-  return scene_.fourth && scene_.parameters.projection == Projection::incremental && step_.guess;
-}
-
-template <int D>
-const Vectors<D>& FaceFlux<D>::without_pressure(const Vectors<D>& u) {
-  const Vectors<D>& gradient = step_.guess->gradient;
-  const double factor = step_.dt / scene_.fluid.rho;
-  without_pressure_.resize(u.size());
-  for (std::size_t c = 0; c < u.size(); ++c) without_pressure_[c] = u[c] - factor * gradient[c];
-  return without_pressure_;
 }
 
 /// Placement on which the gradient of the predictor's pressure was computed.
@@ -375,36 +399,34 @@ const Placement<D>& FaceFlux<D>::guess_at(const State<D>& from) const {
   return step_.guess == step_.by.pressure[0] ? *from.placement : *step_.to;
 }
 
-/// g (p_N - p_P) + (grad p)_f . k of the predictor's pressure [N/m].
+/// e of a pressure: acceleration of the flux by g (p_N - p_P) + (grad p)_f . k, less that of the mean of
+/// the cells' velocities [m^3/s^2]. `gradient`: gradient of that pressure, as applied to the flux velocity.
 template <int D>
-double FaceFlux<D>::pressure_flux(const State<D>& from, Index f) const {
-  const Placement<D>& at = guess_at(from);
-  const PressureLevel<D>& level = *step_.guess;
+double FaceFlux<D>::pressure_excess(const Placement<D>& at, const PressureLevel<D>& level,
+                                    const Vectors<D>& gradient, Index f) const {
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-  const double flux = at.conductance[f] * (level.p[n] - level.p[p]);
-  if (at.oblique.empty()) return flux;
-  const double w = at.weight[f];
-  return flux + (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
-}
-
-/// Acceleration e of the flux by the predictor's pressure, less that of the mean of the cells' velocities [m^3/s^2].
-/// `gradient`: gradient of that pressure in the cells, as applied to the flux velocity.
-template <int D>
-double FaceFlux<D>::pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const {
-  const Vec<D> mean = 0.5 * (gradient[mesh_.owner[f]] + gradient[mesh_.neighbour[f]]);
-  return (mean.dot(guess_at(from).area[f]) - pressure_flux(from, f)) / scene_.fluid.rho;
+  const double of_owner = at.flux_weight(f);
+  double excess = (of_owner * gradient[p] + (1 - of_owner) * gradient[n]).dot(at.area[f]) -
+                  at.conductance[f] * (level.p[n] - level.p[p]);
+  if (!at.oblique.empty()) {
+    const double w = at.weight[f];
+    excess -= (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
+  }
+  return excess / scene_.fluid.rho;
 }
 
 template <int D>
 void FaceFlux<D>::remember(State<D>& s) {
   s.memory_old.swap(s.memory);
-  if (scene_.parameters.projection == Projection::incremental && !fading_.empty()) {
-    s.memory.swap(fading_);
-  } else {
-    s.memory.resize(mesh_.n_interior);
-    mean_flux<D>(mesh_, *step_.to, scene_.flux_velocity(*step_.to, s.u), s.u_boundary, gradient_.values,
-                 s.memory, s.phi);
-    if (step_.to->skewed()) gradient_.number = s.number;
+  s.memory.resize(mesh_.n_interior);
+  mean_flux<D>(mesh_, *step_.to, scene_.flux_velocity(*step_.to, s.u), s.u_boundary, gradient_.values,
+               s.memory, s.phi);
+  if (step_.to->skewed()) gradient_.number = s.number;
+  if (s.pressure[0] && scene_.has_smooth_excess()) {
+    // The change of F e in the step is not remembered: it would leave an error of first order in time.
+    set_smooth(*step_.to, s.pressure[0]);
+    for (const Index f : far_) ahead_[f] = smooth_[f];
+    for (Index f = 0; f < mesh_.n_interior; ++f) s.memory[f] -= step_.dt * (smooth_[f] - ahead_[f]);
   }
   scene_.obstacles->correct_memory(s);
 }

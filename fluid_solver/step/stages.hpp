@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -64,8 +65,8 @@ class Predictor {
   Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}; implicit predictor on a moving mesh only
 };
 
-/// Predicts the volume fluxes phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k. Also updates delta
-/// = phi - (mean u).S from step to step, as `projection` selects (README).
+/// Predicts the volume fluxes phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k. Also updates the memory
+/// delta = phi - (mean u).S from step to step.
 template <int D>
 class FaceFlux {
  public:
@@ -82,23 +83,23 @@ class FaceFlux {
  private:
   void set_relaxation(const State<D>& from);
   void add_memory(const State<D>& from);
-  void add_increment(const State<D>& from);
-  bool increment_of_fourth() const;
-  const Vectors<D>& without_pressure(const Vectors<D>& u);
+  void set_smooth(const Placement<D>& at, std::shared_ptr<const PressureLevel<D>> of);
   const Placement<D>& guess_at(const State<D>& from) const;
-  double pressure_flux(const State<D>& from, Index f) const;
-  double pressure_excess(const State<D>& from, const Vectors<D>& gradient, Index f) const;
+  double pressure_excess(const Placement<D>& at, const PressureLevel<D>& level, const Vectors<D>& gradient,
+                         Index f) const;
 
   const Scene<D>& scene_;
   const mesh::Mesh& mesh_;
   const Step<D>& step_;
   KnownGradient<D>& gradient_;
   std::vector<double> phi_;
-  Vectors<D> u_boundary_;           // from the predicted velocity
-  std::vector<double> relaxation_;  // [1/s]
-  std::vector<Index> far_;          // faces with a large decay
-  Vectors<D> without_pressure_;
-  std::vector<double> fading_;  // incremental: factor of the initial delta, at t^{n+1}
+  Vectors<D> u_boundary_;              // from the predicted velocity
+  std::vector<double> relaxation_;     // [1/s]
+  std::vector<Index> far_;             // faces with a large decay
+  std::vector<double> smooth_, rest_;  // parts of e per interior face [m^3/s^2]
+  std::shared_ptr<const PressureLevel<D>> smooth_of_;
+  std::vector<double> ahead_;  // smooth part in the predicted flux
+  Vectors<D> vectors_;         // of the filter, per local cell
 };
 
 /// Data of one sub-step for the energy guard: two levels and the fluxes and forces between them.

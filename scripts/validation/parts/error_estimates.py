@@ -108,7 +108,7 @@ def heat_weighted(job):
     return "{:.0f} of {:.0f} within a factor of 2".format(*counts), counts[0] == counts[1]
 
 
-# Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, flux-memory, implicit coupling,
+# Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, implicit coupling,
 # a tank's upwind scheme. Series of the first name of the study alone ("thesis-gradient") begin with theirs.
 OTHERS = ("thesis", "corrected", "block-coupled", "segregated", "aitken", "anderson", "newton-krylov", "bathe", "euler", "three-point", "loose-pressure",
           "viscous-implicit", "incremental", "explicit", "semi-implicit", "tvd", "implicit-60s")

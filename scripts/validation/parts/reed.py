@@ -36,7 +36,7 @@ def reaches(job, *scene):
 # -- the valve --------------------------------------------------------------------------------------------------------
 START = 0.1e-3  # lift at rest [m]
 COARSE, SMALL = "{size: 4e-3, growth: 1.4}", "{size: 5e-3, growth: 1.6}"  # 7.0 k cells, as shipped; 4.0 k cells
-SOURCE = ("participants.fluid.compressibility=~", ".boundaries.outlet.absorbing=false", ".projection=flux-memory")  # incompressible
+SOURCE = ("participants.fluid.compressibility=~", ".boundaries.outlet.absorbing=false")  # incompressible
 
 
 def meshed(words):

@@ -58,7 +58,7 @@ def vortices(job, reynolds):
         (folder / "case.yaml").write_text(
             f"simulation: {{end-time: {TURNOVERS}, time-step: 0.1, output: {{folder: out, interval: {TURNOVERS}}}}}\n"
             f"participants: {{fluid: {{program: fluid_solver, mesh: {job.root / 'configs/taylor-green-3d/box.geo'}, mesh-parameters: {{n: 32}}, "
-            f"dimension: 3, density: 1, viscosity: {1 / reynolds:g}, projection: incremental, pressure-tolerance: 1e-4, "
+            f"dimension: 3, density: 1, viscosity: {1 / reynolds:g}, pressure-tolerance: 1e-4, "
             "initial-velocity: ['sin(x)*cos(y)*cos(z)', '-cos(x)*sin(y)*cos(z)', 0], output: {energy-budget: true}, "
             f"boundaries: {{{sides}}}}}}}\n")
         result = job.run([job.build / "bin/fluid_solver", "case.yaml"], 3600, cwd=folder)

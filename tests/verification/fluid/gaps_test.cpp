@@ -80,7 +80,8 @@ TEST(Gaps, a_slot_closes_by_99_percent_and_opens_again) {
   EXPECT_LT(std::abs(with.flow("xmin")), 1e-3 * std::abs(without.flow("xmin")));
   EXPECT_LT(std::abs(with.flow("xmin")), 1e-8);
   EXPECT_LT(with.divergence(), 1e-6);
-  const int closed = with.c.fluid().statistics().sub_steps, open = without.c.fluid().statistics().sub_steps;
+  const auto closed = with.c.fluid().statistics().all_sub_steps,
+             open = without.c.fluid().statistics().all_sub_steps;
   EXPECT_LT(closed, open) << "cells of the slot still ask for steps of their own";
   with.run(2.6);
   without.run(2.6);

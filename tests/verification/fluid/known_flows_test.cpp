@@ -18,13 +18,11 @@ constexpr double nu = 0.05;
 
 struct Variant {
   ViscousTreatment viscous;
-  Projection projection;
   const char* name;
 };
 
 FluidParameters parameters(const Variant& variant, double rtol) {
   FluidParameters p;
-  p.projection = variant.projection;
   p.density = 2;
   p.viscosity = nu * p.density;
   p.viscous = variant.viscous;
@@ -105,40 +103,29 @@ TEST_P(TaylorGreen, is_second_order_in_time_on_a_moving_mesh) {
   check_order_in_time(GetParam(), swirl, 36, 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    variant, TaylorGreen,
-    ::testing::Values(Variant{ViscousTreatment::explicit_, Projection::flux_memory, "explicit"},
-                      Variant{ViscousTreatment::implicit, Projection::flux_memory, "implicit"},
-                      Variant{ViscousTreatment::explicit_, Projection::incremental, "explicit_incremental"},
-                      Variant{ViscousTreatment::implicit, Projection::incremental, "implicit_incremental"}),
-    [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(variant, TaylorGreen,
+                         ::testing::Values(Variant{ViscousTreatment::explicit_, "explicit"},
+                                           Variant{ViscousTreatment::implicit, "implicit"}),
+                         [](const auto& info) { return info.param.name; });
 
-/// Coarse cells in which the pressure's filter weakens the vortices more and more; with the incremental projection they
-/// are as accurate as their differences.
-TEST(TaylorGreenEstimate, knows_what_the_filter_of_the_pressure_has_taken) {
-  for (const Projection projection : {Projection::flux_memory, Projection::incremental}) {
-    constexpr double little = 0.01, end = 40;
-    FluidParameters p = parameters({ViscousTreatment::automatic, projection, ""}, 1e-8);
-    p.viscosity = little * p.density;
-    FluidParticipant<2> fluid(mesh::distribute(MPI_COMM_WORLD, box(12)), p, FluidContext{}, MotionLink{});
-    const auto run = support::observe(fluid, 400, end / 400);
-    const State<2>& s = fluid.fluid().state();
-    double off = 0, size = 0;
-    for (Index c = 0; c < fluid.fluid().mesh().cells.n_owned(); ++c) {
-      const Vec<2> at = s.placement->centre[c],
-                   start(std::sin(at.x()) * std::cos(at.y()), -std::cos(at.x()) * std::sin(at.y()));
-      off += (s.u[c] - std::exp(-2 * little * end) * start).squaredNorm(), size += start.squaredNorm();
-    }
-    const double truth = std::sqrt(parallel::sum(MPI_COMM_WORLD, off) / parallel::sum(MPI_COMM_WORLD, size));
-    const double estimate = run.diagnostics().errors().mesh;
-    if (projection == Projection::flux_memory) {
-      EXPECT_GT(truth, 0.05);
-      EXPECT_NEAR(std::log2(estimate / truth), 0, 0.5) << truth;
-    } else {
-      EXPECT_LT(truth, 0.02);
-      EXPECT_LT(estimate, 0.02);
-    }
+/// A pressure that took energy out of a steady pattern would weaken the vortices more and more.
+TEST(TaylorGreenEstimate, of_the_mesh_is_right_for_vortices_that_decay_slowly_on_coarse_cells) {
+  constexpr double little = 0.01, end = 40;
+  FluidParameters p = parameters({ViscousTreatment::automatic, ""}, 1e-8);
+  p.viscosity = little * p.density;
+  FluidParticipant<2> fluid(mesh::distribute(MPI_COMM_WORLD, box(12)), p, FluidContext{}, MotionLink{});
+  const auto run = support::observe(fluid, 400, end / 400);
+  const State<2>& s = fluid.fluid().state();
+  double off = 0, size = 0;
+  for (Index c = 0; c < fluid.fluid().mesh().cells.n_owned(); ++c) {
+    const Vec<2> at = s.placement->centre[c],
+                 start(std::sin(at.x()) * std::cos(at.y()), -std::cos(at.x()) * std::sin(at.y()));
+    off += (s.u[c] - std::exp(-2 * little * end) * start).squaredNorm(), size += start.squaredNorm();
   }
+  const double truth = std::sqrt(parallel::sum(MPI_COMM_WORLD, off) / parallel::sum(MPI_COMM_WORLD, size));
+  printf("coarse vortices: error %.4f, estimate %.4f\n", truth, run.diagnostics().errors().mesh);
+  EXPECT_LT(truth, 0.01);
+  EXPECT_LT(run.diagnostics().errors().mesh, 0.02);
 }
 
 }  // namespace couplet::fluid::test::taylor_green_test

@@ -194,10 +194,7 @@ TEST(SeatLayer, is_refused_where_it_cannot_serve) {
         },
         ::testing::ThrowsMessage<Error>(::testing::HasSubstr(why)));
   };
-  FluidParameters p = orifice(BodySurface::automatic);
-  p.projection = Projection::incremental;
-  refused(p, "incremental does not support cells that bodies cut");
-  p = orifice(BodySurface::cut);
+  FluidParameters p = orifice(BodySurface::cut);
   p.bodies["second"].level.text = "x+0.7";
   p.bodies["second"].surface = BodySurface::steps;
   refused(p, "the same kind of surface");
