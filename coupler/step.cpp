@@ -76,7 +76,7 @@ FixedPointResult Coupler::iterate(const coupling::Step& step, Iterate guess, con
     for (const auto& d : known_->diagnostics) d->passed(residuals, omega);
   };
   const ResidualMeasure measure = [&](const Iterate& x, const Iterate& image) {
-    return unknown.measure(x, image);
+    return unknown.measure(x, image, history_.now, parameters_.convergence.least_change());
   };
   // Values within the step are iterated at the times found in the first pass.
   std::optional<Iterate> seen;
@@ -97,7 +97,8 @@ FixedPointResult Coupler::pass_once(const coupling::Step& step, Iterate guess, c
   FixedPointResult result;
   result.x = std::move(guess);
   result.image = map(result.x);
-  result.residual = worst(known_->unknown.measure(result.x, result.image));
+  result.residual = worst(
+      known_->unknown.measure(result.x, result.image, history_.now, parameters_.convergence.least_change()));
   result.iterations = 1;
   // Sub-steps use linear input in time, which each additional pass would change.
   if (step.scheme != coupling::Scheme::explicit_ || !pass_.schedule().sub_steps.empty() ||

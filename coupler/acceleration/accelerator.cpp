@@ -126,11 +126,8 @@ void AitkenRelaxation::take_residual(const Iterate& x, const Iterate& image) {
 
 void AitkenRelaxation::learn() {
   if (!knows_pass_) return;
-  const double most = 10 * parameters_.maximum_relaxation;
-  omega_ = std::clamp(aitken_factor(omega_, last_residual_, residual_, comm_), -most, most);
-  if (second_pass_)
-    first_ = std::clamp(std::abs(omega_), std::min(1e-3, parameters_.maximum_relaxation),
-                        parameters_.maximum_relaxation);
+  omega_ = std::clamp(aitken_factor(omega_, last_residual_, residual_, comm_), -10., 10.);
+  if (second_pass_) first_ = std::clamp(std::abs(omega_), 1e-3, 1.);
 }
 
 Iterate AitkenRelaxation::next(Iterate x, const Iterate& image) {

@@ -25,7 +25,7 @@ struct Iterate {
 
 /// Residual of one datum. Those of several data have units of their own: only `relative` ones compare.
 struct Residual {
-  double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
+  double relative = 0;  ///< |r|_2 over the change in the step, see Unknown::measure(); 0 if nothing moves
   double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
   double size = 0;      ///< the same of H(x)
   /// Scale of the datum, for later residuals: its size, or, while it has none, its first residual.
@@ -110,9 +110,9 @@ class ConstantRelaxation final : public Accelerator {
 
 /// x += omega r with Aitken's factor, thesis (4.23) with its erratum [Kuettler, Wall 2008]:
 ///   omega^{k+1} = -omega^k r^k . (r^{k+1} - r^k) / |r^{k+1} - r^k|^2
-/// It is kept if the residual did not change, and bounded by ten times `maximum-relaxation`. Its sign is
+/// It is kept if the residual did not change, and bounded by 10. Its sign is
 /// free: a map with slope above 1 needs a negative one. The first factor of a step is that found by the
-/// second pass of the last step, the best one for a first residual, between 0.001 and `maximum-relaxation`.
+/// second pass of the last step, the best one for a first residual, between 0.001 and 1.
 /// Later factors belong to the remaining modes and would be too small or too large. r includes the dependent
 /// velocities, scaled to the unknown by the first residual of the step. Otherwise a structure whose velocity
 /// is another function of its displacement than the guess's (one with sub-steps) has errors invisible in the

@@ -169,7 +169,8 @@ IterateOrder Unknown::order(bool within) const {
           parallel::GlobalOrder::by_numbers(comm_, ids[1], ids[1].size())};
 }
 
-std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) const {
+std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image, const Iterate& start,
+                                       double least) const {
   std::vector<double> sums;
   std::vector<std::size_t> place_of(n_parts_);
   const auto all = x.unknown.size() == n_unknown_ ? parts() : std::span<const Part>(parts_);
@@ -179,11 +180,16 @@ std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) c
     const std::span<const double> here(x.unknown.data() + p.first, p.count),
         there(image.unknown.data() + p.first, p.count);
     const ChangeSquares squares = squares_of_change(there, here);
-    const double three[] = {squares.change, squares.size, double(p.count) / p.components};
+    double moved = squares.size;
+    if (!start.unknown.empty()) {
+      const std::size_t first = p.within ? parts_[*p.within].first : p.first;
+      moved = squares_of_change(there, {start.unknown.data() + first, p.count}).change;
+    }
+    const double four[] = {squares.change, squares.size, double(p.count) / p.components, moved};
     if (!p.within)
-      sums.insert(sums.end(), std::begin(three), std::end(three));
+      sums.insert(sums.end(), std::begin(four), std::end(four));
     else
-      for (std::size_t i = 0; i < 3; ++i) sums[place_of[*p.within] + i] += three[i];
+      for (std::size_t i = 0; i < std::size(four); ++i) sums[place_of[*p.within] + i] += four[i];
   }
   sum_over(comm_, sums);
   std::vector<Residual> list;
@@ -191,9 +197,11 @@ std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) c
   for (const Part& p : parts()) {
     if (p.rides) continue;
     const double r = sums[k], h = sums[k + 1], places = sums[k + 2];
-    k += 3;
+    const double of = std::max(sums[k + 3], least * least * h);
+    k += 4;
     // Converged if nothing moves, but not if a nonzero residual meets zero.
-    const double relative = h > 0 ? std::sqrt(r / h) : (r > 0 ? std::numeric_limits<double>::infinity() : r);
+    const double relative =
+        of > 0 ? std::sqrt(r / of) : (r > 0 ? std::numeric_limits<double>::infinity() : r);
     const auto mean = [&](double square) { return places > 0 ? std::sqrt(square / places) / p.weight : 0; };
     list.push_back({relative, mean(r), mean(h)});
   }

@@ -77,8 +77,11 @@ class Unknown {
   IterateOrder order(bool within) const;
 
   /// Residual of each unknown (without riders) over all ranks, including values within the step if x has
-  /// them. Collective.
-  std::vector<Residual> measure(const Iterate& x, const Iterate& image) const;
+  /// them. Relative to the change |H(x) - x^n| since `start`, but no less than the part `least` of |H(x)|; to
+  /// |H(x)| with an empty start. A residual d at the end of a step is an error 4 d/dt^2 of the acceleration,
+  /// so that a part of the value itself would mean more noise the shorter the step. Collective.
+  std::vector<Residual> measure(const Iterate& x, const Iterate& image, const Iterate& start = {},
+                                double least = 1) const;
   /// Displacements in the unknown [m], this rank's part.
   std::vector<double> motion(const Iterate& x) const;
 

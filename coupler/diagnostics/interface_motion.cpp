@@ -226,8 +226,8 @@ WorkBalance::Result WorkBalance::result(bool by_nearest, bool lagging) const {
           ? "NOT CLOSED: in explicit coupling load and motion belong to different times, and loads alternate from step to "
             "step; 'scheme: semi-implicit' closes it."
       : by_nearest
-          ? "NOT CLOSED: `mapping.type: nearest` transfers motion and load by maps that are not transposes "
-            "of each other; `projection` conserves the work on any meshes."
+          ? "NOT CLOSED: the steps are not converged, or `mapping.type: nearest` transfers motion and load by maps that are "
+            "not transposes of each other; tighten `convergence`, or use `projection`, which conserves the work on any meshes."
           : "NOT CLOSED: the wall seen by the fluid moved differently from the structure; use smaller steps "
             "or an iterating scheme.");
   return v;

@@ -52,7 +52,7 @@ class IterationGrowth final : public CouplingDiagnostic {
   std::vector<double> scales_;  // of the data, as they first were in the step
 };
 
-// Relative residual above which a step does not solve the coupled problem.
+// Part of the value above which a residual leaves the coupled problem of a step unsolved.
 constexpr double useless_residual = 0.5;
 
 /// Reports steps accepted without convergence (`at-max-iterations: accept`).
@@ -63,10 +63,10 @@ class UnconvergedStep final : public CouplingDiagnostic {
     const FixedPointResult& last = view_.last;
     if (last.converged) return;
     const ConvergenceParameters& wanted = view_.parameters.convergence;
-    const double residual = last.residual.relative;
+    const double residual = last.residual.relative, part = last.residual.absolute / last.residual.size;
     report.findings.push_back(
         {.id = "unconverged-step",
-         .severity = residual < useless_residual ? base::Severity::warning : base::Severity::wrong,
+         .severity = part < useless_residual ? base::Severity::warning : base::Severity::wrong,
          .number = residual,
          .limit = wanted.relative,
          .sentence =
@@ -84,6 +84,8 @@ class UnconvergedStep final : public CouplingDiagnostic {
 constexpr double slowest = 0.99;
 // Contraction assumed if one pass was enough.
 constexpr double unseen = 0.5;
+// Acceleration by residuals over that of the interface: worth a note, and a warning.
+constexpr double most_noise = 0.01, loud_noise = 0.1;
 
 /// Error of the unknown that the iteration between participants leaves below its tolerance. If the residual
 /// of a step fell by the factor c in its last pass, |x - x*| <= c / (1 - c) |H(x) - x|. StepErrors sums it
@@ -100,6 +102,7 @@ class CouplingError final : public CouplingDiagnostic {
     if (before.unknown.size() != now.unknown.size()) return;
     const std::vector<Residual> change = view_.unknown.measure(before, now);
     errors_.resize(change.size());
+    see_noise();
     for (std::size_t i = 0; i < std::min(errors_.size(), residuals_.size()); ++i) {
       const Residual& last = residuals_[i];
       if (!(last.absolute > 0)) continue;
@@ -114,13 +117,51 @@ class CouplingError final : public CouplingDiagnostic {
   void conclude(diagnostics::Report& report) override {
     for (const time::StepErrors& errors : errors_)
       report.errors.coupling = std::fmax(report.errors.coupling, errors.over_size());
+    const double share = noise_[1] > 0 ? std::sqrt(noise_[0] / noise_[1]) : 0;
+    if (!(share > most_noise)) return;
+    // The part of the position decides instead where it is larger than that of the motion.
+    const ConvergenceParameters& limits = view_.parameters.convergence;
+    const bool by_motion = noise_[2] > std::pow(limits.least_change(), 2) * noise_[3];
+    const double relative = (by_motion ? 1 : limits.least_change()) * limits.relative * most_noise / share;
+    const std::string sentence = fmt::format(
+        "coupling: residuals are {:.2g} of the interface's acceleration (limit {}), and loads by added mass contain that much noise",
+        share, most_noise);
+    const std::string advice =
+        fmt::format("use 'coupling.convergence.relative: {:.0e}', or a longer step", relative);
+    if (share < loud_noise) report.sentences.push_back(sentence + "; " + advice);
+    report.findings.push_back(
+        {.id = "noise-of-the-coupling",
+         .severity = share < loud_noise ? base::Severity::note : base::Severity::warning,
+         .number = share,
+         .limit = most_noise,
+         .sentence = sentence,
+         .advice = advice});
   }
-  void visit(io::Archive& archive) override { archive.common("steps", errors_); }
+  void visit(io::Archive& archive) override { archive.common("steps", errors_, noise_); }
 
  private:
+  /// A residual r at the end of a step is an error 4 r/dt^2 of the acceleration.
+  void see_noise() {
+    const History& known = view_.history;
+    if (residuals_.empty() || !(known.old_dt > 0)) return;
+    const double before = known.old_dt, dt = view_.dt;
+    const auto old = view_.unknown.motion(known.old), now = view_.unknown.motion(known.now),
+               x = view_.unknown.motion(view_.last.x), image = view_.unknown.motion(view_.last.image);
+    std::array<double, 4> squares{};
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      squares[0] += std::pow(4 * (image[i] - x[i]) / (dt * dt), 2);
+      squares[1] += std::pow(2 * ((image[i] - now[i]) / dt - (now[i] - old[i]) / before) / (dt + before), 2);
+      squares[2] += std::pow(image[i] - now[i], 2), squares[3] += image[i] * image[i];
+    }
+    sum_over(view_.comm, squares);
+    for (std::size_t k = 0; k < squares.size(); ++k) noise_[k] += squares[k];
+  }
+
   const CouplingView& view_;
   std::vector<Residual> residuals_, before_;  // of the last two passes of the step under way
   std::vector<time::StepErrors> errors_;      // of each datum
+  // Sums of squares over the steps: acceleration of displacements by residuals, and of the motion; motion; position.
+  std::array<double, 4> noise_{};
 };
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

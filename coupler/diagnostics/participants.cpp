@@ -16,6 +16,8 @@ constexpr int late = 10;                ///< passes before which answers are not
 constexpr int judged_steps = 10;        ///< before which the velocity is not judged
 constexpr double doubtful = 0.3;        ///< deviation of the velocity, over the rate
 constexpr double least_motion = 1e-12;  ///< over the interface's extent; below it nothing moves
+/// Over the extent: no mesh follows a wall that far, and millimeters instead of meters give a factor of a thousand.
+constexpr double farthest = 30;
 
 /// True if any rank's values differ bitwise.
 bool differ(MPI_Comm comm, const coupling::Exchange& a, const coupling::Exchange& b) {
@@ -26,6 +28,12 @@ double extent_of(MPI_Comm comm, const std::vector<Vec3>& points) {
   double most = 0;
   for (const Vec3& x : points) most = std::max(most, (x - points.front()).norm());
   return parallel::max(comm, most);
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
 }
 
 /// Answers of a participant within a step.
@@ -39,6 +47,7 @@ struct Answers {
 struct GivenMotion {
   std::size_t side;
   std::string name;
+  bool has_velocity;
   std::vector<double> x, v;                           // of the last accepted step
   double rate_rate = 0, rate_end = 0, rate_mean = 0;  // sums of products over the run
   double extent = 0, largest = 0;                     // [m]
@@ -46,8 +55,8 @@ struct GivenMotion {
   bool reported = false;
 };
 
-/// Detects two faults of participants that residuals do not explain: a response that ignores the input (a
-/// solver whose guess meets its own tolerance), and a velocity that is not the rate of the displacement.
+/// Detects faults of participants that residuals do not explain: a response that ignores the input (a solver whose
+/// guess meets its own tolerance), a displacement in another unit, and a velocity that is not its rate.
 class DataOfParticipants final : public CouplingDiagnostic {
  public:
   explicit DataOfParticipants(const CouplingView& view) : view_(view) {
@@ -55,9 +64,13 @@ class DataOfParticipants final : public CouplingDiagnostic {
     for (std::size_t s = 0; s < sides.size(); ++s) {
       answers_.push_back({.name = sides[s].name, .taken = {}, .given = {}});
       const coupling::Interface& i = sides[s].interface;
-      if (find_datum(i.gives, "displacement") && find_datum(i.gives, "velocity"))
-        motions_.push_back(
-            {.side = s, .name = sides[s].name, .x = {}, .v = {}, .extent = extent_of(view.comm, i.vertices)});
+      if (find_datum(i.gives, "displacement"))
+        motions_.push_back({.side = s,
+                            .name = sides[s].name,
+                            .has_velocity = find_datum(i.gives, "velocity") != nullptr,
+                            .x = {},
+                            .v = {},
+                            .extent = extent_of(view.comm, i.vertices)});
     }
   }
 
@@ -89,9 +102,22 @@ class DataOfParticipants final : public CouplingDiagnostic {
 
   void observe(diagnostics::Report& report) override {
     for (GivenMotion& one : motions_) {
-      if (one.reported) continue;
-      add(one, values_of(view_.pass.given()[one.side], "displacement"),
-          values_of(view_.pass.given()[one.side], "velocity"));
+      const std::vector<double>& x = values_of(view_.pass.given()[one.side], "displacement");
+      const double most = parallel::max(view_.comm, largest(x));
+      if (const double share = most / one.extent; one.extent > 0 && share > farthest)
+        report.findings.push_back(
+            {.id = "displacement-scale",
+             .number = share,
+             .limit = farthest,
+             .sentence =
+                 fmt::format("displacement of '{}': {:.3g} times the extent of its interface, {:.3g} m "
+                             "(limit {:g}): implausible",
+                             one.name, share, one.extent, farthest),
+             .advice = "check the unit of the 'displacement' [m] that this program gives",
+             .subject = one.name});
+      if (one.reported || !one.has_velocity) continue;
+      one.largest = std::max(one.largest, most);
+      add(one, x, values_of(view_.pass.given()[one.side], "velocity"));
       if (one.steps <= judged_steps || !(one.largest > least_motion * one.extent) || !(one.rate_rate > 0))
         continue;
       const double end = one.rate_end / one.rate_rate, mean = one.rate_mean / one.rate_rate;
@@ -112,6 +138,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
 
   void visit(io::Archive& archive) override {
     for (GivenMotion& one : motions_) {
+      if (!one.has_velocity) continue;
       const Side& side = view_.pass.sides()[one.side];
       archive.common("motion-" + one.name, one.rate_rate, one.rate_end, one.rate_mean, one.largest, one.steps,
                      one.reported);
@@ -125,16 +152,13 @@ class DataOfParticipants final : public CouplingDiagnostic {
   /// Compares v^{n+1} and (v^n + v^{n+1})/2 with (x^{n+1} - x^n)/dt, by least squares over the run.
   void add(GivenMotion& one, const std::vector<double>& x, const std::vector<double>& v) const {
     std::array<double, 3> sums{};
-    double most = 0;
     const bool known = one.steps > 0 && one.x.size() == x.size() && v.size() == x.size();
     for (std::size_t i = 0; known && i < x.size(); ++i) {
       const double rate = (x[i] - one.x[i]) / view_.dt;
       sums[0] += rate * rate, sums[1] += rate * v[i], sums[2] += rate * 0.5 * (v[i] + one.v[i]);
-      most = std::max(most, std::abs(x[i]));
     }
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, view_.comm);
     one.rate_rate += sums[0], one.rate_end += sums[1], one.rate_mean += sums[2];
-    one.largest = std::max(one.largest, parallel::max(view_.comm, most));
     one.x = x, one.v = v;
     ++one.steps;
   }
@@ -144,53 +168,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
   std::vector<GivenMotion> motions_;
 };
 
-// No mesh follows a wall that far; millimeters instead of meters give a factor of a thousand.
-constexpr double farthest = 30;
-
-/// Detects displacements much larger than the interface, probably in another unit.
-class DisplacementScale final : public CouplingDiagnostic {
- public:
-  explicit DisplacementScale(const CouplingView& view) : view_(view) {
-    for (const Side& side : view.pass.sides()) {
-      const PointBox box(side.interface.vertices);
-      const double extent = parallel::max(view.comm, (box.high - box.low).norm());
-      extents_.push_back(find_datum(side.interface.gives, "displacement") ? extent : 0);
-    }
-  }
-
-  void observe(diagnostics::Report& report) override {
-    for (std::size_t s = 0; s < extents_.size(); ++s) {
-      if (!(extents_[s] > 0)) continue;
-      double most = 0;
-      for (const double u : values_of(view_.pass.given()[s], "displacement"))
-        most = std::max(most, std::abs(u));
-      const double share = parallel::max(view_.comm, most) / extents_[s];
-      if (!(share > farthest)) continue;
-      const std::string& name = view_.pass.sides()[s].name;
-      report.findings.push_back(
-          {.id = "displacement-scale",
-           .number = share,
-           .limit = farthest,
-           .sentence = fmt::format("displacement of '{}': {:.3g} times the extent of its interface, {:.3g} m "
-                                   "(limit {:g}): implausible",
-                                   name, share, extents_[s], farthest),
-           .advice = "check the unit of the 'displacement' [m] that this program gives",
-           .subject = name});
-    }
-  }
-
- private:
-  const CouplingView& view_;
-  std::vector<double> extents_;  // by side [m]; 0 if it gives no displacement or has no extent
-};
-
 constexpr int patience = 10;  // steps
-
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
-}
 
 /// Detects loaded structures that do not move at all, because their interface is held or the load does not
 /// arrive. Even a stiff structure moves measurably.
@@ -298,10 +276,6 @@ class LostLoad final : public CouplingDiagnostic {
 
 std::shared_ptr<CouplingDiagnostic> data_of_participants(const CouplingView& view) {
   return std::make_shared<DataOfParticipants>(view);
-}
-
-std::shared_ptr<CouplingDiagnostic> displacement_scale(const CouplingView& view) {
-  return std::make_shared<DisplacementScale>(view);
 }
 
 std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view) {

@@ -264,9 +264,6 @@ void declare(config::Section& section, AccelerationParameters& p) {
       .doc(
           "relaxation of the very first iteration, or of all if constant; recommended: 1 / (1 + r) for the "
           "added mass over the structural mass r");
-  section.value("maximum-relaxation", p.maximum_relaxation)
-      .range(1e-6, 2)
-      .doc("aitken: upper bound of the initial relaxation of a step");
   section.value("reused-steps", p.reused_steps)
       .range(0, 1000)
       .doc("iqn: number of earlier steps whose differences are reused");
@@ -284,8 +281,8 @@ void declare(config::Section& section, ConvergenceParameters& p) {
   section.value("relative", p.relative)
       .range(1e-14, 1)
       .doc(
-          "a step has converged when |r| / |H(x)| is below this; r = H(x) - x, the change of the interface "
-          "displacement in one pass");
+          "a step has converged when |r| is below this part of |H(x) - x^n|, the motion of the interface in the "
+          "step, or below 1e-7 |H(x)|; r = H(x) - x, the change in one pass");
   section.value("absolute", p.absolute)
       .unit("m", 1e-18, 0.1)
       .not_negative()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,16 +15,17 @@ namespace couplet::coupler {
 struct AccelerationParameters {
   enum class Type { constant, aitken, iqn_ils } type = Type::iqn_ils;
   double initial_relaxation = 0.5;
-  double maximum_relaxation = 1.0;
   int reused_steps = 8;       // quasi-Newton: number of earlier steps with stored differences
   int maximum_columns = 100;  // largest number of these differences
   double filter = 1e-3;       // limit of the independent part of a column
 };
 
 struct ConvergenceParameters {
-  double relative = 1e-5;  // |r|_2 / |H(x)|_2
-  double absolute = 0;     // rms of |r| over the vertices [m]
-  bool both = false;       // require both bounds instead of either
+  double relative = 1e-4;  // |r|_2 / |H(x) - x^n|_2
+  /// Part of |H(x)| that counts as a change in any step: participants solve to about 1e-8 of their values.
+  double least_change() const { return std::min(1., 1e-7 / relative); }
+  double absolute = 0;  // rms of |r| over the vertices [m]
+  bool both = false;    // require both bounds instead of either
   int min_iterations = 1, max_iterations = 50;
   enum class AtMaximum { fail, accept } at_maximum = AtMaximum::fail;
 };
