@@ -272,7 +272,10 @@ void Document::set(const std::string& assignment) {
   const std::vector<std::string> parts = base::split(path, '.');
   YAML::Node value;
   try {
-    value = YAML::Load(assignment.substr(equals + 1));
+    // An argument has no comments: ' #' is part of a name.
+    const std::string text(base::trim(assignment.substr(equals + 1)));
+    const bool is_plain = text.find_first_of("\"'[{") == text.npos;
+    value = is_plain && text.find(" #") != text.npos ? YAML::Node(text) : YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw Error("{}: the value is not valid YAML: {}.", option, explain(error.msg, ""));
   }

@@ -28,6 +28,7 @@ TEST(Override, replaces_adds_and_reaches_into_lists) {
   EXPECT_EQ(read_with({"divisions={nx: 8, ny: 3}", "divisions.nx=16"}).divisions,
             (std::map<std::string, double>{{"nx", 16}, {"ny", 3}}));
   EXPECT_EQ(read_with({"mesh=one.msh", "mesh=two.msh"}).mesh, "two.msh");
+  EXPECT_EQ(read_with({"mesh=of #2/one.msh"}).mesh, "of #2/one.msh") << "an argument has no comments";
 }
 
 TEST(Override, without_a_value_removes_the_key) {

@@ -67,11 +67,18 @@ def arrays(folder):
         raw = {}
         try:
             with h5py.File(file, "r") as series:
-                series.visititems(lambda name, item: raw.update({name: np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
+                times = {f"steps/{number}": f"t = {step.attrs['time']:.9g} s" for number, step in series.get("steps", {}).items() if "time" in step.attrs}
+                series.visititems(lambda name, item: raw.update({named(name, times): np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
         except (OSError, RuntimeError) as error:
             raise Wrong(f"{file}: cannot be read, and may be truncated ({error})") from None
         found.update({f"{file.relative_to(folder)}: {name}": values for name, values in by_number(raw).items()})
     return found
+
+
+def named(name, times):
+    """Name of a dataset with the time of its output in place of the number, which differs between a whole run and a resumed one."""
+    step = "/".join(name.split("/")[:2])
+    return times[step] + name[len(step):] if step in times else name
 
 
 def by_number(series):
