@@ -42,11 +42,15 @@ def summary(folder, last=1.2):
     return found
 
 
+def rows(case):
+    """What others publish of 'FSI1', 'FSI2' or 'FSI3', by source."""
+    with open(here / "reference" / "turek_hron.csv", newline="") as file:
+        return [row for row in csv.DictReader(line for line in file if not line.startswith("#")) if row["case"] == case]
+
+
 def reference(case):
     """Returns the values of Turek and Hron for 'FSI1', 'FSI2' or 'FSI3'."""
-    with open(here / "reference" / "turek_hron.csv", newline="") as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        row = next(r for r in rows if (r["case"], r["source"]) == (case, "FF"))
+    row = next(row for row in rows(case) if row["source"] == "FF")
     return {name: float(value) for name, value in row.items() if name not in ("case", "source") and value}
 
 

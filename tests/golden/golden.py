@@ -3,12 +3,13 @@
 """Golden file of the shipped cases: what each ends with, so that a change of the code that should change no answer can prove it.
 
   golden.py record  [--bin FOLDER] [CASE ...]   runs the cases and writes them to golden.json; others stay
-  golden.py compare [--bin FOLDER] [CASE ...]   runs them and lists what differs from golden.json
+  golden.py compare [--bin FOLDER] [CASE ...]   runs them and lists what differs from golden.json; with --quick only those that took
+                                                less than QUICK seconds when they were recorded
   golden.py resume  [--bin FOLDER] [CASE ...]   runs them whole, and again from a checkpoint in their middle; lists what differs
 
 A CASE is a file below configs, such as cavity/case.yaml, or the name of a folder there, for all its cases. Cases run for at most
 STEPS of their steps. Recorded are the exit code, each participant's findings, error budget and place on the maps (run.json), and
-the last row of each of its tables."""
+the last row of each of its tables. A commit that records a case anew says in its message why the case moved."""
 import argparse
 import csv
 import json
@@ -26,9 +27,11 @@ import yaml
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 STEPS = 24
+QUICK = 5  # seconds
 SECONDS = 240  # limit of one run
 NOT_RESULTS = {"steps.csv", "participants.csv", "residuals.csv", "solver.csv"}  # of time and iterations
 TOLERANCE = 1e-5  # relative; iterative solvers leave 1e-8 to 1e-6
+ROUNDING = 1e-8  # errors and numbers of findings below are made of rounding
 
 
 def cases():
@@ -54,7 +57,7 @@ def seconds(value):
     return float(number) * {"": 1, "s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600, "day": 86400}[unit]
 
 
-def run(case, binaries, folder, *, end, every=None, restart=None):
+def run(case, binaries, folder, *, end, every=None, restart=None, seconds=SECONDS):
     command = [sys.executable, "-m", "couplet", "run", "-q", "--bin", str(pathlib.Path(binaries).resolve()), "--set", f"simulation.output.folder={folder}",
                "--set", f"simulation.end-time={end!r} s", "--set", "simulation.output.interval=0 s"]
     if every:
@@ -66,7 +69,7 @@ def run(case, binaries, folder, *, end, every=None, restart=None):
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "client/python"), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     try:
         done = subprocess.run([*command, str(ROOT / "configs" / case)], env=environment, capture_output=True, text=True,
-                              timeout=SECONDS, cwd=here)
+                              timeout=seconds, cwd=here)
         return done.returncode, (done.stdout + done.stderr)[-2000:]
     except subprocess.TimeoutExpired:
         return "timeout", ""
@@ -121,19 +124,24 @@ def whole(case, binaries, folder, checkpoints=False):
 
 
 def record(args):
-    golden = {case: one for case, one in (json.loads(args.file.read_text()) if args.file.is_file() else {}).items() if case in set(cases())}
+    shipped, recorded = set(cases()), json.loads(args.file.read_text()) if args.file.is_file() else {}
+    golden = {case: one for case, one in recorded.items() if case in shipped}
     for case in args.cases:
+        start = time.monotonic()
         with tempfile.TemporaryDirectory() as folder:
             golden[case] = whole(case, args.bin, folder)[0]
-        print(case, golden[case]["exit code"], flush=True)
-    (args.file).write_text(json.dumps(golden, indent=0, sort_keys=True) + "\n")
+        golden[case]["seconds"] = round(time.monotonic() - start, 1)
+        print(case, golden[case]["exit code"], f'{golden[case]["seconds"]} s', flush=True)
+        args.file.write_text(json.dumps(golden, indent=0, sort_keys=True) + "\n")
     return 0
 
 
 def answers(outcome):
-    """Without what tells of iterative solvers only: their part of the error, and their iterations."""
+    """Without the time, and what tells of rounding and iterative solvers only: their part of the error, and their iterations."""
+    outcome.pop("seconds", None)
     for one in outcome["participants"].values():
-        one["errors"].pop("linear", None)
+        one["errors"] = {part: error for part, error in one["errors"].items() if part != "linear" and error > ROUNDING}
+        one["findings"] = [[*name, number if (number or 0) > ROUNDING else None] for *name, number in one["findings"]]
         one["tables"].pop("solver.csv", None)
         if len(one["tables"].get("balance.csv", [0, []])[1]) == 10:  # of a fluid; the last column counts iterations
             one["tables"]["balance.csv"][1].pop()
@@ -147,7 +155,7 @@ def compare(args):
             bad += 1
             print(case, f"is not recorded: golden.py record {case}", flush=True)
             continue
-        if golden[case]["exit code"] == "timeout":
+        if golden[case]["exit code"] == "timeout" or (args.quick and golden[case].get("seconds", 0) > QUICK):
             continue
         start = time.monotonic()
         with tempfile.TemporaryDirectory() as folder:
@@ -192,6 +200,7 @@ def main():
     parser.add_argument("task", choices=["record", "compare", "resume"])
     parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/bin")
     parser.add_argument("--file", type=pathlib.Path, default=HERE / "golden.json")
+    parser.add_argument("--quick", action="store_true")
     parser.add_argument("cases", nargs="*")
     args = parser.parse_intermixed_args()
     args.cases = chosen(args.cases)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from couplet.runs.process import launch
+from couplet.study.fits import limit_of
 from couplet.study.quantities import top
 
 
@@ -12,20 +13,24 @@ from couplet.study.quantities import top
 PLATE = {12: "{nx: 60, ny: 10}", 17: "{nx: 85, ny: 14}", 24: "{nx: 120, ny: 20}"}  # mesh-parameters of the plate for n of the fluid
 
 
-def turek_hron(job, case, keys, name, right, percent, least=1.7):
+def turek_hron(job, case, keys, name, right, percent, of, drift=0.5):
     """One of the published quantities on meshes of which each has 2^(1/2) times as many cells along a side as the one before, and with its own keys, such as a
-    step that shrinks alike: the finest beside the published value, and the order of the changes."""
+    step that shrinks alike. The finest is beside the published value, or within the spread of the published (Featflow's last levels), and within `drift` percent
+    of what the three tend to."""
     found, minutes = [], []
     for (n, plate), key in zip(PLATE.items(), keys):
         meshes = [*(f"participants.{who}.mesh-parameters={{n: {n}}}" for who in ("fluid", "mover")), f"participants.solid.mesh-parameters={plate}"]
         run = job.case(case, (*meshes, key), timeout=20000)
         found.append(job.beside("configs/turek-hron/summary.py").summary(run.folder)[name])
         minutes.append(f"{run.cost.cpu / 60:.1f}")
-    changes = [abs(b - a) for a, b in zip(found, found[1:])]
-    order = math.log(changes[0] / changes[1]) / math.log(math.sqrt(2)) if len(changes) == 2 else math.nan
-    off = 100 * (found[-1] / right - 1)
-    return (f"{', '.join(f'{v:.5g}' for v in found)} for {right:.5g}: {off:+.2f} %, order {order:.1f} ({', '.join(minutes)} processor minutes)",
-            abs(off) <= percent and order >= least)
+    published = [abs(float(row[name])) for row in job.beside("configs/turek-hron/summary.py").rows(of) if row["source"].startswith("FF") and row.get(name)]
+    limit = limit_of(list(PLATE), found)
+    off, apart = 100 * (found[-1] / right - 1), 100 * (found[-1] / limit.value - 1) if limit else math.nan
+    spread = f", published {min(published):.5g} to {max(published):.5g}" if len(published) > 1 else ""
+    tends = f"{apart:+.2f} % from the limit {limit.value:.5g} of the three, order {limit.order:.1f}" if limit else "the three tend to no limit"
+    within = len(published) > 1 and min(published) <= abs(found[-1]) <= max(published)
+    return (f"{', '.join(f'{v:.5g}' for v in found)} for {right:.5g}{spread}: {off:+.2f} %; {tends} ({', '.join(minutes)} processor minutes)",
+            (abs(off) <= percent or within) and abs(apart) <= drift)
 
 
 def band(job, which, low, high):

@@ -70,7 +70,8 @@ def figure(text, rows, flagship):
 
 
 def text():
-    rows, flagship = (table.read(ROOT / "docs/validation" / f"{name}.md") for name in ("coupled-benchmarks", "flagship"))
+    fluid, solid, coupled, flagship = (table.read(ROOT / "docs/validation" / f"{name}.md") for name in ("fluid", "finite-strain", "coupled-benchmarks", "flagship"))
+    rows = {**fluid, **solid, **coupled}
     found = [DATA["head"], *(line for case in ("FSI1", "FSI2", "FSI3") for line in flag(case, rows))]
     for title, other in DATA["others"].items():
         body = []
