@@ -150,7 +150,7 @@ MeshState CellMeasures::measure(const mesh::Geometry& moved) const {
   return state;
 }
 
-std::string CellMeasures::refusal(const mesh::Geometry& moved) const {
+std::string CellMeasures::refusal(const mesh::Geometry& moved, bool by_corners) const {
   const auto at = [](const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); };
   if (const auto trouble = mesh::find_inverted(mesh_, moved))
     return fmt::format(
@@ -159,14 +159,14 @@ std::string CellMeasures::refusal(const mesh::Geometry& moved) const {
   if (const auto trouble = mesh::find_crossed(mesh_, moved))
     return fmt::format("makes cell {} at {} intersect itself. Try more stiffening or a coarser mesh there.",
                        trouble->cell_id, at(trouble->centre));
-  if (smallest_volume_ratio_ <= 0 && !limits_.judges_shape()) return "";
+  if (smallest_volume_ratio_ <= 0 && !limits_.judges_shape() && !by_corners) return "";
   const MeshState state = measure(moved);
+  const double least_jacobian = std::max(limits_.smallest_scaled_jacobian, by_corners ? 0. : -1.);
   using Limit = std::pair<std::optional<double>, const char*>;
   const std::array<Limit, MeshState::n_measures> limits{
       Limit{smallest_volume_ratio_ > 0 ? std::optional(smallest_volume_ratio_) : std::nullopt,
             "smallest-volume-ratio"},
-      Limit{limits_.smallest_scaled_jacobian > -1 ? std::optional(limits_.smallest_scaled_jacobian)
-                                                  : std::nullopt,
+      Limit{least_jacobian > -1 ? std::optional(least_jacobian) : std::nullopt,
             "guard.smallest-scaled-jacobian"},
       Limit{limits_.largest_edge_ratio, "guard.largest-edge-ratio"},
       Limit{limits_.largest_angle, "guard.largest-angle"},

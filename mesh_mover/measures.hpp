@@ -38,9 +38,9 @@ class CellMeasures {
   MeshState measure(const mesh::Geometry& moved) const;
   /// Values of a measure per local cell, except for the angle.
   std::vector<double> of_cells(MeshState::Measure measure, const mesh::Geometry& moved) const;
-  /// Describes violated limits: inverted or self-intersecting cells, and limits of the parameters. Empty if
-  /// there are none. Collective.
-  std::string refusal(const mesh::Geometry& moved) const;
+  /// Describes violated limits: inverted or self-intersecting cells, and limits of the parameters; with
+  /// `by_corners` also cells that are folded at a corner. Empty if there are none. Collective.
+  std::string refusal(const mesh::Geometry& moved, bool by_corners = false) const;
 
  private:
   struct Shape {

@@ -194,7 +194,7 @@ std::string Mover::place_and_judge() {
   curved_.put_back(displacement_);
   refuse_torn();
   place();
-  return measures_.refusal(moved_);
+  return measures_.refusal(moved_, sound_ && parameters_.method == Method::automatic);
 }
 
 /// Sets displacement_ and moved_.
@@ -209,7 +209,7 @@ void Mover::move(const coupling::Exchange& in) {
     parameters_.method = Method::barrier;
     make_method();
     reason_ = fmt::format("the motion from t = {:.4g} s with laplacian {}", step_.time,
-                          refusal.substr(0, refusal.find(". ")));
+                          refusal.substr(0, std::min(refusal.find(". "), refusal.size() - 1)));
     displacement_ = method_->solve(wanted);
     refusal = place_and_judge();
   }
@@ -320,6 +320,7 @@ void Mover::choose_method(const app::SimulationParameters& simulation) {
                 incremental() ? "form: incremental" : "periodic patches");
     return make_method();
   }
+  sound_ = measures_.measure(geometry_).worst[MeshState::scaled_jacobian].value > 0;
   try {
     make_method();
   } catch (const Error& error) {  // on all ranks alike
@@ -334,7 +335,7 @@ void Mover::choose_method(const app::SimulationParameters& simulation) {
     const std::string refusal = place_and_judge();
     if (!refusal.empty())
       reason_ = fmt::format("at t = {:.4g} s the prescribed motion with laplacian {}", step_.dt,
-                            refusal.substr(0, refusal.find(". ")));
+                            refusal.substr(0, std::min(refusal.find(". "), refusal.size() - 1)));
   }
   step_ = {};
   std::ranges::fill(displacement_, 0.0);

@@ -71,9 +71,10 @@ class Mover final : public coupling::Participant {
   CurvedSlide curved_;
   MovingPatches moving_;
   std::unique_ptr<MotionMethod> method_;
-  bool chooses_;                             // method: auto
-  bool ahead_ = false;                       // a prescribed motion of the run needs the barrier
-  std::string reason_;                       // why it uses the barrier
+  bool chooses_;        // method: auto
+  bool sound_ = false;  // as read no cell is folded at a corner, so that auto lets none fold
+  bool ahead_ = false;  // a prescribed motion of the run needs the barrier
+  std::string reason_;  // why it uses the barrier
   std::unique_ptr<MotionMethod> laplacian_;  // kept while the barrier moves a step that is not accepted yet
   coupling::InterfaceMap interface_;
   std::unique_ptr<coupling::MeshMotionSink> sink_;
