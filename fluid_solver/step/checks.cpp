@@ -21,7 +21,7 @@ namespace {
 /// Refuses what no scheme combines with this mesh or its motion. The first one that applies is told.
 template <int D>
 void check_effects(const mesh::Mesh& mesh, const FluidParameters& parameters, bool moving) {
-  const bool bodies = !parameters.bodies.empty(), frame = parameters.rotating_frame.has_value(),
+  const bool frame = parameters.rotating_frame.has_value(),
              stages = parameters.scheme == ExplicitScheme::runge_kutta;
   bool across = false;
   const Vec3 axis =
