@@ -143,7 +143,8 @@ class CouplingError final : public CouplingDiagnostic {
   /// A residual r at the end of a step is an error 4 r/dt^2 of the acceleration.
   void see_noise() {
     const History& known = view_.history;
-    if (residuals_.empty() || !(known.old_dt > 0)) return;
+    if (residuals_.empty() || !(known.old_dt > 0) || known.old.unknown.size() != known.now.unknown.size())
+      return;
     const double before = known.old_dt, dt = view_.dt;
     const auto old = view_.unknown.motion(known.old), now = view_.unknown.motion(known.now),
                x = view_.unknown.motion(view_.last.x), image = view_.unknown.motion(view_.last.image);

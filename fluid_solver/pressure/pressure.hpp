@@ -253,6 +253,7 @@ class PressureProjection {
   void set_obliqueness(const Placement<D>& at);
   void add_oblique_pressure(const std::vector<double>& phi);
   bool mix_gradients(int pass);
+  double rounding() const;
   void transposed_flux(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
                        std::vector<double>& flux) const;
   Vectors<D> transposed_mean(const Placement<D>& at, const std::vector<double>& value) const;

@@ -165,7 +165,7 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, c
     const double tolerance =
         (pass < passes ? first_pass_tolerance : 1) * scene_.parameters.pressure_tolerance;
     solve_pressure(from, w, std::min(tolerance, loosest_tolerance), answer);
-    if (pass == passes && to_the_end)
+    if (pass == passes && to_the_end && step_.by.implicit)
       throw SolveFailure(
           "The non-orthogonal correction of the pressure equation did not converge in {} passes at t = "
           "{:.6g} s: the mesh is too skewed, {:.0f} degrees between a face normal and the line of its cell "
@@ -183,7 +183,7 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, c
 
 /// Gradient for the next pass, by Anderson acceleration. A mode of a few cells that decreases by 0.97 per
 /// pass at a face of 87 degrees then takes a dozen passes instead of two hundred. Returns true if the
-/// gradient has converged. Collective.
+/// gradient has converged, or is made of rounding. Collective.
 template <int D>
 bool PressureProjection<D>::mix_gradients(int pass) {
   const std::size_t owned = static_cast<std::size_t>(mesh_.cells.n_owned()) * D;
@@ -200,7 +200,22 @@ bool PressureProjection<D>::mix_gradients(int pass) {
   MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   accelerator_->advance(flat<D>(gradient_before_).first(owned), flat<D>(out_.gradient).first(owned));
   out_.gradient.swap(gradient_before_);
-  return sums[0] <= standing * standing * sums[1];
+  return sums[0] <= standing * standing * sums[1] || (pass > oblique_passes && sums[0] <= rounding());
+}
+
+/// Square of the gradient that rounding leaves in a fluid at rest: of the pressure, and of the potential that it balances.
+template <int D>
+double PressureProjection<D>::rounding() const {
+  const auto psi = scene_.potential(step_.end());
+  Vec3 x = Vec3::Zero();
+  double square = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    x.template head<D>() = step_.to->centre[c];
+    const double size = std::abs(out_.p[c]) + (psi ? scene_.fluid.rho * std::abs(psi(x)) : 0);
+    const double noise = 64 * std::numeric_limits<double>::epsilon() * size;
+    square += noise * noise * std::pow(step_.to->volume[c], -2. / D);
+  }
+  return parallel::sum(mesh_.comm, square);
 }
 
 template <int D>
