@@ -68,6 +68,8 @@ def arrays(folder):
         try:
             with h5py.File(file, "r") as series:
                 times = {f"steps/{number}": f"t = {step.attrs['time']:.9g} s" for number, step in series.get("steps", {}).items() if "time" in step.attrs}
+                if len(set(times.values())) < len(times):  # such as modes of equal frequency
+                    times = {}
                 series.visititems(lambda name, item: raw.update({named(name, times): np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
         except (OSError, RuntimeError) as error:
             raise Wrong(f"{file}: cannot be read, and may be truncated ({error})") from None
