@@ -189,12 +189,12 @@ void Mover::refuse_torn() const {
 }
 
 /// Describes a problem of the mesh of displacement_; empty if there is none. Collective.
-std::string Mover::place_and_judge() {
+std::string Mover::place_and_judge(bool by_corners) {
   placed_ = false;
   curved_.put_back(displacement_);
   refuse_torn();
   place();
-  return measures_.refusal(moved_, sound_ && parameters_.method == Method::automatic);
+  return measures_.refusal(moved_, by_corners);
 }
 
 /// Sets displacement_ and moved_.
@@ -203,15 +203,24 @@ void Mover::move(const coupling::Exchange& in) {
   displacement_ = method_->solve(wanted);
   if (incremental())
     for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
-  std::string refusal = place_and_judge();
-  if (!refusal.empty() && chooses_ && parameters_.method == Method::automatic) {
+  const bool may_change = chooses_ && parameters_.method == Method::automatic;
+  std::string refusal = place_and_judge(may_change && sound_);
+  if (!refusal.empty() && may_change) {
     laplacian_ = std::move(method_);
     parameters_.method = Method::barrier;
     make_method();
     reason_ = fmt::format("the motion from t = {:.4g} s with laplacian {}", step_.time,
                           refusal.substr(0, std::min(refusal.find(". "), refusal.size() - 1)));
-    displacement_ = method_->solve(wanted);
-    refusal = place_and_judge();
+    const std::vector<double> by_laplacian = displacement_;
+    try {
+      displacement_ = method_->solve(wanted);
+      refusal = place_and_judge();
+    } catch (const SolveFailure&) {
+      displacement_ = by_laplacian;
+      refusal = place_and_judge();
+      if (!refusal.empty()) throw;
+      begin_step(step_);  // the boundaries themselves fold a corner, which is a finding
+    }
   }
   if (!refusal.empty())
     throw SolveFailure(

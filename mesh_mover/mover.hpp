@@ -55,7 +55,7 @@ class Mover final : public coupling::Participant {
   void tell_choice() const;
   void choose_method(const app::SimulationParameters& simulation);
   void move(const coupling::Exchange& in);
-  std::string place_and_judge();
+  std::string place_and_judge(bool by_corners = false);
   std::vector<double> prescribed(const coupling::Exchange& in) const;
   void refuse_torn() const;
   /// Computes the geometry for displacement_, once per motion. Collective.
