@@ -76,8 +76,22 @@ void Fluid<D>::begin_step(double time, double dt) {
   begin_.time = time;
   double rate = 0;
   for (const auto& force : step_.scene().forces) rate = std::max(rate, force->rate(time, dt));
-  sizes_.begin_step(accepted_, time, dt, rate, begin_);
+  const bool starts = accepted_.start == Start::at_rest;
+  sizes_.begin_step(starts ? moved_by_boundaries() : accepted_, time, dt, rate, starts, begin_);
   statistics_.sub_steps = 0;
+}
+
+/// The fluid at rest as fast as its boundaries at the end of the step, for the size of its sub-steps.
+template <int D>
+State<D> Fluid<D>::moved_by_boundaries() const {
+  State<D> moved = accepted_;
+  boundary_.velocity_at(time_ + dt_, moved.placement->boundary_centre, moved.w);
+  double speed = 0;
+  for (const Vec<D>& w : moved.w) speed = std::max(speed, w.norm());
+  speed = parallel::max(mesh_.comm, speed);
+  if (speed > most_speed) return accepted_;  // an input that the step itself refuses
+  for (std::size_t f = 0; f < moved.phi.size(); ++f) moved.phi[f] = speed * moved.placement->area[f].norm();
+  return moved;
 }
 
 template <int D>

@@ -357,34 +357,28 @@ void FaceFlux<D>::add_memory(const State<D>& from) {
                                   ratio > 0 ? from.memory_old.data() : nullptr, phi_.data(), far_.data());
   far_.resize(n_far);
   ahead_.assign(mesh_.n_interior, 0.0);
-  if (!step_.guess) return;
-  if (scene_.has_smooth_excess()) {
-    if (smooth_of_ != step_.guess) set_smooth(guess_at(from), step_.guess);
-    ahead_ = smooth_;
-  }
-  const Placement<D>& at = guess_at(from);
-  const Vectors<D>& gradient = scene_.flux_velocity(at, step_.guess->gradient);
+  if (!step_.guess || (n_far == 0 && !scene_.has_smooth_excess())) return;
+  if (smooth_of_ != step_.guess) split_excess(guess_at(from), step_.guess);
+  ahead_ = smooth_;
   for (const Index f : far_) {
     const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
     const double decay = rate * step_.dt, share = decay / (1 + decay);
     const double mid = ratio > 0 ? now * from.memory[f] + before * from.memory_old[f] : from.memory[f];
-    phi_[f] += largest_decay * mid -
-               share * (from.memory[f] + step_.dt * pressure_excess(at, *step_.guess, gradient, f));
-    ahead_[f] = 0;
+    phi_[f] += largest_decay * mid - share * (from.memory[f] + step_.dt * rest_[f]);
   }
   for (Index f = 0; f < mesh_.n_interior; ++f) phi_[f] -= step_.dt * ahead_[f];
 }
 
-/// Splits e of a pressure into its smooth part and the rest.
+/// Splits e of a pressure into its smooth part and the rest; where none of it is smooth, all is rest.
 template <int D>
-void FaceFlux<D>::set_smooth(const Placement<D>& at, std::shared_ptr<const PressureLevel<D>> of) {
+void FaceFlux<D>::split_excess(const Placement<D>& at, std::shared_ptr<const PressureLevel<D>> of) {
   smooth_of_ = std::move(of);
   const PressureLevel<D>& level = *smooth_of_;
   const Vectors<D>& gradient = scene_.flux_velocity(at, level.gradient);
   rest_.resize(mesh_.n_interior);
   for (Index f = 0; f < mesh_.n_interior; ++f) rest_[f] = pressure_excess(at, level, gradient, f);
   smooth_.assign(rest_.size(), 0.0);
-  for (int k = 0; k < smoothings; ++k) {
+  for (int k = 0; k < smoothings && scene_.has_smooth_excess(); ++k) {
     vectors_.assign(mesh_.cells.n_local(), Vec<D>::Zero());
     vectors_pass<D>(mesh_, at, rest_.data(), vectors_);
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) vectors_[c] /= at.volume[c];
@@ -424,8 +418,7 @@ void FaceFlux<D>::remember(State<D>& s) {
   if (step_.to->skewed()) gradient_.number = s.number;
   if (s.pressure[0] && scene_.has_smooth_excess()) {
     // The change of F e in the step is not remembered: it would leave an error of first order in time.
-    set_smooth(*step_.to, s.pressure[0]);
-    for (const Index f : far_) ahead_[f] = smooth_[f];
+    split_excess(*step_.to, s.pressure[0]);
     for (Index f = 0; f < mesh_.n_interior; ++f) s.memory[f] -= step_.dt * (smooth_[f] - ahead_[f]);
   }
   scene_.obstacles->correct_memory(s);

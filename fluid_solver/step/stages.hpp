@@ -83,7 +83,7 @@ class FaceFlux {
  private:
   void set_relaxation(const State<D>& from);
   void add_memory(const State<D>& from);
-  void set_smooth(const Placement<D>& at, std::shared_ptr<const PressureLevel<D>> of);
+  void split_excess(const Placement<D>& at, std::shared_ptr<const PressureLevel<D>> of);
   const Placement<D>& guess_at(const State<D>& from) const;
   double pressure_excess(const Placement<D>& at, const PressureLevel<D>& level, const Vectors<D>& gradient,
                          Index f) const;

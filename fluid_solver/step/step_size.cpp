@@ -264,8 +264,9 @@ SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
 }
 
 template <int D>
-void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, double frame_rate,
+void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, double frame_rate, bool starts,
                                 History<D>& begin) {
+  starts_ = starts;
   time_ = time;
   dt_ = dt;
   size_.set_frame_rate(frame_rate);
@@ -307,7 +308,7 @@ double SubStepSize<D>::next(const State<D>& level, bool implicit, int done, doub
   if (parameters_.time_step) {
     limit = *parameters_.time_step;
   } else {
-    const StepLimits limits = done == 0 ? limits_ : size_.limits(level);
+    const StepLimits limits = done == 0 || starts_ ? limits_ : size_.limits(level);
     limit = parameters_.safety_factor * (implicit ? implicit_limit(limits) : limits.explicit_viscous);
   }
   const bool echo = echo_ < limit;

@@ -89,8 +89,10 @@ class SubStepSize {
   /// Sets whether operators are of fourth order.
   void set_fourth(bool fourth) { size_.set_fourth(fourth); }
   /// Begins a coupling step [s] from `level`; `frame_rate`: see StepSize. Chooses begin.implicit and restarts
-  /// the multi-step schemes if it changes. Collective.
-  void begin_step(const State<D>& level, double time, double dt, double frame_rate, History<D>& begin);
+  /// the multi-step schemes if it changes. `starts`: `level` is what a flow at rest is expected to become, so that its
+  /// limits hold to the end of the step. Collective.
+  void begin_step(const State<D>& level, double time, double dt, double frame_rate, bool starts,
+                  History<D>& begin);
   /// Returns an equal part of the remaining time [s] within the limit of the present flow. `done`: sub-steps
   /// so far. Throws SolveFailure if there would be too many. Collective.
   double next(const State<D>& level, bool implicit, int done, double remaining, bool& last);
@@ -113,6 +115,7 @@ class SubStepSize {
   double time_ = 0, dt_ = 0;
   double echo_ = base::infinity;  // time after which a wave comes back from the end of an upstream line [s]
   StepLimits limits_;
+  bool starts_ = false;
 };
 
 }  // namespace couplet::fluid

@@ -141,7 +141,7 @@ WAYS = {"last": lambda values: values[-1], "first": lambda values: values[0], "l
 
 def run(job, case, read, of=None, within=None, low=None, high=None, limits=(), keys=(), quick=(), meshes=("",), quiet=False, cost=False, timeout=3600):
     """`case`: as job.case takes it. `read`, one or several: 'FILE.csv: COLUMN' of the participant's monitors (of another participant 'NAME/FILE.csv') at the end, or
-    over the run with a word of WAYS before the column, in a row ('row-6'), or the number ('maximum-1') and the time ('time-of-maximum-1') of a maximum; 'FILE.py: FUNCTION(NUMBERS).KEY'
+    over the run with a word of WAYS before the column, in a row ('row-6'), or the number ('maximum-1') and the time ('time-of-maximum-1', the middle of what is within 1 %) of a maximum; 'FILE.py: FUNCTION(NUMBERS).KEY'
     of a file beside the case, which takes the participant's folder ('./FILE.py': that of the run; without KEY: all that it gives); 'passes: mean' of the coupling, 'residual: largest' of its last passes.
     Met where it is within the share `within` of `of`, or from `low` to `high`, each one number or one for each reading, and with `quiet` where the run does not warn;
     reported where nothing judges. `keys`: keys of the case, '.key' for those of its participant, or 'ranks=1,2,1,1'; `quick`: further keys with --quick. `meshes`: its
@@ -253,8 +253,12 @@ def reading(job, case, results, text):
         return {key: found[int(key) if key.isdigit() else key]} if key else found
     way, _, column = what.partition(" ")
     if asked := re.fullmatch(r"(time-of-)?maximum-(\d)", way):
-        tops = [found for found in extrema(results.column(who, file, "time [s]"), results.column(who, file, column)) if found[2] == "max"]
-        return {f"time of {column.split(' [')[0]} [s]" if asked[1] else column: tops[int(asked[2]) - 1][0 if asked[1] else 1]}
+        times, values = results.column(who, file, "time [s]"), results.column(who, file, column)
+        time, top, _ = [found for found in extrema(times, values) if found[2] == "max"][int(asked[2]) - 1]
+        if not asked[1]:
+            return {column: top}
+        below = values < top - 0.01 * abs(top)  # the middle of a flat top: a ripple on it moves the largest value from one end to the other
+        return {f"time of {column.split(' [')[0]} [s]": 0.5 * float(times[below & (times < time)].max() + times[below & (times > time)].min())}
     if row := re.fullmatch(r"row-(\d+)", way):
         return {what: float(results.column(who, file, column)[int(row[1])])}
     values = results.column(who, file, column if way in WAYS else what)

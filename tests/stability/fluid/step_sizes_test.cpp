@@ -142,6 +142,41 @@ TEST(StepLimit, of_eddy_viscosity_is_that_of_a_more_viscous_fluid) {
   EXPECT_LT(limit, 0.5 * sizes.limits(c.state()).explicit_viscous);
 }
 
+/// Velocities in a cavity of size 1 with a lid of speed 1 and cells that shrink toward the walls, after `steps` steps to `time`.
+Vectors<2> cavity(double nu, double time, int steps, ViscousTreatment viscous) {
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = nu;
+  p.viscous = viscous;
+  p.pressure_tolerance = 1e-8;
+  all_sides(p, 2, boundary(BoundaryType::no_slip));
+  p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {16, 16, 1}, Vec3::Zero(), Vec3::Ones());
+  for (Vec3& x : raw.points)
+    for (int c = 0; c < 2; ++c) x[c] -= std::sin(2 * std::numbers::pi * x[c]) / (2.5 * std::numbers::pi);
+  FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+  c.run(time, steps);
+  return {c.state().u.begin(), c.state().u.begin() + c.mesh().cells.n_owned()};
+}
+double apart(const Vectors<2>& a, const Vectors<2>& b) {
+  double sums[2] = {};
+  for (std::size_t i = 0; i < a.size(); ++i)
+    sums[0] += (a[i] - b[i]).squaredNorm(), sums[1] += b[i].squaredNorm();
+  return std::sqrt(sums[0] / sums[1]);
+}
+
+/// Implicit steps beyond the decay of the flux memory lost 2 % of the velocity to the corners.
+TEST(SubSteps, do_not_change_a_steady_flow) {
+  const Vectors<2> fine = cavity(0.01, 20, 4000, ViscousTreatment::explicit_);
+  EXPECT_LT(apart(cavity(0.01, 20, 200, ViscousTreatment::implicit), fine), 1e-5);
+}
+
+/// A fluid at rest has no limit of its own: its first step was one sub-step, with 6 % left after four steps.
+TEST(SubSteps, are_those_of_the_flow_that_starts) {
+  const Vectors<2> fine = cavity(0.001, 3, 800, ViscousTreatment::automatic);
+  EXPECT_LT(apart(cavity(0.001, 3, 4, ViscousTreatment::automatic), fine), 3e-3);
+}
+
 /// Lid-driven cavity, Re = 1000, that chooses its steps itself, first cautiously until the flow has developed
 /// near the lid: largest speed in the cells. The steady flow in them is slower than the lid.
 double speed_in_cavity(double safety_factor, ViscousTreatment viscous,
@@ -174,7 +209,7 @@ TEST(StepLimit, of_a_cavity_keeps_it_steady_and_leaves_less_than_a_third_unused)
   EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::implicit), steady, 0.01 * steady);
   EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::explicit_, ExplicitScheme::runge_kutta), steady,
               0.01 * steady);
-  EXPECT_GT(speed_in_cavity(1.3, ViscousTreatment::explicit_), 1.05);
+  EXPECT_GT(speed_in_cavity(1.3, ViscousTreatment::explicit_), 1.03 * steady);
 }
 
 /// Who is named as the cell that limits the step has the limit of the step, and is where the cells are small.
