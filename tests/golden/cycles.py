@@ -33,7 +33,7 @@ def opening(folder):
     return {name: float(max(values)) for name, values in probes.items() if name.endswith("z [m]")}
 
 
-CASES = {"FSI2": ("turek-hron/fsi2.yaml", 14, cycle), "FSI3": ("turek-hron/case.yaml", 7, cycle), "valve": ("reed-valve/case.yaml", 12e-3, opening)}
+CASES = {"FSI2": ("turek-hron/fsi2.yaml", 14, cycle), "FSI3": ("turek-hron/case.yaml", 10, cycle), "valve": ("reed-valve/case.yaml", 12e-3, opening)}
 
 
 def figures(name, binaries):
