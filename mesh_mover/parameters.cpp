@@ -66,8 +66,8 @@ void declare_method(config::Section& s, Parameters& p) {
           "and rotation. rotations: rotation and displacement of the surface are propagated into the mesh, "
           "tolerates the largest rotations. barrier: least distortion of the cells, which grows without "
           "bound as a cell flattens: cannot fold, costs several linear solves per motion. auto: laplacian, or barrier if the "
-          "prescribed motions would invert a cell or fold it at a corner, or from the first motion of an interface that "
-          "does; laplacian with form: incremental and with periodic patches");
+          "prescribed motions would invert a cell, or from the first motion on that inverts one or folds it at a corner; "
+          "laplacian with form: incremental and with periodic patches");
   s.choice("form", p.form,
            {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
       .doc(

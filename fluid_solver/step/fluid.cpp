@@ -76,20 +76,23 @@ void Fluid<D>::begin_step(double time, double dt) {
   begin_.time = time;
   double rate = 0;
   for (const auto& force : step_.scene().forces) rate = std::max(rate, force->rate(time, dt));
-  const bool starts = accepted_.start == Start::at_rest;
-  sizes_.begin_step(starts ? moved_by_boundaries() : accepted_, time, dt, rate, starts, begin_);
+  const std::optional<State<D>> moved = moved_by_boundaries();
+  sizes_.begin_step(moved ? *moved : accepted_, time, dt, rate, moved.has_value(), begin_);
   statistics_.sub_steps = 0;
 }
 
-/// The fluid at rest as fast as its boundaries at the end of the step, for the size of its sub-steps.
+/// A fluid that no step has moved, as fast as its boundaries at the end of this one, for the size of its sub-steps; nothing
+/// if it is about as fast already.
 template <int D>
-State<D> Fluid<D>::moved_by_boundaries() const {
+std::optional<State<D>> Fluid<D>::moved_by_boundaries() const {
+  if (accepted_.largest_speed > 0) return {};
   State<D> moved = accepted_;
   boundary_.velocity_at(time_ + dt_, moved.placement->boundary_centre, moved.w);
-  double speed = 0;
+  double speed = 0, inside = 0;
   for (const Vec<D>& w : moved.w) speed = std::max(speed, w.norm());
-  speed = parallel::max(mesh_.comm, speed);
-  if (speed > most_speed) return accepted_;  // an input that the step itself refuses
+  for (const Vec<D>& u : moved.u) inside = std::max(inside, u.norm());
+  speed = parallel::max(mesh_.comm, speed), inside = parallel::max(mesh_.comm, inside);
+  if (!(speed > 2 * inside) || speed > most_speed) return {};  // the step itself refuses what is faster
   for (std::size_t f = 0; f < moved.phi.size(); ++f) moved.phi[f] = speed * moved.placement->area[f].norm();
   return moved;
 }

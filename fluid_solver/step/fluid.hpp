@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -128,7 +129,7 @@ class Fluid {
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(const mesh::Geometry& geometry, double time);
   void check_wall_velocity() const;
-  State<D> moved_by_boundaries() const;
+  std::optional<State<D>> moved_by_boundaries() const;
   Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,
                               const SubStep<D>& step) const;
   void start_pressure(const SubStep<D>& step, const Vectors<D>& w);
