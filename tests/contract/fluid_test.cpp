@@ -29,6 +29,15 @@ class Motion final : public MeshMotionSource {
   std::vector<double> none_;
 };
 
+fluid::FluidParameters of_a_box() {
+  fluid::FluidParameters p;
+  p.mesh = "box";
+  p.dimension = 2;
+  p.density = 1;
+  p.viscosity = 0.01;
+  return p;
+}
+
 /// A channel whose lower wall moves, with or without its mesh.
 template <Scheme S, bool Moving>
 struct FluidFactory {
@@ -37,11 +46,7 @@ struct FluidFactory {
   }
   static fluid::FluidParameters parameters() {
     using namespace fluid;
-    FluidParameters p;
-    p.mesh = "box";
-    p.dimension = 2;
-    p.density = 1;
-    p.viscosity = 0.01;
+    FluidParameters p = of_a_box();
     p.pressure_tolerance = 1e-12;
     p.boundaries["xmin"].type = BoundaryType::inlet;
     p.boundaries["xmin"].velocity = {{"1"}, {"0"}};
@@ -107,11 +112,7 @@ struct FluidAlone {
   }
   static std::unique_ptr<Participant> make(MPI_Comm comm) {
     using namespace fluid;
-    FluidParameters p;
-    p.mesh = "box";
-    p.dimension = 2;
-    p.density = 1;
-    p.viscosity = 0.01;
+    FluidParameters p = of_a_box();
     p.viscous = Viscous;
     p.boundaries["xmin"].type = BoundaryType::inlet;
     p.boundaries["xmin"].velocity = {{"1+sin(9*t)"}, {"0"}};
@@ -127,11 +128,7 @@ struct FluidInMotion {
   static RawMesh raw_mesh() { return FluidAlone<fluid::ViscousTreatment::explicit_>::raw_mesh(); }
   static std::unique_ptr<Participant> make(MPI_Comm comm) {
     using namespace fluid;
-    FluidParameters p;
-    p.mesh = "box";
-    p.dimension = 2;
-    p.density = 1;
-    p.viscosity = 0.01;
+    FluidParameters p = of_a_box();
     p.motion.emplace();
     p.motion->angle = {"0.3*sin(t)"};
     p.motion->centre = Vec3(1, 0.5, 0);
@@ -177,11 +174,7 @@ TEST(SemiImplicitFluid, renews_its_prediction_where_friction_would_say_something
 /// The floor of a box without an outlet.
 TEST(ClosedFluid, whose_interface_would_have_to_change_its_volume_is_refused_at_the_start) {
   using namespace fluid;
-  FluidParameters p;
-  p.mesh = "box";
-  p.dimension = 2;
-  p.density = 1;
-  p.viscosity = 0.01;
+  FluidParameters p = of_a_box();
   for (const char* side : {"xmin", "xmax", "ymax"}) p.boundaries[side].type = BoundaryType::no_slip;
   p.boundaries["ymin"].type = BoundaryType::interface;
   const auto begin = [&](Scheme scheme) {
@@ -200,11 +193,7 @@ TEST(ClosedFluid, whose_interface_would_have_to_change_its_volume_is_refused_at_
 /// inlet open.
 TEST(ClosedFluid, that_is_pumped_up_is_refused_with_the_flow) {
   using namespace fluid;
-  FluidParameters p;
-  p.mesh = "box";
-  p.dimension = 2;
-  p.density = 1;
-  p.viscosity = 0.01;
+  FluidParameters p = of_a_box();
   p.boundaries["ymax"].type = p.boundaries["ymin"].type = p.boundaries["xmax"].type = BoundaryType::interface;
   p.boundaries["xmin"].type = BoundaryType::inlet;
   p.boundaries["xmin"].velocity = {{"1"}, {"0"}};

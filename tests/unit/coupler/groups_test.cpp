@@ -168,6 +168,21 @@ TEST(Groups, two_bodies_in_one_fluid_give_the_monolithic_solution_in_order_and_s
     }
 }
 
+/// A run of two halves ends where a whole one does.
+void expect_a_restart_to_continue(const auto& setup) {
+  GroupRun whole, first, second;
+  for (GroupRun* run : {&whole, &first, &second}) setup(*run);
+  whole();
+  first.folder += "-first";
+  first.simulation.end_time = 0.5;
+  first();
+  second.folder += "-second";
+  second.restart = app::find_checkpoint(first.folder / "checkpoints");
+  second();
+  EXPECT_EQ(second.problem, "");
+  EXPECT_EQ(second.position, whole.position);
+}
+
 TEST(Groups, restart_continues_bit_for_bit_with_the_accelerators_history) {
   for (const Order order : {Order::serial, Order::parallel}) {
     const auto setup = [&](GroupRun& run) {
@@ -175,17 +190,7 @@ TEST(Groups, restart_continues_bit_for_bit_with_the_accelerators_history) {
       run.coupling.acceleration.type = AccelerationParameters::Type::iqn_ils;
       run.coupling.convergence.relative = 1e-8;
     };
-    GroupRun whole, first, second;
-    for (GroupRun* run : {&whole, &first, &second}) setup(*run);
-    whole();
-    first.folder += "-first";
-    first.simulation.end_time = 0.5;
-    first();
-    second.folder += "-second";
-    second.restart = app::find_checkpoint(first.folder / "checkpoints");
-    second();
-    EXPECT_EQ(second.problem, "");
-    EXPECT_EQ(second.position, whole.position);
+    expect_a_restart_to_continue(setup);
   }
 }
 
@@ -223,16 +228,7 @@ TEST(SubSteps, a_restart_between_coupling_steps_is_bit_for_bit) {
     run.added_mass = 1;
     run.coupling.sub_steps = {{"fluid", 3.}, {"left", 2.}};
   };
-  GroupRun whole, first, second;
-  for (GroupRun* run : {&whole, &first, &second}) setup(*run);
-  whole();
-  first.folder += "-first";
-  first.simulation.end_time = 0.5;
-  first();
-  second.folder += "-second";
-  second.restart = app::find_checkpoint(first.folder / "checkpoints");
-  second();
-  EXPECT_EQ(second.position, whole.position);
+  expect_a_restart_to_continue(setup);
 }
 
 // Set-up of a large interface is linear in its size. Times are recorded, not judged.

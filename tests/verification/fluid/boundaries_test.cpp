@@ -398,11 +398,8 @@ BoundaryParameters sliding(double slip_length) {
 
 FluidParameters channel_between(const BoundaryParameters& floor, const BoundaryParameters& ceiling,
                                 ViscousTreatment viscous) {
-  FluidParameters p;
-  p.density = 1.3;
-  p.viscosity = 0.5;
+  FluidParameters p = fluid_of(1.3, 0.5, 1e-12);
   p.viscous = viscous;
-  p.pressure_tolerance = 1e-12;
   p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::periodic);
   p.boundaries["ymin"] = floor;
   p.boundaries["ymax"] = ceiling;

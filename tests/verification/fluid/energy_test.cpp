@@ -12,11 +12,8 @@ constexpr double pi = std::numbers::pi;
 
 template <int D>
 FluidParameters periodic_box(RawMesh& raw, double viscosity) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = viscosity;
+  FluidParameters p = fluid_of(1, viscosity, 1e-12);
   p.viscous = ViscousTreatment::explicit_;
-  p.pressure_tolerance = 1e-12;
   p.time_step = 1;
   all_sides(p, D, boundary(BoundaryType::periodic));
   raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
@@ -70,9 +67,7 @@ TEST(Convection, does_no_work_on_perturbed_mixed_cells) { check_convection<3>(Bo
 TEST(Diffusion, is_symmetric_and_negative_definite) {
   RawMesh raw = make_box(BoxCells::mixed, {4, 4, 3}, Vec3::Zero(), Vec3::Ones());
   perturb_interior(raw, 0.15, 3);
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 1;
+  FluidParameters p = fluid_of(1, 1);
   all_sides(p, 3, boundary(BoundaryType::no_slip));
   FluidCase<3> c(MPI_COMM_SELF, raw, p);
   std::mt19937 random(5);

@@ -8,9 +8,7 @@ using namespace mesh;
 constexpr double rho = 1.7;
 
 FluidParameters water(int dim, const BoundaryParameters& sides) {
-  FluidParameters p;
-  p.density = rho;
-  p.viscosity = 0.01;
+  FluidParameters p = fluid_of(rho, 0.01);
   p.viscous = ViscousTreatment::explicit_;
   all_sides(p, dim, sides);
   return p;

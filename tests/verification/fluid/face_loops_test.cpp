@@ -27,9 +27,7 @@ struct LinearFlow {
     return raw;
   }
   static FluidParameters walls() {
-    FluidParameters p;
-    p.density = 1.3;
-    p.viscosity = 0.4;
+    FluidParameters p = fluid_of(1.3, 0.4);
     all_sides(p, D, boundary(BoundaryType::moving_wall, std::vector<std::string>(D, "0")));
     return p;
   }

@@ -21,7 +21,8 @@ inline BoundaryParameters boundary(BoundaryType type, std::vector<std::string> v
 }
 
 /// With the mesh's name as a participant in 2-D.
-inline FluidParameters fluid_of(double density, double viscosity, double pressure_tolerance,
+inline FluidParameters fluid_of(double density, double viscosity,
+                                double pressure_tolerance = FluidParameters{}.pressure_tolerance,
                                 const char* mesh = nullptr) {
   FluidParameters p;
   if (mesh) p.mesh = mesh, p.dimension = 2;

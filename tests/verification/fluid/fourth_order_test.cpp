@@ -12,11 +12,8 @@ constexpr double pi = std::numbers::pi;
 
 template <int D>
 FluidParameters periodic(RawMesh& raw, double viscosity, FaceValues order) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = viscosity;
+  FluidParameters p = fluid_of(1, viscosity, 1e-9);
   p.viscous = ViscousTreatment::explicit_;
-  p.pressure_tolerance = 1e-9;
   p.time_step = 1;
   p.face_values = order;
   all_sides(p, D, boundary(BoundaryType::periodic));
@@ -197,13 +194,10 @@ TEST(FourthOrder, friction_is_symmetric_and_takes_energy_on_stretched_cells) {
 
 /// A box between walls, finer towards them, with a lid.
 std::unique_ptr<FluidParticipant<2>> cavity(FaceValues order, MPI_Comm comm = MPI_COMM_WORLD) {
-  FluidParameters p;
+  FluidParameters p = fluid_of(1, 0.01, 1e-10);
   p.mesh = "box";
   p.dimension = 2;
-  p.density = 1;
-  p.viscosity = 0.01;
   p.viscous = ViscousTreatment::explicit_;
-  p.pressure_tolerance = 1e-10;
   p.face_values = order;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
@@ -240,11 +234,8 @@ TEST(FourthOrder, uniform_flow_through_skewed_and_structured_parts_is_exact) {
   for (Vec3& x : raw.points)  // the right half is askew
     if (x.x() > 1.6 && x.x() < 2.9 && x.y() > 0.1 && x.y() < 1.9)
       x.y() += 0.05 * std::sin(3 * x.x() + 5 * x.y());
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.01;
+  FluidParameters p = fluid_of(1, 0.01, 1e-12);
   p.viscous = ViscousTreatment::explicit_;
-  p.pressure_tolerance = 1e-12;
   p.face_values = FaceValues::fourth_order;
   p.initial_velocity = {{"1"}, {"0"}};
   all_sides(p, 2, boundary(BoundaryType::slip));

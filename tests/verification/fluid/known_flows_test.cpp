@@ -22,11 +22,8 @@ struct Variant {
 };
 
 FluidParameters parameters(const Variant& variant, double rtol) {
-  FluidParameters p;
-  p.density = 2;
-  p.viscosity = nu * p.density;
+  FluidParameters p = fluid_of(2, 2 * nu, rtol);
   p.viscous = variant.viscous;
-  p.pressure_tolerance = rtol;
   p.initial_velocity = {{"sin(x)*cos(y)"}, {"-cos(x)*sin(y)"}};
   p.initial_pressure = config::ExpressionText{"0.5*(cos(2*x)+cos(2*y))"};
   all_sides(p, 2, boundary(BoundaryType::slip));

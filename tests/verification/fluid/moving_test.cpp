@@ -15,11 +15,8 @@ Vec3 swing(const Vec3& x, GlobalIndex, double t) {
 }
 
 double shear_error(int n, ViscousTreatment viscous) {
-  FluidParameters p;
-  p.density = 1.3;
-  p.viscosity = 0.02;
+  FluidParameters p = fluid_of(1.3, 0.02, 1e-10);
   p.viscous = viscous;
-  p.pressure_tolerance = 1e-10;
   p.initial_velocity = {{"2*y-1"}, {"0"}};
   all_sides(p, 2, boundary(BoundaryType::moving_wall, {"2*y-1", "0"}));
   FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones()), p,
@@ -264,12 +261,9 @@ struct Outcome {
   double alternating = 0, taken = 0;
 };
 Outcome cavity(double dt) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 1e-3;
+  FluidParameters p = fluid_of(1, 1e-3, 1e-8);
   p.viscous = ViscousTreatment::explicit_;
   p.time_step = dt;
-  p.pressure_tolerance = 1e-8;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
   FluidCase<2> c(MPI_COMM_SELF,

@@ -54,11 +54,8 @@ struct BetweenCircles {
   double inner, outer, pressure;  ///< errors; relative for the torques
 };
 BetweenCircles between_circles(int n) {
-  FluidParameters p;
+  FluidParameters p = fluid_of(1, mu, 1e-8);
   p.mesh = "ring";
-  p.density = 1;
-  p.viscosity = mu;
-  p.pressure_tolerance = 1e-8;
   p.viscous = ViscousTreatment::implicit;
   set_frame(p, "1");
   p.initial_velocity = {{"-y*(-4/3+4/3/(x*x+y*y))"}, {"x*(-4/3+4/3/(x*x+y*y))"}};

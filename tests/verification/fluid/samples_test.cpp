@@ -144,9 +144,7 @@ TEST(RotatingInlet, has_an_axis_of_any_length) {
 /// What passes a wall that turns about the middle of a box is round-off on faces whose normals are no axes: it was
 /// refused as a closed fluid that is let in more than out.
 TEST(RotatingInlet, walls_of_a_closed_ring_may_turn) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.1;
+  FluidParameters p = fluid_of(1, 0.1);
   RawMesh raw = make_box(BoxCells::quadrilaterals, {6, 24, 1}, Vec3::Zero(), Vec3(1, 1, 1));
   for (Vec3& x : raw.points) {
     const double r = 1 + x[0], a = 0.7 + x[1];

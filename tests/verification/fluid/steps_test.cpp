@@ -38,12 +38,9 @@ std::vector<double> fingerprint(FluidCase<2>& c) {
 /// Shear layers that decay, in steps of 2 h and h by turns: with the weights of constant steps AB2 is of
 /// first order.
 TEST(VariableSteps, keep_second_order_where_every_step_has_another_size) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.05;
+  FluidParameters p = fluid_of(1, 0.05, 1e-12);
   p.viscous = ViscousTreatment::explicit_;
   p.time_step = 1;
-  p.pressure_tolerance = 1e-12;
   all_sides(p, 2, boundary(BoundaryType::slip));
   p.initial_velocity = {{"cos(pi*y)"}, {"0"}};
   p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::periodic);
@@ -162,12 +159,9 @@ TEST(AddedMass, impulse_does_not_depend_on_the_number_of_sub_steps) {
   // A closed box that is set in motion within one step: the force is the mass of the fluid times the change
   // of velocity.
   for (const double own_step : {1.0, 0.3, 0.07}) {
-    FluidParameters p;
-    p.density = 2;
-    p.viscosity = 0;
+    FluidParameters p = fluid_of(2, 0, 1e-12);
     p.viscous = ViscousTreatment::explicit_;
     p.time_step = own_step;
-    p.pressure_tolerance = 1e-12;
     all_sides(p, 2, boundary(BoundaryType::interface));
     FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3::Zero(), Vec3::Ones()),
                    p,
@@ -292,11 +286,8 @@ TEST(ImplicitConvection, goes_on_from_a_checkpoint_bit_for_bit_and_alike_on_any_
 TEST(ImpulsiveStart, loads_the_first_step_with_the_impulse_of_the_fluid_set_in_motion) {
   // A plug of fluid, 2 m long, set in motion by an inlet that is switched on at t = 0; the floor feels its
   // pressure.
-  FluidParameters p;
-  p.density = 3;
-  p.viscosity = 0;
+  FluidParameters p = fluid_of(3, 0, 1e-12);
   p.viscous = ViscousTreatment::explicit_;
-  p.pressure_tolerance = 1e-12;
   p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.5", "0"});
   p.boundaries["xmax"] = boundary(BoundaryType::outlet);
   p.boundaries["ymin"] = boundary(BoundaryType::interface);

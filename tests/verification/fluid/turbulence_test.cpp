@@ -41,9 +41,7 @@ TEST(Wale, goes_to_walls_as_the_third_power_of_the_distance) {
   const int n = 40;
   RawMesh raw = make_box(BoxCells::hexahedra, {12, n, 12}, Vec3::Zero(), Vec3(1, 1, 1));
   for (Vec3& x : raw.points) x.y() = 0.1 * x.y();
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 1e-3;
+  FluidParameters p = fluid_of(1, 1e-3);
   all_sides(p, 3, boundary(BoundaryType::no_slip));
   const auto field = [](const Vec3& x) {
     const double a = 6 * x.x(), b = 5 * x.z(), y = x.y();
@@ -81,9 +79,7 @@ TEST(Wale, goes_to_walls_as_the_third_power_of_the_distance) {
 
 /// A linear shear between walls that carry it stays as it is with WALE, to round-off.
 TEST(Wale, leaves_a_couette_flow_alone) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 1e-3;
+  FluidParameters p = fluid_of(1, 1e-3);
   p.turbulence = wale;
   p.initial_velocity = {{"3*y"}, {"0"}, {"0"}};
   p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"3*y", "0", "0"});
@@ -234,9 +230,7 @@ TEST(Statistics, are_no_numbers_before_they_begin) {
 }
 
 TEST(Statistics, are_those_of_a_known_oscillation) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.01;
+  FluidParameters p = fluid_of(1, 0.01);
   RunningStatistics<2> statistics(1, 0);
   State<2> s;
   const int n = 4000;

@@ -52,12 +52,9 @@ TEST(TurningWalls, a_wall_that_stretches_feels_the_normal_slope_beside_the_flux)
 }
 
 FluidParameters turning(int dim) {
-  FluidParameters p;
+  FluidParameters p = fluid_of(1, mu, 1e-12);
   p.mesh = "box";
   p.dimension = dim;
-  p.density = 1;
-  p.viscosity = mu;
-  p.pressure_tolerance = 1e-12;
   p.initial_velocity = {{"-0.5*y"}, {"0.5*x"}};
   if (dim == 3) p.initial_velocity.push_back({"0"});
   return p;
@@ -144,11 +141,8 @@ TEST(TurningWalls, go_on_from_a_checkpoint_bit_for_bit) {
 /// Steady flow between circles of which the inner turns with omega = 1: torque 4 pi mu omega / (1/R1^2 - 1/R2^2),
 /// on both walls the same (Couette 1890); du/dr alone gives 2 mu omega A = 0.6283 less on the inner one.
 std::array<double, 2> torques(int n) {
-  FluidParameters p;
+  FluidParameters p = fluid_of(1, mu, 1e-8);
   p.mesh = "ring";
-  p.density = 1;
-  p.viscosity = mu;
-  p.pressure_tolerance = 1e-8;
   p.viscous = ViscousTreatment::implicit;
   p.initial_velocity = {{"-y*(-1/3+4/3/(x*x+y*y))"}, {"x*(-1/3+4/3/(x*x+y*y))"}};
   p.boundaries["inner"] = boundary(BoundaryType::moving_wall);

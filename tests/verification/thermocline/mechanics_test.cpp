@@ -104,14 +104,22 @@ TEST(Filler, solar_one_at_3_4_m_has_active_54_and_thermal_124_megapascal) {
   EXPECT_EQ(mechanics.contact()[i], Contact::rigid);
 }
 
-TEST(Filler, heating_releases_what_cooling_built_up) {
+struct TenMeters {
+  Rings rings;
+  Steel steel;
+  Filler filler;
+  InnerPressure p;
+};
+TenMeters ten_meters(double height_above_bed) {
   const BedGrid bed({{10, 0.22, 0.005}}, 10);
   ShellParameters shell;
   shell.plates = {{10, 0.02}};
-  const Rings rings(shell, bed, 18, 0);
-  const Steel steel = steel_a537();
-  const Filler filler;
-  const InnerPressure p = inner_pressure(rings, bed, caloria_ht43(), filler, 0);
+  const Rings rings(shell, bed, 18, height_above_bed);
+  return {rings, steel_a537(), {}, inner_pressure(rings, bed, caloria_ht43(), Filler{}, 0)};
+}
+
+TEST(Filler, heating_releases_what_cooling_built_up) {
+  const auto [rings, steel, filler, p] = ten_meters(0);
   const std::vector<double> cold(10, 480), hot(10, 570), warm(10, 530);
   FillerMechanics m(rings, steel, filler, p, cold, cold);
   m.update(hot, hot);
@@ -127,13 +135,7 @@ TEST(Filler, heating_releases_what_cooling_built_up) {
 }
 
 TEST(Filler, passive_yielding_lowers_the_stress_of_the_next_cycle_to_the_active_one_earlier) {
-  const BedGrid bed({{10, 0.22, 0.005}}, 10);
-  ShellParameters shell;
-  shell.plates = {{10, 0.02}};
-  const Rings rings(shell, bed, 18, 0);
-  const Steel steel = steel_a537();
-  const Filler filler;
-  const InnerPressure p = inner_pressure(rings, bed, caloria_ht43(), filler, 0);
+  const auto [rings, steel, filler, p] = ten_meters(0);
   const std::vector<double> cold(10, 400), hot(10, 600);
   FillerMechanics m(rings, steel, filler, p, cold, cold);
   m.update(hot, hot);
@@ -146,13 +148,7 @@ TEST(Filler, passive_yielding_lowers_the_stress_of_the_next_cycle_to_the_active_
 }
 
 TEST(Filler, its_state_is_taken_back_bit_for_bit) {
-  const BedGrid bed({{10, 0.22, 0.005}}, 10);
-  ShellParameters shell;
-  shell.plates = {{10, 0.02}};
-  const Rings rings(shell, bed, 18, 1);
-  const Steel steel = steel_a537();
-  const Filler filler;
-  const InnerPressure p = inner_pressure(rings, bed, caloria_ht43(), filler, 0);
+  const auto [rings, steel, filler, p] = ten_meters(1);
   std::vector<double> t(rings.size(), 480);
   FillerMechanics a(rings, steel, filler, p, t, t), b = a;
   t.assign(rings.size(), 570);
