@@ -222,6 +222,8 @@ class PressureProjection {
   /// Computes p and p_b for given velocities w at t^{n+1} from predicted fluxes, without and then with
   /// -(dt/rho) grad p~ . k. `answer`: see PressureEquation::solve(). Collective.
   void project(const State<D>& from, const Vectors<D>& w, const std::vector<double>& phi, double answer);
+  /// Adds Projected::rotational to a level, for the next predictor. Collective.
+  void add_rotational(PressureLevel<D>& level) const;
 
   /// Sets up the matrix for a state that no step computed. Collective.
   void start(const Placement<D>& at);
@@ -258,6 +260,8 @@ class PressureProjection {
                        std::vector<double>& flux) const;
   Vectors<D> transposed_mean(const Placement<D>& at, const std::vector<double>& value) const;
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
+  void set_rotational();
+  void set_distances();
   void set_boundary_pressure(const State<D>& from);
   void set_gradient(const Placement<D>& at, PressureLevel<D>& level, const FluxCorrection* correction) const;
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
@@ -279,6 +283,8 @@ class PressureProjection {
   double degrees_ = 0;         // largest angle between a face normal and the line of its cells
   Vectors<D> gradient_start_;  // of p, for the first pass
   Vectors<D> gradient_before_;
+  bool knows_distances_ = false;
+  std::vector<double> to_opening_;  // squared distance to the nearest opening, per local cell [m^2]
   std::unique_ptr<linalg::Accelerator> accelerator_;
 };
 

@@ -179,6 +179,7 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, c
     mesh_.cells.update_ghosts(flat<D>(out_.gradient), D);
     if (stands && pass >= oblique_passes) break;
   }
+  set_rotational();
 }
 
 /// Gradient for the next pass, by Anderson acceleration. A mode of a few cells that decreases by 0.97 per

@@ -318,6 +318,8 @@ struct Projected {
   Vectors<D> w;  ///< given velocities at t^{n+1}, including responses of walls and openings [m/s]
   /// Gradient of p in the non-orthogonal part, per local cell [Pa/m]; empty on orthogonal meshes.
   Vectors<D> gradient;
+  /// Pressure per local cell that the friction of the projection adds [Pa], see PressureProjection; empty if there is none.
+  std::vector<double> rotational;
 };
 
 /// Writes a complete state, including history, bit for bit. Collective.

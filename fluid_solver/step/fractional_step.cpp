@@ -34,6 +34,7 @@ void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<
       flux -= prediction.weight * scene.fluid.mu * to.conductance[f] * (c + 3 * c.dot(n) * n);
     }
     double p = projected.boundary[b];
+    if (!projected.rotational.empty()) p += projected.rotational[scene.mesh.owner[f]];
     if (potential) p += scene.fluid.rho * potential(to.boundary_centre[b]);
     const Vec<D> normal = flux.dot(n) * n;
     pressure[b] = 0.5 * p * (from.placement->area[f] + to.area[f]) + normal;
@@ -278,6 +279,11 @@ void FractionalStep<D>::commit(State<D>& s) {
   s.w = projected_.w;
   scene_.boundary.close(mesh_, *step_.to, s.u, s.w, s.u_boundary);
   flux_.remember(s);
+  if (!projected_.rotational.empty()) {
+    auto whole = std::make_shared<PressureLevel<D>>(*s.pressure[0]);
+    projection_.add_rotational(*whole);
+    s.pressure[0] = std::move(whole);
+  }
   s.rates_old.rate.swap(prediction_.rates.rate);
   s.rates_old.viscous.swap(prediction_.rates.viscous);
   s.shear_old.swap(prediction_.shear);

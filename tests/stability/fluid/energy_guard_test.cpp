@@ -8,9 +8,7 @@ using testing::HasSubstr;
 
 /// Shear layers in a box of 1 m whose explicit viscous term is stable up to about 0.01 s.
 FluidParameters layers() {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.01;
+  FluidParameters p = fluid_of(1, 0.01);
   p.viscous = ViscousTreatment::explicit_;
   p.initial_velocity = {{"sin(6*y)"}, {"0.01*sin(9*x)"}};
   all_sides(p, 2, boundary(BoundaryType::slip));
@@ -49,9 +47,7 @@ TEST(EnergyGuard, the_same_flow_within_the_limit_goes_through) {
 
 // Friction with four neighbours is 4 nu / h^2; with three and a wall at half the distance 5 nu / h^2, or 3 nu / h^2 without friction.
 TEST(EnergyGuard, the_step_that_it_names_counts_the_friction_at_walls) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.01;
+  FluidParameters p = fluid_of(1, 0.01);
   p.viscous = ViscousTreatment::explicit_;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::slip);
@@ -77,9 +73,7 @@ TEST(EnergyGuard, the_step_that_it_names_counts_the_friction_at_walls) {
 
 /// What is said by a channel of 8 x 8 cells that is fed so.
 std::string said(const std::string& inflow, double first_step) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.01;
+  FluidParameters p = fluid_of(1, 0.01);
   all_sides(p, 2, boundary(BoundaryType::slip));
   p.boundaries["xmin"] = boundary(BoundaryType::inlet, {inflow, "0"});
   p.boundaries["xmax"] = boundary(BoundaryType::outlet);
@@ -108,9 +102,7 @@ TEST(EnergyGuard, too_many_sub_steps_are_named_by_cause_cell_and_place) {
 /// in, is its kinetic energy; also where it leaves with a given velocity and not at a given pressure.
 TEST(EnergyGuard, the_work_on_a_fluid_that_is_pushed_through_is_its_kinetic_energy) {
   for (const bool given : {false, true}) {
-    FluidParameters p;
-    p.density = 1.3;
-    p.viscosity = 1e-3;
+    FluidParameters p = fluid_of(1.3, 1e-3);
     all_sides(p, 2, boundary(BoundaryType::slip));
     p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"2*t", "0"});
     p.boundaries["xmax"] =
@@ -161,9 +153,7 @@ double excess(const FluidParameters& p, double end, int steps, PointMotion motio
 
 TEST_P(Driven, stays_below_a_third_of_what_is_called_a_blow_up) {
   for (const double viscosity : {1e-3, 0.1, 10.0}) {
-    FluidParameters p;
-    p.density = 1.3;
-    p.viscosity = viscosity;
+    FluidParameters p = fluid_of(1.3, viscosity);
     p.viscous = GetParam();
     all_sides(p, 2, boundary(BoundaryType::no_slip));
     FluidParameters lid = p, duct = p, pushed = p, force = p;

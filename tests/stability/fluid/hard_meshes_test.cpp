@@ -19,11 +19,8 @@ const char* const reasons[] = {"non-orthogonal correction of the viscous term",
 /// Channel flow u = 4 y (1 - y) through a box [0, 2] x [0, 1] (x [0, 0.5]) whose points were moved by `map`.
 template <int D>
 Outcome channel_on(RawMesh raw, ViscousTreatment viscous) {
-  FluidParameters p;
-  p.density = 1.3;
-  p.viscosity = 0.05;
+  FluidParameters p = fluid_of(1.3, 0.05, 1e-6);
   p.viscous = viscous;
-  p.pressure_tolerance = 1e-6;
   std::vector<std::string> profile{"4*y*(1-y)", "0"};
   if (D == 3) {
     profile.push_back("0");
@@ -107,9 +104,7 @@ TEST_P(HardMeshes, cells_a_hundred_thousand_times_longer_than_thick) {
 /// Largest kinetic energy over that of the exact solution.
 double energy_over_exact(double degrees, double nu, int n, ViscousTreatment viscous) {
   using std::numbers::pi;
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = nu;
+  FluidParameters p = fluid_of(1, nu);
   p.viscous = viscous;
   p.initial_velocity = {{"sin(x)*cos(y)"}, {"-cos(x)*sin(y)"}};
   p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::slip);

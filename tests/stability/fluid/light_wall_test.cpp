@@ -40,12 +40,9 @@ class LightWall {
     return mesh::make_box(mesh::BoxCells::quadrilaterals, {32, 24, 1}, Vec3::Zero(), Vec3(1, 0.75, 1));
   }
   static FluidParameters parameters(double viscosity) {
-    FluidParameters p;
-    p.density = 1;
-    p.viscosity = viscosity;
+    FluidParameters p = fluid_of(1, viscosity, 1e-12);
     p.viscous = ViscousTreatment::implicit;
     p.time_step = dt;
-    p.pressure_tolerance = 1e-12;
     p.boundaries["ymin"] = boundary(BoundaryType::interface);
     p.boundaries["ymax"] = boundary(BoundaryType::outlet);
     p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::slip);

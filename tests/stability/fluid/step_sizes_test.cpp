@@ -29,11 +29,8 @@ class DistortedCells : public ::testing::TestWithParam<std::tuple<BoxCells, doub
 TEST_P(DistortedCells, keep_the_channel_flow_near_its_profile) {
   const auto [cells, amount, viscous] = GetParam();
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
-  FluidParameters p;
-  p.density = 1.3;
-  p.viscosity = 0.05;
+  FluidParameters p = fluid_of(1.3, 0.05, 1e-7);
   p.viscous = viscous;
-  p.pressure_tolerance = 1e-7;
   const std::vector<std::string> profile{"4*y*(1-y)", "0", "0"};
   p.boundaries["zmin"] = p.boundaries["zmax"] = boundary(BoundaryType::slip);
   p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::no_slip);
@@ -89,9 +86,7 @@ double growth_of_noise(double share_of_limit, ExplicitScheme scheme = ExplicitSc
   RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 24, 1}, Vec3::Zero(), Vec3::Ones());
   raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
   const double noise = 1e-3;
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.1;
+  FluidParameters p = fluid_of(1, 0.1);
   p.viscous = ViscousTreatment::explicit_;
   p.scheme = scheme;
   p.time_step = 1;  // the steps below are shorter: they are not cut
@@ -123,9 +118,7 @@ TEST(StepLimit, of_eddy_viscosity_is_that_of_a_more_viscous_fluid) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3::Zero(), Vec3::Ones());
   perturb_interior(raw, 0.2, 3);
   raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 0.1;
+  FluidParameters p = fluid_of(1, 0.1);
   p.viscous = ViscousTreatment::explicit_;
   p.initial_velocity = {{"2"}, {"1"}};
   all_sides(p, 2, boundary(BoundaryType::periodic));
@@ -145,11 +138,8 @@ TEST(StepLimit, of_eddy_viscosity_is_that_of_a_more_viscous_fluid) {
 /// Velocities in a cavity of size 1 with a lid of speed 1 and cells that shrink toward the walls, after `steps` steps to `time`.
 Vectors<2> cavity(double nu, double time, int steps, ViscousTreatment viscous,
                   std::vector<config::ExpressionText> initial = {}) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = nu;
+  FluidParameters p = fluid_of(1, nu, 1e-8);
   p.viscous = viscous;
-  p.pressure_tolerance = 1e-8;
   p.initial_velocity = std::move(initial);
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
@@ -173,6 +163,13 @@ TEST(SubSteps, do_not_change_a_steady_flow) {
   EXPECT_LT(apart(cavity(0.01, 20, 200, ViscousTreatment::implicit), fine), 1e-5);
 }
 
+/// Without the friction of the projection, long steps were 1e-3 from the steady flow after 100 of them.
+TEST(SubSteps, of_much_friction_settle) {
+  EXPECT_LT(
+      apart(cavity(1, 10, 100, ViscousTreatment::implicit), cavity(1, 100, 1000, ViscousTreatment::implicit)),
+      1e-5);
+}
+
 /// A fluid at rest has no limit of its own: its first step was one sub-step, with 6 % left after four steps.
 TEST(SubSteps, are_those_of_the_flow_that_starts) {
   const Vectors<2> fine = cavity(0.001, 3, 800, ViscousTreatment::automatic);
@@ -184,13 +181,10 @@ TEST(SubSteps, are_those_of_the_flow_that_starts) {
 /// near the lid: largest speed in the cells. The steady flow in them is slower than the lid.
 double speed_in_cavity(double safety_factor, ViscousTreatment viscous,
                        ExplicitScheme scheme = ExplicitScheme::adams_bashforth) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 1e-3;
+  FluidParameters p = fluid_of(1, 1e-3, 1e-5);
   p.viscous = viscous;
   p.scheme = scheme;
   p.safety_factor = safety_factor;
-  p.pressure_tolerance = 1e-5;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
   FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {40, 40, 1}, Vec3::Zero(), Vec3::Ones()),
@@ -220,9 +214,7 @@ TEST(StepLimit, the_cell_that_limits_the_step_is_named_with_its_place_and_the_re
   RawMesh raw = make_box(BoxCells::quadrilaterals, {20, 4, 1}, Vec3::Zero(), Vec3(1, 1, 1));
   for (Vec3& x : raw.points) x.x() = std::pow(x.x(), 2);  // small cells at x = 0
   for (const bool viscous : {false, true}) {
-    FluidParameters p;
-    p.density = 1;
-    p.viscosity = viscous ? 1 : 1e-6;
+    FluidParameters p = fluid_of(1, viscous ? 1 : 1e-6);
     p.viscous = ViscousTreatment::explicit_;
     p.initial_velocity = {{"1"}, {"0"}};
     p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"1", "0"});

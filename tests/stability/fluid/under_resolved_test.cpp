@@ -7,9 +7,7 @@ namespace couplet::fluid::test::under_resolved_test {
 
 /// An eighth of the vortices of a box of 2 pi: its walls are planes of symmetry. Speed and length 1, one turnover in 1 s.
 FluidParameters vortices(double reynolds) {
-  FluidParameters p;
-  p.density = 1;
-  p.viscosity = 1 / reynolds;
+  FluidParameters p = fluid_of(1, 1 / reynolds);
   p.initial_velocity = {{"sin(x)*cos(y)*cos(z)"}, {"-cos(x)*sin(y)*cos(z)"}, {"0"}};
   all_sides(p, 3, boundary(BoundaryType::slip));
   return p;

@@ -38,7 +38,7 @@ check("viscous power of the order of the wall's", energy["viscous power"] < 1.5 
 code, text, coefficients, energy = run("participants.fluid.time-step=10 ms")
 check("the neighbour, whose step is given, fails with --strict", code != 0, code)
 check("and says why", "the limit of an implicit viscous term in cell" in text and "remove 'time-step'" in text)
-check("and is wrong by far", energy["viscous power"] > 2 * power, f"{energy['viscous power']:.3g} and {power:.3g} W")
+check("and the flow diverges", "The flow diverges" in text)
 # Sound at the start; the limit falls with the square of the cells' size as the walls draw together.
 shrinking = [f"participants.fluid.{key}" for key in (
     'motion={displacement: ["-0.55*x*sin(pi*t/4)^2", "-0.55*y*sin(pi*t/4)^2"]}', "boundaries.inner={type: body}",
