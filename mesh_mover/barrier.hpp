@@ -32,9 +32,8 @@ struct Simplices {
   Index size() const { return static_cast<Index>(weight.size()); }
 };
 
-/// `volumes`: V per local cell. Throws SolveFailure for a flat or inverted reference simplex. Collective.
-Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
-                         std::span<const double> volumes);
+/// Throws SolveFailure for a flat or inverted reference simplex. Collective.
+Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening);
 
 /// Symmetric Dirichlet energy [smith2015] of a simplex with the deformation gradient F and stretches s_i,
 ///   W = |F|^2 + |F^-1|^2 - 2 D = sum_i (s_i^2 + s_i^-2 - 2).

@@ -45,13 +45,11 @@ linalg::LinearOptions options_of(const mesh::Mesh& mesh, const linalg::LinearOpt
 /// allow. Once the boundary has arrived, the energy decreases monotonically.
 class BarrierMotion final : public MotionMethod {
  public:
-  /// `volumes`: V per local cell; empty for those of the mesh. Throws Error if no patch holds the mesh.
-  BarrierMotion(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
-                std::span<const double> volumes)
+  /// Throws Error if no patch holds the mesh.
+  BarrierMotion(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters)
       : mesh_(mesh),
         dim_(mesh.dim),
-        simplices_(make_simplices(mesh, geometry, parameters.stiffening,
-                                  volumes.empty() ? std::span(geometry.volume) : volumes)),
+        simplices_(make_simplices(mesh, geometry, parameters.stiffening)),
         held_(find_held_points(mesh, geometry, parameters)),
         system_(mesh, geometry, simplices_, held_),
         displacement_(std::size_t(mesh.points.n_local()) * mesh.dim, 0.0) {
@@ -200,8 +198,8 @@ class BarrierMotion final : public MotionMethod {
 }  // namespace
 
 std::unique_ptr<MotionMethod> make_barrier(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                                           const Parameters& parameters, std::span<const double> volumes) {
-  return std::make_unique<BarrierMotion>(mesh, geometry, parameters, volumes);
+                                           const Parameters& parameters) {
+  return std::make_unique<BarrierMotion>(mesh, geometry, parameters);
 }
 
 }  // namespace couplet::mesh_mover

@@ -167,11 +167,10 @@ double step_here(const SimplexEdges<D>& edges, std::span<const double> u, std::s
 
 }  // namespace
 
-Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening,
-                         std::span<const double> volumes) {
+Simplices make_simplices(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening) {
   Simplices s;
   s.dim = mesh.dim;
-  const std::vector<double> stiffness = stiffness_of(mesh, volumes, stiffening);
+  const std::vector<double> stiffness = stiffness_of(mesh, geometry, stiffening);
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
     mesh.dim == 2 ? append<2>(mesh, geometry, c, stiffness[c], s)
                   : append<3>(mesh, geometry, c, stiffness[c], s);

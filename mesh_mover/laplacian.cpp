@@ -35,8 +35,7 @@ struct Laplacian::Equation {
   std::vector<double> diagonal;
 };
 
-Laplacian::Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
-                     std::span<const double> volumes)
+Laplacian::Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters)
     : mesh_(mesh),
       geometry_(geometry),
       dim_(mesh.dim),
@@ -45,7 +44,7 @@ Laplacian::Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, con
       cell_displacement_(std::size_t(mesh.cells.n_local()) * mesh.dim, 0.0) {
   set_kinds(parameters);
   set_weights();
-  set_coefficients(stiffness_of(mesh, volumes.empty() ? geometry.volume : volumes, parameters.stiffening));
+  set_coefficients(stiffness_of(mesh, geometry, parameters.stiffening));
 
   for (int c = 0; c < dim_; ++c) {
     for (int same = 0; same < c && !equation_[c]; ++same) {
@@ -162,7 +161,8 @@ void Laplacian::set_weights() {
     for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i) weight_[i] /= totals[v];
 }
 
-std::vector<double> stiffness_of(const mesh::Mesh& mesh, std::span<const double> volumes, double stiffening) {
+std::vector<double> stiffness_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening) {
+  const std::vector<double>& volumes = geometry.volume;
   double volume = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += volumes[c];
   const double mean = parallel::sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
@@ -181,7 +181,7 @@ void Laplacian::set_coefficients(const std::vector<double>& stiffness) {
     const Vec3 to = interior ? Vec3(g.cell_centre[mesh_.neighbour[f]] + mesh_.shift(f)) : g.face_centre[f];
     const Vec3 d = to - g.cell_centre[p];
     const double e = interior ? (stiffness[p] + stiffness[mesh_.neighbour[f]]) / 2 : stiffness[p];
-    // A moved mesh (incremental form) may have inclined faces: avoids negative coefficients.
+    // Inclined faces: avoids negative coefficients.
     const double area = g.face_area[f].norm();
     coefficient_[f] = e * area * area / std::max(g.face_area[f].dot(d), least_cosine * area * d.norm());
   }

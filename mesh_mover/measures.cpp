@@ -47,10 +47,7 @@ void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
 
 CellMeasures::CellMeasures(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
                            const Parameters& parameters)
-    : mesh_(mesh),
-      geometry_(geometry),
-      smallest_volume_ratio_(parameters.smallest_volume_ratio),
-      limits_(parameters.guard) {
+    : mesh_(mesh), geometry_(geometry), limits_(parameters.guard) {
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) longest_.push_back(shape(c, geometry.points).longest);
 }
 
@@ -159,27 +156,19 @@ std::string CellMeasures::refusal(const mesh::Geometry& moved, bool by_corners) 
   if (const auto trouble = mesh::find_crossed(mesh_, moved))
     return fmt::format("makes cell {} at {} intersect itself. Try more stiffening or a coarser mesh there.",
                        trouble->cell_id, at(trouble->centre));
-  if (smallest_volume_ratio_ <= 0 && !limits_.judges_shape() && !by_corners) return "";
+  if (!limits_.judges_shape() && !by_corners) return "";
   const MeshState state = measure(moved);
+  const auto beyond = [&](MeshState::Measure measure, double limit, const char* key) {
+    const Worst& worst = state.worst[measure];
+    if (least_is_worst(measure) ? worst.value >= limit : worst.value <= limit) return std::string();
+    return fmt::format("leaves cell {} at {} with a {} of {:.3g} (guard.{} is {:.3g}).", worst.cell,
+                       at(worst.place), measure_names[measure], worst.value, key, limit);
+  };
   const double least_jacobian = std::max(limits_.smallest_scaled_jacobian, by_corners ? 0. : -1.);
-  using Limit = std::pair<std::optional<double>, const char*>;
-  const std::array<Limit, MeshState::n_measures> limits{
-      Limit{smallest_volume_ratio_ > 0 ? std::optional(smallest_volume_ratio_) : std::nullopt,
-            "smallest-volume-ratio"},
-      Limit{least_jacobian > -1 ? std::optional(least_jacobian) : std::nullopt,
-            "guard.smallest-scaled-jacobian"},
-      Limit{limits_.largest_edge_ratio, "guard.largest-edge-ratio"},
-      Limit{limits_.largest_angle, "guard.largest-angle"},
-      Limit{limits_.largest_area_change, "guard.largest-area-change"},
-      Limit{limits_.largest_shape_change, "guard.largest-shape-change"}};
-  for (int m = 0; m < MeshState::n_measures; ++m) {
-    const auto& [limit, key] = limits[m];
-    const Worst& worst = state.worst[m];
-    if (!limit || (least_is_worst(m) ? worst.value >= *limit : worst.value <= *limit)) continue;
-    return fmt::format("leaves cell {} at {} with a {} of {:.3g} ({} is {:.3g}).", worst.cell,
-                       at(worst.place), measure_names[m], worst.value, key, *limit);
-  }
-  return "";
+  const std::string refused = beyond(MeshState::scaled_jacobian, least_jacobian, "smallest-scaled-jacobian");
+  return !refused.empty() || !limits_.largest_angle
+             ? refused
+             : beyond(MeshState::angle, *limits_.largest_angle, "largest-angle");
 }
 
 const CellCorners& corners_of(mesh::CellType type) {

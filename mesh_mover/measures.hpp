@@ -52,7 +52,6 @@ class CellMeasures {
 
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
-  double smallest_volume_ratio_;
   QualityLimits limits_;
   std::vector<double> longest_;  // edge of each owned cell in the reference mesh [m]
 };

@@ -28,8 +28,8 @@ class MotionMethod {
   virtual void visit(io::Archive& archive) = 0;
 };
 
-/// Stiffness (V / mean V)^-chi of thesis (4.12) per local cell; V: `volumes`. Collective.
-std::vector<double> stiffness_of(const mesh::Mesh& mesh, std::span<const double> volumes, double stiffening);
+/// Stiffness (V / mean V)^-chi of thesis (4.12) per local cell. Collective.
+std::vector<double> stiffness_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double stiffening);
 
 /// Laplacian mesh motion, thesis (4.11)-(4.12): div(E grad d) = 0 for the displacement d from the reference
 /// mesh, with E = V^-chi of the reference volumes. Each component is solved on cells and interpolated to
@@ -44,10 +44,8 @@ std::vector<double> stiffness_of(const mesh::Mesh& mesh, std::span<const double>
 /// These are solved for once, at the first such motion.
 class Laplacian final : public MotionMethod {
  public:
-  /// `volumes`: V of (4.12) per local cell; empty for those of the mesh. Throws Error if no patch holds the
-  /// mesh or a slip patch is not normal to an axis.
-  Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters,
-            std::span<const double> volumes = {});
+  /// Throws Error if no patch holds the mesh or a slip patch is not normal to an axis.
+  Laplacian(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Parameters& parameters);
 
   std::vector<double> solve(std::span<const double> prescribed) override;
   /// Local points on patches with given displacement.
@@ -96,16 +94,10 @@ class Laplacian final : public MotionMethod {
   linalg::SolveStatistics last_;
 };
 
-// The other methods. `volumes`: V of (4.12) per local cell, empty for those of the mesh. Throw Error if no
-// patch holds the mesh, or if a body has no room to rotate. Collective.
+// The other methods. Throw Error if no patch holds the mesh. Collective.
 std::unique_ptr<MotionMethod> make_pseudo_solid(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                                                const Parameters& parameters,
-                                                std::span<const double> volumes = {});
-std::unique_ptr<MotionMethod> make_rotations(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                                             const Parameters& parameters,
-                                             std::span<const double> volumes = {});
+                                                const Parameters& parameters);
 std::unique_ptr<MotionMethod> make_barrier(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                                           const Parameters& parameters,
-                                           std::span<const double> volumes = {});
+                                           const Parameters& parameters);
 
 }  // namespace couplet::mesh_mover

@@ -77,7 +77,7 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       measures_(mesh_, geometry_, parameters),
       curved_(mesh_, geometry_, parameters),
       moving_(mesh_, geometry_, parameters),
-      chooses_(parameters.method == Method::automatic && !incremental() && periodic_.empty()),
+      chooses_(parameters.method == Method::automatic && periodic_.empty()),
       interface_(mesh_, interface_patches(parameters)),
       displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0),
       accepted_(displacement_) {
@@ -85,10 +85,6 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       interface_patches(parameters).empty())
     log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
   choose_method(context.simulation);
-  if (parameters.form == Form::automatic && parallel::comm_rank(mesh_.comm) == 0)
-    log::info(
-        "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
-        "current interface");
   if (context.mesh_peer != MPI_COMM_NULL)
     sink_ = std::make_unique<coupling::MeshMotionSink>(context.mesh_peer, mesh_, geometry_.points);
   if (!context.coupled && !context.output_folder.empty())
@@ -105,30 +101,17 @@ Mover::Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::P
       std::make_unique<io::Series>(context.output_folder / "quality.csv", columns, context.restart_time);
 }
 
-/// Uses the geometry as read, or that of the last accepted step.
 void Mover::make_method() {
-  const mesh::Geometry* at = &geometry_;
-  if (incremental()) {
-    place();  // displacement_ is accepted_ where a method is made
-    if (!base_) base_ = std::make_unique<mesh::Geometry>();
-    *base_ = moved_;
-    at = base_.get();
-  }
-  const std::vector<double>& volumes =
-      parameters_.stiffening_volumes == StiffeningVolumes::current ? at->volume : geometry_.volume;
   switch (parameters_.method) {
     case Method::laplacian:
     case Method::automatic:
-      method_ = std::make_unique<Laplacian>(mesh_, *at, parameters_, volumes);
+      method_ = std::make_unique<Laplacian>(mesh_, geometry_, parameters_);
       break;
     case Method::pseudo_solid:
-      method_ = make_pseudo_solid(mesh_, *at, parameters_, volumes);
+      method_ = make_pseudo_solid(mesh_, geometry_, parameters_);
       break;
     case Method::barrier:
-      method_ = make_barrier(mesh_, *at, parameters_, volumes);
-      break;
-    case Method::rotations:
-      method_ = make_rotations(mesh_, *at, parameters_, volumes);
+      method_ = make_barrier(mesh_, geometry_, parameters_);
       break;
   }
 }
@@ -149,7 +132,7 @@ void Mover::begin_step(const coupling::Step& step) {
   parameters_.method = Method::automatic;
 }
 
-/// dim values per local point, for points of moving patches, relative to the mesh of the method.
+/// dim values per local point, for points of moving patches.
 std::vector<double> Mover::prescribed(const coupling::Exchange& in) const {
   const int dim = mesh_.dim;
   std::vector<double> values(displacement_.size(), 0.0);
@@ -160,8 +143,6 @@ std::vector<double> Mover::prescribed(const coupling::Exchange& in) const {
   for (std::size_t i = 0; i < interface_.points().size(); ++i)
     for (int c = 0; c < dim; ++c)
       values[std::size_t(interface_.points()[i]) * dim + c] = at_interface[i * dim + c];
-  if (incremental())
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] -= accepted_[i];
   return values;
 }
 
@@ -201,8 +182,6 @@ std::string Mover::place_and_judge(bool by_corners) {
 void Mover::move(const coupling::Exchange& in) {
   const std::vector<double> wanted = prescribed(in);
   displacement_ = method_->solve(wanted);
-  if (incremental())
-    for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
   const bool may_change = chooses_ && parameters_.method == Method::automatic;
   std::string refusal = place_and_judge(may_change && sound_);
   if (!refusal.empty() && may_change) {
@@ -225,7 +204,7 @@ void Mover::move(const coupling::Exchange& in) {
   if (!refusal.empty())
     throw SolveFailure(
         "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
-        incremental() || parameters_.method == Method::barrier
+        parameters_.method == Method::barrier
             ? ""
             : " 'method: barrier', to which 'auto' changes by itself, follows larger motions.");
 }
@@ -246,7 +225,6 @@ coupling::StepReport Mover::accept_step() {
   accepted_ = displacement_;
   if (laplacian_) tell_choice();
   laplacian_.reset();
-  if (incremental()) make_method();
   quality_now_ = state();
   const double jacobian = quality_now_.worst[MeshState::scaled_jacobian].value;
   least_jacobian_ = std::min(least_jacobian_.value_or(jacobian), jacobian);
@@ -264,8 +242,7 @@ void Mover::save(io::CheckpointWriter& file) const {
   io::Archive archive(file);
   bool by_barrier = parameters_.method == Method::barrier && !laplacian_;
   archive.common("barrier-in-force", by_barrier);
-  // The incremental form has no state between steps.
-  if (!incremental()) (laplacian_ ? laplacian_ : method_)->visit(archive);
+  (laplacian_ ? laplacian_ : method_)->visit(archive);
 }
 
 void Mover::load(io::CheckpointReader& file) {
@@ -284,8 +261,7 @@ void Mover::load(io::CheckpointReader& file) {
     make_method();
   }
   placed_ = false;
-  if (incremental()) make_method();
-  if (!incremental() && !begins) method_->visit(archive);
+  if (!begins) method_->visit(archive);
 }
 
 void Mover::write_monitors(double time) {
@@ -325,8 +301,7 @@ void Mover::tell_choice() const {
 void Mover::choose_method(const app::SimulationParameters& simulation) {
   if (!chooses_) {
     if (parameters_.method == Method::automatic && parallel::comm_rank(mesh_.comm) == 0)
-      log::info("auto: method: laplacian (the barrier is not available with {})",
-                incremental() ? "form: incremental" : "periodic patches");
+      log::info("auto: method: laplacian (the barrier is not available with periodic patches)");
     return make_method();
   }
   sound_ = measures_.measure(geometry_).worst[MeshState::scaled_jacobian].value > 0;

@@ -22,8 +22,7 @@ namespace couplet::mesh_mover {
 
 /// Mesh mover as a participant. Takes "displacement" at the interface vertices, moves other patches as the
 /// case prescribes, and sends the displacement of all points to the fluid, rank to rank. In a run of its own
-/// it writes the moved mesh. The total form has no state except the last accepted motion (a warm start); in
-/// the incremental form each step starts from the accepted mesh.
+/// it writes the moved mesh. It has no state except the last accepted motion (a warm start).
 class Mover final : public coupling::Participant {
  public:
   Mover(const Parameters& parameters, const app::ParticipantContext& context);
@@ -50,7 +49,6 @@ class Mover final : public coupling::Participant {
 
  private:
   Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::ParticipantContext& context);
-  bool incremental() const { return parameters_.form == Form::incremental; }
   void make_method();
   void tell_choice() const;
   void choose_method(const app::SimulationParameters& simulation);
@@ -66,7 +64,6 @@ class Mover final : public coupling::Participant {
   const mesh::Mesh mesh_;
   const mesh::Geometry geometry_;
   mesh::PeriodicPoints periodic_;
-  std::unique_ptr<mesh::Geometry> base_;  // incremental: geometry of the last step
   CellMeasures measures_;
   CurvedSlide curved_;
   MovingPatches moving_;

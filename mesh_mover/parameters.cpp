@@ -40,54 +40,27 @@ void declare_guard(config::Section& s, QualityLimits& g) {
       .doc(
           "minimum scaled Jacobian of the cell corners: 1 at right angles (equal angles in simplices), 0 "
           "at a flat corner");
-  s.value("largest-edge-ratio", g.largest_edge_ratio)
-      .range(1, 1e6)
-      .doc("longest over shortest edge of a cell");
   s.value("largest-angle", g.largest_angle)
       .range(0, 90)
       .doc("angle between a face normal and the line of its cell centers [degree]");
-  s.value("largest-area-change", g.largest_area_change)
-      .not_negative()
-      .doc("f_A = |log2(V/V0)| of Stein, Tezduyar and Benney, V0 of the reference mesh");
-  s.value("largest-shape-change", g.largest_shape_change)
-      .not_negative()
-      .doc("f_AR = |log2(AR/AR0)| of the same authors, AR = (longest edge)^dimension / V");
 }
 
 void declare_method(config::Section& s, Parameters& p) {
   s.choice("method", p.method,
            {{"laplacian", Method::laplacian},
             {"pseudo-solid", Method::pseudo_solid},
-            {"rotations", Method::rotations},
             {"barrier", Method::barrier},
             {"auto", Method::automatic}})
       .doc(
           "laplacian: each component separately, cheapest. pseudo-solid: an elastic body, tolerates bending "
-          "and rotation. rotations: rotation and displacement of the surface are propagated into the mesh, "
-          "tolerates the largest rotations. barrier: least distortion of the cells, which grows without "
+          "and rotation. barrier: least distortion of the cells, which grows without "
           "bound as a cell flattens: cannot fold, costs several linear solves per motion. auto: laplacian, or barrier if the "
           "prescribed motions would invert a cell, or from the first motion on that inverts one or folds it at a corner; "
-          "laplacian with form: incremental and with periodic patches");
-  s.choice("form", p.form,
-           {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
-      .doc(
-          "total: the displacement from the reference mesh is computed, so the mesh depends only on the "
-          "current interface. incremental: the displacement from the last step's mesh, which depends on the "
-          "path. auto: total");
+          "laplacian with periodic patches");
   s.value("stiffening", p.stiffening)
       .range(0, 3)
       .doc("chi: the stiffness of a cell is its volume to the power -chi, so small cells deform less");
-  s.choice("stiffening-volumes", p.stiffening_volumes,
-           {{"reference", StiffeningVolumes::reference}, {"current", StiffeningVolumes::current}})
-      .doc("reference volumes of the stiffening. current: those of the last step, for form: incremental");
   s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("Poisson's ratio of the pseudo-solid");
-  s.check(
-      [&p] {
-        if (p.stiffening_volumes == StiffeningVolumes::current && p.form != Form::incremental)
-          return std::string("'stiffening-volumes: current' requires 'form: incremental'");
-        return std::string();
-      },
-      "stiffening-volumes");
 }
 
 using P = Parameters;
@@ -111,23 +84,15 @@ const std::array cards{
     Card{"elastic mesh motion", "`method: pseudo-solid`",
          [](const P& p) { return when(p.method == Method::pseudo_solid, "method: pseudo-solid"); },
          "an elastic body of all cells, one coupled solve per motion"},
-    Card{"rotations carried into the mesh", "`method: rotations`",
-         [](const P& p) { return when(p.method == Method::rotations, "method: rotations"); },
-         "a second Laplacian solve; none where everything moves as one rigid body"},
     Card{"mesh motion by a barrier", "`method: barrier`, or `auto` where laplacian would invert a cell",
          [](const P& p) { return when(p.method == Method::barrier, "method: barrier"); },
          "Newton's method on the distortion of the cells: a matrix and its factors where they have aged"},
-    Card{"incremental mesh motion", "`form: incremental`",
-         [](const P& p) { return when(p.form == Form::incremental, "form: incremental"); },
-         "a second mesh; a new matrix and factors in each step"},
     Card{"prescribed motion of patches", "a boundary of `type: moving`",
          [](const P& p) { return when(has(p, BoundaryMotion::moving), "a boundary of type moving"); },
          "its expressions at the patch's points"},
     Card{"limits on cell quality", "a limit in `guard`",
          [](const P& p) { return when(p.guard.judges_shape(), "guard"); },
          "quality measures of all cells in each solve"},
-    Card{"minimum cell volume", "`smallest-volume-ratio` above 0",
-         [](const P& p) { return when(p.smallest_volume_ratio > 0, "smallest-volume-ratio"); }},
     Card{"third dimension", "`dimension: 3`",
          [](const P& p) { return when(p.dimension == 3, "dimension: 3"); }},
 };
@@ -147,11 +112,6 @@ void declare(config::Section& section, Parameters& p) {
       .doc("values for names that the .geo defines with DefineConstant; the same as the fluid's");
   section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3 dimensions");
   declare_method(section, p);
-  section.value("smallest-volume-ratio", p.smallest_volume_ratio)
-      .range(0, 1)
-      .doc(
-          "a motion that shrinks a cell below this fraction of its reference volume is rejected (0: only "
-          "inverted cells are)");
   section.section(
       "guard", [&p](config::Section& g) { declare_guard(g, p.guard); },
       "further limits; a motion beyond one is rejected with the cell and its location, so the step is halved");

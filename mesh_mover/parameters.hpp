@@ -36,27 +36,15 @@ struct Boundary {
 enum class Method {
   laplacian,     ///< thesis (4.11)
   pseudo_solid,  ///< thesis (4.10)
-  rotations,     ///< Laplacian of the surface's rotations and of the remainder
   barrier,       ///< smallest distortion, infinite for a flat cell
   automatic,     ///< Laplacian while it gives a valid mesh, else barrier
 };
-/// Mesh to which the displacement refers.
-enum class Form {
-  automatic,
-  total,        ///< the reference mesh: no drift
-  incremental,  ///< the mesh of the last step, as in the thesis
-};
-/// Mesh that provides the volumes of (4.12).
-enum class StiffeningVolumes { reference, current };
 
 /// Limits of a moved mesh; 0 or infinity allows any cell that is not inverted.
 struct QualityLimits {
   double smallest_scaled_jacobian = -1;
-  std::optional<double> largest_edge_ratio, largest_angle, largest_area_change, largest_shape_change;
-  bool judges_shape() const {
-    return smallest_scaled_jacobian > -1 || largest_edge_ratio || largest_angle || largest_area_change ||
-           largest_shape_change;
-  }
+  std::optional<double> largest_angle;
+  bool judges_shape() const { return smallest_scaled_jacobian > -1 || largest_angle; }
 };
 
 struct Parameters {
@@ -65,14 +53,10 @@ struct Parameters {
   double mesh_scale = 1;
   int dimension = 3;
   Method method = Method::automatic;
-  Form form = Form::automatic;
   /// chi of thesis (4.12): stiffness V^-chi of the cells.
   double stiffening = 1.0;
-  StiffeningVolumes stiffening_volumes = StiffeningVolumes::reference;
   /// Pseudo-solid only.
   double poisson_ratio = 0;
-  /// Smallest allowed volume of a cell, relative to the reference.
-  double smallest_volume_ratio = 0.0;
   QualityLimits guard;
   std::map<std::string, Boundary> boundaries;
   linalg::LinearOptions linear{

@@ -147,7 +147,7 @@ TEST(Barrier, refuses_what_no_mesh_can_follow) {
 
 TEST(Barrier, turns_a_plate_by_half_a_turn_and_back_where_the_laplacian_folds) {
   for (const Method method : {Method::barrier, Method::laplacian}) {
-    Parameters p = plate_in_a_square(method, Form::total);
+    Parameters p = plate_in_a_square(method);
     turn_by(p, "pi*t");
     Mover mover(p, context());
     mover.initialise();

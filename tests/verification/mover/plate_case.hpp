@@ -40,13 +40,12 @@ inline mesh::LoadedMesh perturbed_box(mesh::BoxCells cells, int n) {
   return mesh::distribute(MPI_COMM_WORLD, raw);
 }
 
-inline Parameters plate_in_a_square(Method method, Form form, double chi = 1) {
+inline Parameters plate_in_a_square(Method method, double chi = 1) {
   Parameters p;
   p.mesh = "square.geo";
   p.mesh_parameters = {{"n", 16}};
   p.dimension = 2;
   p.method = method;
-  p.form = form;
   p.stiffening = chi;
   for (const char* wall : {"floor", "right", "lid", "left"}) p.boundaries[wall].motion = BoundaryMotion::slip;
   p.boundaries["plate"].motion = BoundaryMotion::moving;
