@@ -330,7 +330,7 @@ void Boundary<D>::add_openings(const mesh::Mesh& mesh, const mesh::Geometry& geo
           "boundaries.{}.velocity: at an open end of 'upstream-line' the reservoir's pressure drives the flow; give zero here, or "
           "another 'end'.",
           patch.name);
-    rows_.set(faces, {.pressure = 1, .slip_length = no_friction, .inflow = inflow}, false);
+    rows_.set(faces, {.pressure = 1, .friction = 0, .inflow = inflow}, false);
     upstream_patches_.push_back(faces);
     closed_ = false;
   }
@@ -422,7 +422,7 @@ void Boundary<D>::close(const mesh::Mesh& mesh, const Placement<D>& at, const Ve
     const Index f = mesh.n_interior + static_cast<Index>(b);
     const Vec<D>& inside = u[mesh.owner[f]];
     const Vec<D> n = at.area[f].normalized();
-    const double t = rows_.friction(at, static_cast<Index>(b), f), q = rows_.pressure[b];
+    const double t = rows_.friction[b], q = rows_.pressure[b];
     u_boundary[b] = t * w[b] + (1 - t) * inside + (1 - q - t) * (w[b] - inside).dot(n) * n;
   }
 }

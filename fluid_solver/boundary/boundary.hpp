@@ -23,20 +23,20 @@ struct FaceRange {
 /// FaceRow of every boundary face, and lists of the faces by type, in ascending order. Arrays over "boundary
 /// faces" are indexed by f - mesh.n_interior.
 struct FaceRows {
-  std::vector<double> pressure, slip_length, inflow;  ///< see FaceRow
-  std::vector<Index> of_pressure;                     ///< faces with given pressure
-  std::vector<Index> of_flux;                         ///< all others: phi = w.S
+  std::vector<double> pressure, friction, inflow;  ///< see FaceRow
+  std::vector<Index> of_pressure;                  ///< faces with given pressure
+  std::vector<Index> of_flux;                      ///< all others: phi = w.S
   std::vector<Index> of_mesh;      ///< those of of_flux where w is the normal velocity of the mesh
   std::vector<Index> of_velocity;  ///< the rest of of_flux
   std::vector<Index> of_mirror;    ///< those of of_flux without friction: symmetry planes and slip walls
   std::vector<char> with_mesh;     ///< per boundary face: w is the normal velocity of the mesh
 
   explicit FaceRows(Index count = 0)
-      : pressure(count, 0.0), slip_length(count, 0.0), inflow(count, 1.0), with_mesh(count, 0) {}
+      : pressure(count, 0.0), friction(count, 1.0), inflow(count, 1.0), with_mesh(count, 0) {}
   void set(const FaceRange& faces, const FaceRow& row, bool moves_with_mesh) {
     for (Index b = faces.first; b < faces.first + faces.count; ++b) {
       pressure[b] = row.pressure;
-      slip_length[b] = row.slip_length;
+      friction[b] = row.friction;
       inflow[b] = row.inflow;
       with_mesh[b] = moves_with_mesh;
     }
@@ -47,16 +47,8 @@ struct FaceRows {
       (pressure[b] > 0 ? of_pressure : of_flux).push_back(b);
       if (pressure[b] > 0) continue;
       (with_mesh[b] ? of_mesh : of_velocity).push_back(b);
-      if (slip_length[b] == no_friction) of_mirror.push_back(b);
+      if (friction[b] == 0) of_mirror.push_back(b);
     }
-  }
-
-  /// t = S/(S + L g), the share of the tangential friction mu g (w - u_P) that acts: 1 without slip, 0
-  /// without friction. `f`: flux face of b.
-  template <int D>
-  double friction(const Placement<D>& at, Index b, Index f) const {
-    const double area = at.area[f].norm();
-    return area / (area + slip_length[b] * at.conductance[f]);
   }
 };
 

@@ -114,8 +114,7 @@ void ViscousSolver<D>::set_diagonal(std::span<const double> added) {
   const FaceRows& given = boundary_.rows();
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior;
-    const double a = (beta_ + (added.empty() ? 0 : added[f])) * at.conductance[f],
-                 t = given.friction(at, b, f);
+    const double a = (beta_ + (added.empty() ? 0 : added[f])) * at.conductance[f], t = given.friction[b];
     inverse_diagonal_[mesh_.owner[f]] += a;
     boundary_rows_.push_back(
         {mesh_.owner[f], a * t, a * (1 - given.pressure[b] - t), at.area[f].normalized()});

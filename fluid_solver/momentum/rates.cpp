@@ -135,7 +135,7 @@ void RateOperator<D>::add_oblique(const Placement<D>& at, const std::vector<Tens
     rate[n] -= part;
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
-    const double friction = boundary_.rows().friction(at, f - mesh_.n_interior, f);
+    const double friction = boundary_.rows().friction[f - mesh_.n_interior];
     rate[mesh_.owner[f]] += friction * nu_ * (gradient[mesh_.owner[f]] * at.oblique[f]);
   }
 }

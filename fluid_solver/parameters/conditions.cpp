@@ -110,14 +110,6 @@ void declare_outlet(config::Section& s, BoundaryParameters& b) {
   declare_absorbing(s, b);
 }
 
-void declare_partial_slip(config::Section& s, BoundaryParameters& b) {
-  s.value("slip-length", b.slip_length)
-      .unit("m", 1e-10, 10)
-      .positive()
-      .required()
-      .doc("distance behind the wall at which the velocity along it, continued, is zero: u = L du/dn");
-}
-
 void declare_periodic(config::Section& s, BoundaryParameters& b) {
   s.value("partner", b.partner).required().doc("the patch that is a translated copy of this one");
 }
@@ -137,7 +129,7 @@ using Entry = std::pair<BoundaryType, Condition>;
 
 /// All conditions, in the order of the documentation.
 const auto& condition_table() {
-  const auto without_friction = [](const BoundaryParameters&) { return FaceRow{.slip_length = no_friction}; };
+  const auto without_friction = [](const BoundaryParameters&) { return FaceRow{.friction = 0}; };
   static const std::array table{
       // Inflow with a prescribed velocity. For a compressible fluid it may let pressure waves out
       // or have a volume or line upstream (pressure/compressible_terms).
@@ -155,7 +147,7 @@ const auto& condition_table() {
              .declare = declare_outlet,
              .row =
                  [](const BoundaryParameters& b) {
-                   return FaceRow{1, no_friction, b.backflow_stabilisation ? 0.5 : 1.0};
+                   return FaceRow{1, 0, b.backflow_stabilisation ? 0.5 : 1.0};
                  },
              .velocity = GivenBy::nobody,
              .passage = Passage::out}},
@@ -173,13 +165,6 @@ const auto& condition_table() {
              .about = "moving-wall: wall with a prescribed velocity",
              .declare = declare_moving_wall,
              .velocity = GivenBy::keys,
-             .wall = true}},
-      // Wall at rest with slip proportional to the shear, u = L du/dn [navier1823].
-      Entry{BoundaryType::partial_slip,
-            {.name = "partial-slip",
-             .about = "partial-slip: wall at rest with a slip length (Navier)",
-             .declare = declare_partial_slip,
-             .row = [](const BoundaryParameters& b) { return FaceRow{.slip_length = b.slip_length}; },
              .wall = true}},
       // Impermeable surface without friction that moves with the mesh. A symmetry plane is the same.
       Entry{BoundaryType::slip,

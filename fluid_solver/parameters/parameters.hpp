@@ -25,7 +25,6 @@ enum class BoundaryType {
   convective_outlet,
   no_slip,
   moving_wall,
-  partial_slip,
   slip,
   symmetry,
   periodic,
@@ -58,24 +57,22 @@ struct BoundaryParameters {
   config::ExpressionText pressure;                   // [Pa], outlet
   bool backflow_stabilisation = true;                // outlet
   bool absorbing = false;                            // inlet and outlet: lets waves out
-  double slip_length = 0;                            // [m], partial slip
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
 };
 
-/// Coefficients of a condition in the equations of its faces, with given velocity w or pressure p_b, slip
-/// length L, conductance g, area S, t = S/(S + L g), normal n and cell P.
+/// Coefficients of a condition in the equations of its faces, with given velocity w or pressure p_b,
+/// conductance g, area S, share t of the friction along the face, normal n and cell P.
 ///   flux            phi = w.S; for a given pressure phi^p - (dt/rho) g (p_b - p_P)
 ///   pressure row    none, p_b follows from the wall's motion; for a given pressure g, and right side g p_b
 ///   viscous row     beta g [t I + (1 - t) n n], right side that times w; none for a given pressure
 ///   value at b      u_b = u_P + [t I + (1 - t) n n] (w - u_P); u_P for a given pressure
 ///   load            p_b S + mu g (u_P - u_b)
 struct FaceRow {
-  double pressure = 0;     ///< 1 if the pressure is given instead of w
-  double slip_length = 0;  ///< L [m], mu du/dn = mu (w - u_b)/L along the wall; infinity: no friction
-  double inflow = 1;       ///< share of u_b carried in by a flux into the domain
+  double pressure = 0;  ///< 1 if the pressure is given instead of w
+  double friction = 1;  ///< t; 0: the velocity along the face is that of the cell
+  double inflow = 1;    ///< share of u_b carried in by a flux into the domain
 };
-inline constexpr double no_friction = std::numeric_limits<double>::infinity();
 
 /// Source of w.
 enum class GivenBy {

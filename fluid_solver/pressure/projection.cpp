@@ -457,7 +457,7 @@ Vectors<D> PressureProjection<D>::transposed_mean(const Placement<D>& at,
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior, p = mesh_.owner[f];
     const Vec<D> part = of_gradient[p] * at.area[f], n = at.area[f].normalized();
-    const double t = rows.friction(at, b, f);
+    const double t = rows.friction[b];
     sum[p] += (1 - t) * part - (1 - rows.pressure[b] - t) * part.dot(n) * n;
   }
   return sum;

@@ -38,7 +38,7 @@ Vectors<D> FractionalStep<D>::friction_of(const Vectors<D>& x) const {
   const FaceRows& given = scene_.boundary.rows();
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior, p = mesh_.owner[f];
-    const double a = beta * at.conductance[f], t = given.friction(at, b, f);
+    const double a = beta * at.conductance[f], t = given.friction[b];
     const Vec<D> n = at.area[f].normalized();
     rate[p] -= a * t * x[p] + a * (1 - given.pressure[b] - t) * x[p].dot(n) * n;
   }

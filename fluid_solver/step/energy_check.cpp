@@ -114,7 +114,7 @@ void EnergyCheck<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
     const double pressure = -(s.p[b] - level) * flux;
     sums[2] += s.p[b] * std::abs(flux);
     sums[3] += std::abs(flux);
-    const double t = rows.friction(s.to, static_cast<Index>(b), f);
+    const double t = rows.friction[b];
     const Vec<D>&before = s.from.u_boundary[b], &after = s.w[b];
     const Vec<D> on_face = 0.5 * (before + after);
     // Contribution of faces of given velocity and of given pressure.
@@ -176,7 +176,7 @@ std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, co
     const bool outside = f >= mesh.n_interior;
     if (mesh.owner[f] != cell && (outside || mesh.neighbour[f] != cell)) continue;
     convection += 0.5 * std::abs(s.from.phi[f] - (s.swept.empty() ? 0 : s.swept[f] / s.dt));
-    const double share = outside ? boundary.rows().friction(s.to, f - mesh.n_interior, f) : 1;
+    const double share = outside ? boundary.rows().friction[f - mesh.n_interior] : 1;
     diffusion += 2 * nu * s.to.conductance[f] * share;
     tangent = std::max(tangent, s.to.oblique_of(f).norm() / s.to.area[f].norm());
   }

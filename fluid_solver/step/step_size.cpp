@@ -171,7 +171,7 @@ void StepSize<D>::add_rates(const State<D>& s, bool peclet) {
     peclet_of_[n] = std::max(peclet_of_[n], number);
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
-    const double friction = boundary_.rows().friction(at, f - mesh_.n_interior, f);
+    const double friction = boundary_.rows().friction[f - mesh_.n_interior];
     rates_[mesh_.owner[f]] += Vec<2>(0.5 * flux_of(f), friction * 2 * nu_ * at.conductance[f]);
   }
   if (fourth_) {

@@ -38,6 +38,8 @@ double boundary_diagonal(const mesh::Mesh& mesh, const elastic::ElasticOperator&
   return k * (known + (1 - known) * spring / (k + spring));
 }
 
+constexpr int aitken_interval = 5, anderson_history = 30;  // iterations
+
 }  // namespace
 
 linalg::Acceleration acceleration_of(const MethodParameters& parameters) {
@@ -46,15 +48,15 @@ linalg::Acceleration acceleration_of(const MethodParameters& parameters) {
   return {choice == Choice::none     ? linalg::Acceleration::Type::none
           : choice == Choice::aitken ? linalg::Acceleration::Type::aitken
                                      : linalg::Acceleration::Type::anderson,
-          parameters.aitken_interval, parameters.anderson_history};
+          aitken_interval, anderson_history};
 }
 
 std::string segregated_name(const MethodParameters& parameters) {
   switch (parameters.acceleration) {
     case MethodParameters::Acceleration::aitken:
-      return fmt::format("segregated (Aitken every {} iterations)", parameters.aitken_interval);
+      return fmt::format("segregated (Aitken every {} iterations)", aitken_interval);
     case MethodParameters::Acceleration::anderson:
-      return fmt::format("segregated (Anderson over {} iterations)", parameters.anderson_history);
+      return fmt::format("segregated (Anderson over {} iterations)", anderson_history);
     default:
       return "segregated";
   }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "common/linalg/residual_projection.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {
@@ -98,19 +97,8 @@ void declare_iteration(config::Section& s, MethodParameters& m) {
        "acceleration", m.acceleration,
        {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
       .doc("convergence acceleration of the outer iterations, for segregated");
-  s.value("aitken-interval", m.aitken_interval)
-      .range(2, 100)
-      .doc("number of iterations between applications of Aitken's formula");
-  s.value("anderson-history", m.anderson_history)
-      .range(1, 30)
-      .doc("number of iterations combined by Anderson's method");
   s.choice("predictor", m.predictor, {{"none", Predictor::none}, {"euler", Predictor::euler}})
       .doc("initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73)");
-  s.value("corrections-kept", m.corrections_kept)
-      .range(0, linalg::ResidualProjection::most)
-      .doc(
-          "for newton-krylov in dynamic analyses: number of latest predictor corrections that are combined "
-          "to minimize the initial residual; 0 turns this off");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(

@@ -21,11 +21,9 @@ struct MethodParameters {
   LinearSolver linear_solver = LinearSolver::automatic;       // of the block-coupled method
   Preconditioner preconditioner = Preconditioner::automatic;  // of newton-krylov
   Acceleration acceleration = Acceleration::anderson;         // of the segregated method
-  int aitken_interval = 5;
-  int anderson_history = 30;
   Predictor predictor = Predictor::euler;
-  int corrections_kept = 12;
-  double solves = 1;  // not a key: number of solves of the run with one matrix
+  int corrections_kept = 12;  // not a key: corrections of newton-krylov's predictor that begin a dynamic step
+  double solves = 1;          // not a key: number of solves of the run with one matrix
   double relative_tolerance = 1e-10;
   int max_iterations = 2000;
 };
