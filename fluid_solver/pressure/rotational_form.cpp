@@ -15,9 +15,7 @@ namespace couplet::fluid {
 template <int D>
 void PressureProjection<D>::set_rotational() {
   out_.rotational.clear();
-  if (prediction_.weight == 0 || !step_.guess || scene_.obstacles->marks() ||
-      scene_.parameters.is_compressible())
-    return;
+  if (prediction_.weight == 0 || !step_.guess || !scene_.has_smooth_excess()) return;
   if (!std::exchange(knows_distances_, true)) set_distances();
   const Placement<D>& at = *step_.to;
   std::vector<double> psi = out_.p;
