@@ -11,7 +11,7 @@ install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${share}) # pag
 install(DIRECTORY configs docs DESTINATION ${share} PATTERN "out" EXCLUDE PATTERN "out-*" EXCLUDE PATTERN "*.cache.msh" EXCLUDE
         PATTERN "*.log" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# Man pages and completion come from what the command and the programs declare.
+# Man pages, completion, the reference of keys and the schemas come from what the command and the programs declare.
 find_program(COUPLET_PYTHON python3 HINTS /usr/bin NO_DEFAULT_PATH)
 find_program(COUPLET_PYTHON python3 REQUIRED)
 
@@ -33,7 +33,7 @@ install(CODE "
                           \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\" --bin ${PROJECT_BINARY_DIR}/bin --version ${PROJECT_VERSION}
                   RESULT_VARIABLE failed)
   if(failed)
-    message(WARNING \"man pages and completion were not installed (python3-yaml is needed)\")
+    message(WARNING \"man pages, completion, keys and schemas were not installed (python3-yaml and python3-numpy are needed)\")
   endif()")
 
 set(CPACK_GENERATOR DEB)

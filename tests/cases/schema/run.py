@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The schemas of docs/schema against all cases (valid) and the wrong ones of the tests: what a schema can see it refuses, as each kind of mistake
-shows; and the patterns of units against what the programs accept. Usage: run.py PROJECT [PROGRAM of ours]"""
+"""The schemas for editors against all cases (valid) and the wrong ones of the tests: what a schema can see it refuses, as each kind of mistake
+shows; and the patterns of units against what the programs accept. Usage: run.py PROJECT BIN"""
 import json
 import pathlib
 import re
@@ -18,8 +18,10 @@ except ImportError:
 ROOT = pathlib.Path(sys.argv[1]).resolve()
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "tests/cli/wrong"), str(ROOT / "client/python")]
 from checks import check, end  # noqa: E402
+from couplet.documents import reference, units  # noqa: E402
 
-SCHEMAS = {file.name: json.loads(file.read_text()) for file in (ROOT / "docs/schema").glob("*.json")}
+BIN = pathlib.Path(sys.argv[2])
+SCHEMAS = {pathlib.Path(name).name: json.loads(text) for name, text in reference.files(BIN).items() if name.endswith(".json")}
 
 
 class Loader(yaml.SafeLoader):
@@ -104,8 +106,6 @@ seen = [line for line in let_through if re.search(SEEN, line) and not line.start
 check("no unknown key, missing key, wrong word, wrong unit or number out of range is let through", not seen, json.dumps(seen, indent=1))
 
 # -- units: what a program says about a number is what the pattern says
-from couplet.documents import units  # noqa: E402
-
 UNITS = {"kg/m^3": (["1.2 kg/m^3", "1200 g/l", "1 t/m3", "3 kg m^-3", "1e3 g / l", "2 kg/(m m m)", "1.5 N s^2/m^4"], ["1.2 kg", "5 kg/m^2", "3 Pa", "1 kgs/m^3", "2 kg/m^3 x", "1,2 kg/m^3"]),
          "Pa": (["4 MPa", "1 bar", "3 N/mm^2", "2 J/m^3", "5 kN/m²", "1 kg/(m s^2)", "2 kPa", "3 psi", "80 mmHg", "10 cmH2O"], ["4 N", "1 N/m", "3 ksi", "2 Pa s", "5 cP"]),
          "m/s": (["3 m/s", "10 km/h", "5 mm/day", "2 m s^-1", "1 m Hz"], ["3 m", "1 m/s^2", "7 kmh"]), "s": (["5 ms", "2 h", "1 day", "3 min", "1 Hz^-1"], ["2 m", "3 hours", "1 s^2"]),
@@ -115,11 +115,10 @@ for unit, (good, wrong) in UNITS.items():
     pattern = SCHEMAS["units.json"]["$defs"][units.name_of(unit)]["pattern"]
     check(f"texts in {unit}", all(re.search(pattern, t) for t in good) and not any(re.search(pattern, t) for t in wrong),
           ([t for t in good if not re.search(pattern, t)], [t for t in wrong if re.search(pattern, t)]))
-if len(sys.argv) > 2 and not sys.argv[2].startswith("--"):  # the same, by the program
-    for t in [*UNITS["kg/m^3"][0], *UNITS["kg/m^3"][1]]:
-        said = subprocess.run([sys.argv[2], str(ROOT / "tests/cli/wrong/solid.yaml"), "--check", "--set", f"participants.solid.material.density={t}"], capture_output=True, text=True).stderr
-        accepted = "density" not in said
-        check(f"a program takes '{t}': {accepted}", accepted == (t in UNITS["kg/m^3"][0]), said)
+for t in [*UNITS["kg/m^3"][0], *UNITS["kg/m^3"][1]]:  # the same, by the program
+    said = subprocess.run([BIN / "solid_solver", str(ROOT / "tests/cli/wrong/solid.yaml"), "--check", "--set", f"participants.solid.material.density={t}"], capture_output=True, text=True).stderr
+    accepted = "density" not in said
+    check(f"a program takes '{t}': {accepted}", accepted == (t in UNITS["kg/m^3"][0]), said)
 
 # -- the rest of a case
 flap = yaml.load((ROOT / "configs/perpendicular-flap/case.yaml").read_text(), Loader=Loader)

@@ -21,7 +21,7 @@ def built(again):
     from couplet.command import version
     from couplet.places import ROOT
     cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "couplet" / f"site-{version()}-{ROOT.name}"
-    newest = max(((ROOT / page).stat().st_mtime for page in site.pages()), default=0)
+    newest = max(((ROOT / page).stat().st_mtime for page in site.pages() if (ROOT / page).exists()), default=0)
     mark = cache / "index.html"
     if again or not mark.exists() or mark.stat().st_mtime < newest:
         print("Building the site (about 10 s) ...", flush=True)

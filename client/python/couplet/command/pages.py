@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Man pages and completion, made from what the command and the programs declare.
-Usage: python3 -m couplet.command.pages SHARE [--bin BIN] [--version V]: writes SHARE/man, SHARE/bash-completion, SHARE/zsh"""
+"""Man pages, completion, the reference of keys and the schemas, made from what the command and the programs declare.
+Usage: python3 -m couplet.command.pages SHARE [--bin BIN] [--version V]: writes SHARE/man, SHARE/bash-completion, SHARE/zsh, SHARE/couplet/docs"""
 import argparse
 import gzip
 import pathlib
@@ -8,6 +8,7 @@ import re
 import subprocess
 
 from couplet import command, files
+from couplet.documents import reference
 from couplet.runs.case import OURS
 
 
@@ -132,6 +133,7 @@ def main():
     texts = {"man/man1/couplet.1": of_command(version), "bash-completion/completions/couplet": bash(), f"zsh/{zsh_folder}/_couplet": zsh()}
     texts |= {f"man/man1/couplet-{name}.1": of_subcommand(name, version) for name in command.SUBCOMMANDS}
     texts |= {f"man/man1/{name}.1": of_program(arguments.bin, name, version) for name in OURS if arguments.bin and (arguments.bin / name).exists()}
+    texts |= {f"couplet/{name}": text for name, text in reference.files(arguments.bin).items()} if arguments.bin else {}
     for name, text in texts.items():
         packed = debian and name.endswith(".1")
         files.write(arguments.share, name + ".gz" * packed, gzip.compress(text.encode(), 9, mtime=0) if packed else text)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Schemas of docs/schema: those printed by the programs, with units as patterns, and one for a complete case file with its sections `simulation`,
+"""Schemas for editors: those printed by the programs, with units as patterns, and one for a complete case file with its sections `simulation`,
 `study` and `plot`."""
+import collections
 import json
 import re
 
@@ -10,6 +11,7 @@ from couplet.study import interest, pictures, quantities, study
 
 EXPRESSION = ["number", "string", "object"]
 A_QUANTITY = f"^ *{units.NUMBER} *(?![eE][+-]?[0-9])[A-Za-zµ%/][A-Za-zµ0-9^/*· ()²³-]*$"
+WORTH_SHARING = 150  # characters of a description, above which a reference to it is shorter
 PARTICIPANT = r"^(?!(coupler|checkpoints|run)$)(?!-)[^/\\ .\n\t]{1,50}$"  # problem_of_name of common/app/case/case_file.cpp
 
 
@@ -41,6 +43,39 @@ def with_reference(node, reference, bare_zero):
     if any(branch.get("minimum", branch.get("exclusiveMinimum", -1)) >= 0 for branch in node.get("anyOf", ())) and "K" not in reference["$ref"]:
         reference = {**reference, "pattern": "^ *[+]?[0-9.]"}  # and must not be negative
     return {k: with_reference(v, reference, bare_zero) if k in ("anyOf", "items") else v for k, v in node.items()}
+
+
+def is_description(node):
+    """True for the schema of a value, but not for the table below `properties`, whose keys are names."""
+    return isinstance(node, dict) and any(isinstance(node.get(key), kind) for key, kind in (("type", (str, list)), ("anyOf", list), ("oneOf", list)))
+
+
+def shared(schema):
+    """Moves descriptions that occur more than once to `$defs`: the parts of a boundary have the same conditions as the whole."""
+    times, names, found = collections.Counter(), {}, {}
+
+    def count(node):
+        if is_description(node):
+            times[json.dumps(node)] += 1
+        if not is_description(node) or times[json.dumps(node)] == 1:
+            for child in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
+                count(child)
+
+    def with_references(node, key):
+        if isinstance(node, list):
+            return [with_references(n, key) for n in node]
+        if not isinstance(node, dict):
+            return node
+        text = json.dumps(node)
+        if times[text] > 1 and len(text) > WORTH_SHARING:
+            if text not in names:
+                names[text] = f"{key}-{len(names) + 1}"
+                found[names[text]] = {k: with_references(v, k) for k, v in node.items()}
+            return {"$ref": f"#/$defs/{names[text]}"}
+        return {k: with_references(v, k) for k, v in node.items()}
+
+    count(schema)
+    return with_references(schema, "") | ({"$defs": found} if found else {})
 
 
 # -- the section `study` -----------------------------------------------------------------------------------------------
@@ -133,7 +168,7 @@ def files(ask, programs, source):
     """Returns {name: text} of docs/schema. `ask`(program, question) returns its output; `source` is the text of common/base/units.cpp."""
     used, found = set(), {}
     for program in programs:
-        found[program] = with_units(json.loads(ask(program, "--schema")), used)
+        found[program] = shared(with_units(json.loads(ask(program, "--schema")), used))
     simulation = re.search(r"^#+ simulation$(.*)", ask("coupler", "--docs"), flags=re.M | re.S)[1]
     found["case"] = with_units(case_schema(programs[1:], of_markdown(simulation)), used)
     found["units"] = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Numbers with a unit", "$defs": units.definitions(used, source)}

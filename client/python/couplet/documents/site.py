@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Site with all documents, the READMEs of cases and folders, and a gallery of all cases, built by MkDocs with its Material theme. The sidebar sorts pages
 by kind. The search leaves out pages for developers. The site loads nothing from other servers."""
+import functools
 import json
 import math
 import os
@@ -11,14 +12,16 @@ import subprocess
 import tempfile
 
 from couplet import files
+from couplet.documents import reference
 from couplet.places import ROOT
+from couplet.places import build as build_folder
 from couplet.runs.case import expect
 from couplet.runs.gallery import entries
 
 # Pages by kind (https://diataxis.fr). All others, except cases, are for developers.
 TUTORIALS = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
              "docs/tutorials/own-coupled.md", "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
-REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in ("fluid_solver", "solid_solver", "plate_modal", "thermocline", "mesh_mover", "coupler")),
+REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in reference.PROGRAMS),
              "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/meshes.md", "docs/input-data.md", "docs/expressions.md", "docs/quantities.md",
              "docs/plots.md", "docs/checkpoints.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
 THEORY = tuple(f"docs/theory/{name}.md" for name in ("README", "solid", "solid-gradients", "solid-motion", "solid-solution", "heat-contact", "fluid", "fluid-models", "mesh-motion", "coupling"))
@@ -31,9 +34,19 @@ LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)
 HERE = pathlib.Path(__file__).parent
 
 
+@functools.cache
+def of_programs():
+    """{path: text} of the pages that the programs tell."""
+    return {pathlib.Path(name): text for name, text in reference.pages(build_folder() / "bin").items()}
+
+
+def text_of(page):
+    return of_programs().get(page) or (ROOT / page).read_text()
+
+
 def pages():
-    """All Markdown files of the project, by relative path."""
-    found = []
+    """All Markdown files of the project, by relative path, and the pages of keys."""
+    found = [page for page in of_programs() if not (ROOT / page).exists()]
     for folder, below, names in os.walk(ROOT):
         place = pathlib.Path(folder).relative_to(ROOT)
         below[:] = sorted(d for d in below if not LEFT_OUT.search(d))
@@ -42,7 +55,7 @@ def pages():
 
 
 def title_of(page):
-    found = re.search(r"^# (.*)", (ROOT / page).read_text(), flags=re.M)
+    found = re.search(r"^# (.*)", text_of(page), flags=re.M)
     return found[1].replace('"', "'") if found else page.stem
 
 
@@ -54,7 +67,7 @@ def target_of(page, link, there):
         target /= "README.md"
         if target not in there:
             return ("../" * (len(page.parts) - 1) + "gallery.md", None) if target == pathlib.Path("configs/README.md") else (None, None)
-    if target.parts[0] == ".." or not (ROOT / target).is_file():
+    if target.parts[0] == ".." or target not in there and not (ROOT / target).is_file():
         return None, None
     site_link = os.path.relpath(target, page.parent) + (f"#{anchor}" if anchor else "")
     return site_link, None if target in there else target
@@ -163,7 +176,7 @@ def copy_mathjax(folder):
     for part in MATHJAX_PARTS:
         for file in (MATHJAX / part).rglob("*") if (MATHJAX / part).is_dir() else [MATHJAX / part]:
             if file.is_file():
-                files.copy(file, folder, file.relative_to(MATHJAX))
+                files.copy(file, folder, "mathjax" / file.relative_to(MATHJAX))
 
 
 def stage(folder):
@@ -171,14 +184,14 @@ def stage(folder):
     there, needed = pages(), set()
     known = set(there)
     for page in there:
-        text = with_links(page, with_formulas(page, (ROOT / page).read_text()), known, needed)
+        text = with_links(page, with_formulas(page, text_of(page)), known, needed)
         files.write(folder, "index.md" if str(page) == "README.md" else page, text.replace("](README.md", "](index.md") if str(page) == "README.md" else
                     re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})", text))
     files.write(folder, "gallery.md", gallery(known, needed))
     for file in needed:
         files.copy(ROOT / file, folder, file if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else file.with_name(file.name + ".txt"))
     files.copy(HERE / "site.css", folder)
-    copy_mathjax(folder / "mathjax")
+    copy_mathjax(folder)
     return nav_of(there)
 
 
