@@ -512,12 +512,12 @@ def shares(found):
 def findings():
     """Lists the cases of tests/golden/golden.json in which each finding appears, by severity, and then the findings that never appear."""
     golden, spoken, silent = json.loads((ROOT / "tests/golden/golden.json").read_text()), [], []
-    for table in sorted(ROOT.glob("*/diagnostics/table.def")):
-        for name in re.findall(r'FINDING\(\w+, "([^"]+)"', table.read_text()):
+    for program, rows in re.findall(r"^    // (\w+)\n((?:    (?!//).*\n)+)", (ROOT / "common/diagnostics/ids.cpp").read_text(), flags=re.M):
+        for name in re.findall(r'FindingId\{\w+,\s*"([^"]+)"', rows):
             cases = {s: {case for case, one in golden.items() for p in one["participants"].values() for i, severity, _ in p["findings"] if (i, severity) == (name, s)}
                      for s in ("note", "warning", "wrong")}
             if any(cases.values()):
-                spoken.append(f"| {name} | {table.parts[-3]} | {len(cases['note'])} | {len(cases['warning'])} | {len(cases['wrong'])} |")
+                spoken.append(f"| {name} | {program} | {len(cases['note'])} | {len(cases['warning'])} | {len(cases['wrong'])} |")
             else:
                 silent.append(name)
     return len(golden), "\n".join(["| finding | declared in | cases with a note | a warning | wrong |", "|---|---|---|---|---|", *spoken]), ", ".join(silent)

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,16 +68,39 @@ class Diagnostic {
 /// New diagnostic, or nullptr if it does not apply to a run.
 using Made = std::shared_ptr<Diagnostic>;
 
+/// Runs in which a diagnostic of a table takes part: all, or those that estimate errors.
+enum class When { always, with_errors };
+
+/// Row of a program's table of diagnostics. `Of` is what the program shows of itself.
+template <class Of, class Which = Made>
+struct TableRow {
+  const char* name;  ///< unique; identifies the memory in checkpoints
+  When when;
+  Which (*make)(const Of&);  ///< nullptr if it does not apply to the case
+};
+
 /// All diagnostics of one program in a run. Calls them, logs their findings and keeps the worst of each. The
 /// findings are part of the checkpoint. All calls are collective.
 class Diagnostics {
  public:
   /// `with_errors` requests the parts of the error.
   Diagnostics(int rank, bool with_errors) : rank_(rank), with_errors_(with_errors) {}
-  bool with_errors() const { return with_errors_; }
   /// Adds a diagnostic. `name` must be unique; it identifies the memory in checkpoints. nullptr is ignored.
   void add(std::string name, std::shared_ptr<Diagnostic> diagnostic) {
     if (diagnostic) all_.push_back({std::move(name), std::move(diagnostic)});
+  }
+  /// Adds the diagnostics of a table that take part in this run, and returns them.
+  template <class Of, class Which>
+  std::vector<Which> add(std::span<const TableRow<Of, Which>> table, const Of& view) {
+    std::vector<Which> added;
+    for (const TableRow<Of, Which>& row : table) {
+      if (row.when == When::with_errors && !with_errors_) continue;
+      if (Which made = row.make(view)) {
+        add(row.name, made);
+        added.push_back(std::move(made));
+      }
+    }
+    return added;
   }
 
   /// Called after an accepted step that ended at `time` [s].

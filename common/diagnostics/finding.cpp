@@ -20,30 +20,6 @@ std::vector<std::string>& accepted_ids() {
   return ids;
 }
 
-constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::neglected;
-// Every program must know all ids, because a case accepts findings for the whole job. Each program lists its
-// own in its table.def without code, from which this list is built.
-#define LOOK(name, function)
-#define DIAGNOSTIC(name, make)
-#define ESTIMATE(name, make)
-#define MADE(name, made)
-#define HEAT(name, make)
-#define FINDING(about, id, meaning) FindingId{about, id, meaning},
-constexpr FindingId ids[] = {
-#include "common/diagnostics/table.def"
-#include "coupler/diagnostics/table.def"
-#include "fluid_solver/diagnostics/table.def"
-#include "plate_modal/diagnostics/table.def"
-#include "solid_solver/diagnostics/table.def"
-#include "thermocline/diagnostics/table.def"
-};
-#undef LOOK
-#undef DIAGNOSTIC
-#undef ESTIMATE
-#undef MADE
-#undef HEAT
-#undef FINDING
-
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -121,27 +97,6 @@ std::string findings_as_json() {
         number_text(f.limit), quoted(f.sentence), quoted(f.advice),
         finding_id(f.id).about == FindingId::About::neglected, number_text(f.share), is_accepted(f.id));
   return "[" + out + (out.empty() ? "]" : "\n  ]");
-}
-
-std::span<const FindingId> finding_ids() { return ids; }
-
-const FindingId& finding_id(const std::string& id) {
-  for (const FindingId& known : finding_ids())
-    if (id == known.id) return known;
-  throw std::logic_error("no program declares the finding '" + id + "' in its table.def");
-}
-
-std::string unknown_ids(std::span<const std::string> ids) {
-  std::vector<std::string> known;
-  for (const FindingId& f : finding_ids()) known.push_back(f.id);
-  std::string text;
-  for (const std::string& id : ids) {
-    if (std::ranges::count(known, id) > 0) continue;
-    const auto meant = base::closest(id, known);
-    text += fmt::format("{}unknown finding '{}'{}", text.empty() ? "" : "; ", id,
-                        meant ? fmt::format(", did you mean '{}'?", *meant) : "");
-  }
-  return text.empty() ? text : fmt::format("{}. Findings: {}", text, base::join(known));
 }
 
 }  // namespace couplet::diagnostics

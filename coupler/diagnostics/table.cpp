@@ -1,31 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "coupler/diagnostics/view.hpp"
 
 namespace couplet::coupler {
+namespace {
 
-// Each makes a diagnostic; nullptr where it does not apply.
-#define FINDING(about, id, meaning)
-#define ESTIMATE(name, make) std::shared_ptr<CouplingDiagnostic> make(const CouplingView&);
-#define DIAGNOSTIC ESTIMATE
-#include "coupler/diagnostics/table.def"
-#undef DIAGNOSTIC
-#undef ESTIMATE
+using diagnostics::When;
+using CouplingRow = diagnostics::TableRow<CouplingView, std::shared_ptr<CouplingDiagnostic>>;
+
+// In the order in which they are asked why a step failed.
+constexpr std::array table{CouplingRow{"iteration-growth", When::always, iteration_growth},
+                           CouplingRow{"added-mass", When::always, added_mass},
+                           CouplingRow{"interface-oscillation", When::always, interface_oscillation},
+                           CouplingRow{"interface-work", When::always, interface_work},
+                           CouplingRow{"data", When::always, data_of_participants},
+                           CouplingRow{"structure-at-rest", When::always, structure_at_rest},
+                           CouplingRow{"unconverged-step", When::always, unconverged_step},
+                           CouplingRow{"lost-load", When::always, lost_load},
+                           CouplingRow{"coupling-error", When::with_errors, coupling_error}};
+
+}  // namespace
 
 CouplingDiagnostics coupling_diagnostics(const CouplingView& view, diagnostics::Diagnostics& all) {
-  CouplingDiagnostics list;
-  const auto add = [&](const char* name, std::shared_ptr<CouplingDiagnostic> one) {
-    if (!one) return;
-    all.add(name, one);
-    list.push_back(std::move(one));
-  };
-#define DIAGNOSTIC(name, make) add(name, make(view));
-#define ESTIMATE(name, make) \
-  if (all.with_errors()) add(name, make(view));
-#include "coupler/diagnostics/table.def"
-#undef DIAGNOSTIC
-#undef ESTIMATE
-#undef FINDING
-  return list;
+  return all.add(std::span<const CouplingRow>(table), view);
 }
 
 }  // namespace couplet::coupler

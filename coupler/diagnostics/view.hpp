@@ -171,6 +171,17 @@ class CouplingDiagnostic : public diagnostics::Diagnostic {
 
 using CouplingDiagnostics = std::vector<std::shared_ptr<CouplingDiagnostic>>;
 
+// Each makes a diagnostic, or nullptr if it does not apply to the coupling.
+std::shared_ptr<CouplingDiagnostic> iteration_growth(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> added_mass(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> interface_oscillation(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> interface_work(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> data_of_participants(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> structure_at_rest(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> unconverged_step(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> lost_load(const CouplingView& view);
+std::shared_ptr<CouplingDiagnostic> coupling_error(const CouplingView& view);
+
 /// Creates all diagnostics of a coupling in the order of their causes, and adds them to `all`.
 CouplingDiagnostics coupling_diagnostics(const CouplingView& view, diagnostics::Diagnostics& all);
 

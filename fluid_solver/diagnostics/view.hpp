@@ -112,6 +112,35 @@ double largest_speed(const FluidView<D>& view);  ///< [m/s]
 template <int D>
 std::optional<double> pressure_range(const FluidView<D>& view);
 
+// Each finds something in the accepted state, or nothing.
+template <int D>
+std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view);
+template <int D>
+std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<D>& view);
+template <int D>
+std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view);
+template <int D>
+std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view);
+template <int D>
+std::optional<diagnostics::Finding> compressibility(const FluidView<D>& view);
+template <int D>
+std::optional<diagnostics::Finding> changes_of_density(const FluidView<D>& view);
+template <int D>
+std::optional<diagnostics::Finding> mesh_at_rest(const FluidView<D>& view);
+// Each makes a diagnostic, or nullptr if it does not apply to the flow.
+template <int D>
+diagnostics::Made waves_of_pressure(const FluidView<D>& view);
+template <int D>
+diagnostics::Made ringing_pressure(const FluidView<D>& view);
+template <int D>
+diagnostics::Made given_step(const FluidView<D>& view);
+template <int D>
+diagnostics::Made flow_through_openings(const FluidView<D>& view);
+template <int D>
+diagnostics::Made place_on_the_map(const FluidView<D>& view);
+template <int D>
+diagnostics::Made flow_error(const FluidView<D>& view);
+
 /// Adds all diagnostics of a fluid.
 template <int D>
 void add_diagnostics(const FluidView<D>& view, diagnostics::Diagnostics& all);

@@ -114,9 +114,9 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-diagnostics::Made prescribed_pressures(const PlateView& view, const std::shared_ptr<Motion>&) {
-  const bool is_modal = view.parameters.analysis == Parameters::Analysis::modal;
-  return view.pressure && !is_modal ? std::make_shared<PrescribedPressures>(view) : nullptr;
+diagnostics::Made prescribed_pressures(const RunOfPlate& run) {
+  const bool is_modal = run.view.parameters.analysis == Parameters::Analysis::modal;
+  return run.view.pressure && !is_modal ? std::make_shared<PrescribedPressures>(run.view) : nullptr;
 }
 
 }  // namespace couplet::plate

@@ -77,8 +77,8 @@ class MeshOfModes final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-diagnostics::Made mesh_of_modes(const PlateView& view, const std::shared_ptr<Motion>& motion) {
-  return std::make_shared<MeshOfModes>(view, motion);
+diagnostics::Made mesh_of_modes(const RunOfPlate& run) {
+  return std::make_shared<MeshOfModes>(run.view, run.motion);
 }
 
 }  // namespace couplet::plate

@@ -86,8 +86,8 @@ Motion::LoadFrequency Motion::load_frequency(bool at_end) const {
   return {omega, omega / modes_.back().omega};
 }
 
-diagnostics::Made motion_of_modes(const PlateView& view, const std::shared_ptr<Motion>& motion) {
-  return motion ? std::make_shared<MotionOfModes>(view, motion) : nullptr;
+diagnostics::Made motion_of_modes(const RunOfPlate& run) {
+  return run.motion ? std::make_shared<MotionOfModes>(run.view, run.motion) : nullptr;
 }
 
 }  // namespace couplet::plate

@@ -184,8 +184,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-diagnostics::Made plate_theory(const PlateView& view, const std::shared_ptr<Motion>& motion) {
-  return std::make_shared<PlateTheory>(view, motion);
+diagnostics::Made plate_theory(const RunOfPlate& run) {
+  return std::make_shared<PlateTheory>(run.view, run.motion);
 }
 
 }  // namespace couplet::plate

@@ -144,16 +144,16 @@ class ImpactOnSeat final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-diagnostics::Made balance_of_energies(const PlateView& view, const std::shared_ptr<Motion>& motion) {
-  return motion ? std::make_shared<BalanceOfEnergies>(view) : nullptr;
+diagnostics::Made balance_of_energies(const RunOfPlate& run) {
+  return run.motion ? std::make_shared<BalanceOfEnergies>(run.view) : nullptr;
 }
 
-diagnostics::Made step_error(const PlateView& view, const std::shared_ptr<Motion>& motion) {
-  return motion ? std::make_shared<StepError>(view) : nullptr;
+diagnostics::Made step_error(const RunOfPlate& run) {
+  return run.motion ? std::make_shared<StepError>(run.view) : nullptr;
 }
 
-diagnostics::Made impact_on_seat(const PlateView& view, const std::shared_ptr<Motion>&) {
-  return view.contact ? std::make_shared<ImpactOnSeat>(view) : nullptr;
+diagnostics::Made impact_on_seat(const RunOfPlate& run) {
+  return run.view.contact ? std::make_shared<ImpactOnSeat>(run.view) : nullptr;
 }
 
 }  // namespace couplet::plate

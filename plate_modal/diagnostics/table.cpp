@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 
 namespace couplet::plate {
 
-// `motion` is nullptr in a static or modal analysis.
-#define FINDING(about, id, meaning)
-#define ESTIMATE(name, make) diagnostics::Made make(const PlateView&, const std::shared_ptr<Motion>& motion);
-#define DIAGNOSTIC ESTIMATE
-#include "plate_modal/diagnostics/table.def"
-#undef DIAGNOSTIC
-#undef ESTIMATE
+namespace {
+
+using diagnostics::When;
+using PlateRow = diagnostics::TableRow<RunOfPlate>;
+
+// "motion" adds each step to the motion, which others read; "prescribed-pressures" adds its part to the mesh error.
+constexpr std::array table{PlateRow{"balance-of-energies", When::always, balance_of_energies},
+                           PlateRow{"motion", When::always, motion_of_modes},
+                           PlateRow{"impact-on-seat", When::always, impact_on_seat},
+                           PlateRow{"plate-theory", When::always, plate_theory},
+                           PlateRow{"truncated-modes", When::always, truncated_modes},
+                           PlateRow{"mesh-of-modes", When::always, mesh_of_modes},
+                           PlateRow{"prescribed-pressures", When::always, prescribed_pressures},
+                           PlateRow{"step-error", When::with_errors, step_error}};
+
+}  // namespace
 
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all) {
   const auto motion = view.is_dynamic() ? std::make_shared<Motion>(view.surface.omega()) : nullptr;
-#define DIAGNOSTIC(name, make) all.add(name, make(view, motion));
-#define ESTIMATE(name, make) \
-  if (all.with_errors()) all.add(name, make(view, motion));
-#include "plate_modal/diagnostics/table.def"
-#undef DIAGNOSTIC
-#undef ESTIMATE
-#undef FINDING
+  all.add(std::span<const PlateRow>(table), {view, motion});
 }
 
 double PlateView::first_elastic() const {

@@ -130,8 +130,8 @@ class TruncatedModes final : public diagnostics::Diagnostic {
 
 }  // namespace
 
-diagnostics::Made truncated_modes(const PlateView& view, const std::shared_ptr<Motion>& motion) {
-  return std::make_shared<TruncatedModes>(view, motion);
+diagnostics::Made truncated_modes(const RunOfPlate& run) {
+  return std::make_shared<TruncatedModes>(run.view, run.motion);
 }
 
 }  // namespace couplet::plate

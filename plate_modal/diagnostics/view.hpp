@@ -43,6 +43,24 @@ struct PlateView {
 /// intervals. In a static analysis it is the end, if the result changes.
 std::optional<double> time_to_look(const PlateView& view);
 
+class Motion;
+
+/// Structure and the motion of its modes, which several diagnostics share.
+struct RunOfPlate {
+  const PlateView& view;
+  std::shared_ptr<Motion> motion;  ///< nullptr in a static or modal analysis
+};
+
+// Each makes a diagnostic, or nullptr if it does not apply to the structure.
+diagnostics::Made balance_of_energies(const RunOfPlate& run);
+diagnostics::Made motion_of_modes(const RunOfPlate& run);
+diagnostics::Made impact_on_seat(const RunOfPlate& run);
+diagnostics::Made plate_theory(const RunOfPlate& run);
+diagnostics::Made truncated_modes(const RunOfPlate& run);
+diagnostics::Made mesh_of_modes(const RunOfPlate& run);
+diagnostics::Made prescribed_pressures(const RunOfPlate& run);
+diagnostics::Made step_error(const RunOfPlate& run);
+
 /// Adds all diagnostics of a structure.
 void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all);
 

@@ -1,55 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 
 namespace couplet::solid {
+namespace {
 
 using diagnostics::Made;
+using diagnostics::When;
 
-// Each is in the file of its subject; nullptr if not applicable.
-#define FINDING(about, id, meaning)
-#define MADE(name, made)
-#define DIAGNOSTIC(name, make) Made make(const SolidView& view);
-#define ESTIMATE DIAGNOSTIC
-#define HEAT(name, make) Made make(const Heat& heat);
-#include "solid_solver/diagnostics/table.def"
-#undef MADE
-#undef DIAGNOSTIC
-#undef ESTIMATE
-#undef HEAT
-Made quantities(const HeatView& view);
-Made heat_error(const Heat& heat);
-Made neglected_weight(const SolidView& view, const std::shared_ptr<StrainEnergy>& strain);
-Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
-                 std::shared_ptr<Stability> stability);
+/// Solid and what several of its diagnostics share.
+struct RunOfSolid {
+  const SolidView& view;
+  std::shared_ptr<StrainEnergy> strain;  ///< nullptr at large strain
+  std::shared_ptr<Stability> stability;  ///< nullptr but in a static run at large strain
+  const Heat* heat;                      ///< nullptr unless temperatures are solved for
+};
+
+template <Made (*make)(const SolidView&)>
+Made of_solid(const RunOfSolid& run) {
+  return make(run.view);
+}
+
+template <Made (*make)(const Heat&)>
+Made of_heat(const RunOfSolid& run) {
+  return run.heat ? make(*run.heat) : nullptr;
+}
+
+Made energy_balance(const RunOfSolid& run) {
+  return run.view.body.is_dynamic() ? std::make_shared<EnergyBalance>(run.view, run.strain) : nullptr;
+}
+
+// Later ones read earlier ones: energies read strains, stresses and quantities the displacement error.
+using SolidRow = diagnostics::TableRow<RunOfSolid>;
+constexpr std::array table{
+    SolidRow{"strain-energy", When::always, [](const RunOfSolid& run) -> Made { return run.strain; }},
+    SolidRow{"linear-theory", When::always, of_solid<linear_theory>},
+    SolidRow{"energy-balance", When::always, energy_balance},
+    SolidRow{"stability", When::always, [](const RunOfSolid& run) -> Made { return run.stability; }},
+    SolidRow{"inertia", When::always, of_solid<neglected_inertia>},
+    SolidRow{"limits-of-material", When::always, of_solid<limits_of_material>},
+    SolidRow{"effects-of-heat", When::always, of_solid<effects_of_heat>},
+    SolidRow{"missing-contact", When::always, of_solid<missing_contact>},
+    SolidRow{"weight", When::always,
+             [](const RunOfSolid& run) { return neglected_weight(run.view, run.strain); }},
+    SolidRow{"heat-swing", When::always, of_heat<heat_swing>},
+    SolidRow{"heat-storage", When::always, of_heat<heat_storage>},
+    SolidRow{"impossible-temperature", When::always, of_heat<impossible_temperature>},
+    SolidRow{"error", When::with_errors,
+             [](const RunOfSolid& run) { return solid_error(run.view, run.strain, run.stability); }},
+    SolidRow{"quantities", When::always, of_solid<quantities>},
+    SolidRow{"stress-error", When::with_errors, of_solid<stress_error>}};
+
+using HeatRow = diagnostics::TableRow<HeatView>;
+constexpr std::array table_of_heat{
+    HeatRow{"heat-swing", When::always, [](const HeatView& view) { return heat_swing(view.heat); }},
+    HeatRow{"heat-storage", When::always, [](const HeatView& view) { return heat_storage(view.heat); }},
+    HeatRow{"impossible-temperature", When::always,
+            [](const HeatView& view) { return impossible_temperature(view.heat); }},
+    HeatRow{"error", When::with_errors, [](const HeatView& view) { return heat_error(view.heat); }},
+    HeatRow{"quantities", When::always, quantities}};
+
+}  // namespace
 
 void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
-  const bool is_dynamic = view.body.is_dynamic(), is_small = view.compares_gradients();
-  const auto strain = is_small ? std::make_shared<StrainEnergy>(view) : nullptr;
-  const auto stability = !is_small && !is_dynamic ? std::make_shared<Stability>(view) : nullptr;
-  const auto balance = is_dynamic ? std::make_shared<EnergyBalance>(view, strain) : nullptr;
-  const auto error = all.with_errors() ? solid_error(view, strain, stability) : nullptr;
-  const Heat* heat = view.body.thermal() ? view.body.thermal()->heat() : nullptr;
-#define MADE(name, made) all.add(name, made);
-#define DIAGNOSTIC(name, make) all.add(name, make(view));
-#define ESTIMATE(name, make) \
-  if (all.with_errors()) all.add(name, make(view));
-#define HEAT(name, make) \
-  if (heat) all.add(name, make(*heat));
-#include "solid_solver/diagnostics/table.def"
-#undef MADE
-#undef DIAGNOSTIC
-#undef ESTIMATE
-#undef HEAT
-#undef FINDING
+  const bool is_small = view.compares_gradients(), is_static = !view.body.is_dynamic();
+  all.add(std::span<const SolidRow>(table),
+          {view, is_small ? std::make_shared<StrainEnergy>(view) : nullptr,
+           !is_small && is_static ? std::make_shared<Stability>(view) : nullptr,
+           view.body.thermal() ? view.body.thermal()->heat() : nullptr});
 }
 
 void add_diagnostics(const HeatView& view, diagnostics::Diagnostics& all) {
-  all.add("heat-swing", heat_swing(view.heat));
-  all.add("heat-storage", heat_storage(view.heat));
-  all.add("impossible-temperature", impossible_temperature(view.heat));
-  if (all.with_errors()) all.add("error", heat_error(view.heat));
-  all.add("quantities", quantities(view));
+  all.add(std::span<const HeatRow>(table_of_heat), view);
 }
 
 }  // namespace couplet::solid

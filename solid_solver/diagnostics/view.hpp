@@ -36,6 +36,26 @@ struct HeatView {
   const SolidContext& context;
 };
 
+class StrainEnergy;
+class Stability;
+
+// Each makes a diagnostic, or nullptr if it does not apply to the solid.
+diagnostics::Made linear_theory(const SolidView& view);
+diagnostics::Made neglected_inertia(const SolidView& view);
+diagnostics::Made limits_of_material(const SolidView& view);
+diagnostics::Made effects_of_heat(const SolidView& view);
+diagnostics::Made missing_contact(const SolidView& view);
+diagnostics::Made neglected_weight(const SolidView& view, const std::shared_ptr<StrainEnergy>& strain);
+diagnostics::Made heat_swing(const Heat& heat);
+diagnostics::Made heat_storage(const Heat& heat);
+diagnostics::Made impossible_temperature(const Heat& heat);
+diagnostics::Made heat_error(const Heat& heat);
+diagnostics::Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
+                              std::shared_ptr<Stability> stability);
+diagnostics::Made quantities(const SolidView& view);
+diagnostics::Made quantities(const HeatView& view);
+diagnostics::Made stress_error(const SolidView& view);
+
 /// Adds all diagnostics of a solid.
 void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all);
 void add_diagnostics(const HeatView& view, diagnostics::Diagnostics& all);

@@ -80,8 +80,6 @@ def wrong_include(path, included):
     here = folder_of(path)
     if here in ("tests", "benchmarks"):
         return None
-    if str(path) == "common/diagnostics/finding.cpp" and included.endswith("/table.def"):  # ids of all programs, no code
-        return None
     target = pathlib.PurePosixPath(included)
     top = target.parts[0]
     if here == "client" and len(target.parts) > 1 and top in ("common", "tests", *PROGRAMS):

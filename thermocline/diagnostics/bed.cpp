@@ -251,18 +251,18 @@ class Gas final : public TankDiagnostic {
 
 }  // namespace
 
-Made grains(const TankView& view, const Seen& seen) { return std::make_shared<ResolvedGrains>(view, seen); }
+diagnostics::Made grains(const RunOfTank& run) { return std::make_shared<ResolvedGrains>(run); }
 
-Made still_bed(const TankView& view, const Seen& seen) { return std::make_shared<StillBed>(view, seen); }
+diagnostics::Made still_bed(const RunOfTank& run) { return std::make_shared<StillBed>(run); }
 
-Made inversions(const TankView& view, const Seen& seen) { return std::make_shared<Inversions>(view, seen); }
+diagnostics::Made inversions(const RunOfTank& run) { return std::make_shared<Inversions>(run); }
 
-Made pumping(const TankView& view, const Seen& seen) {
-  return view.parameters().pump ? nullptr : std::make_shared<Pumping>(view, seen);
+diagnostics::Made pumping(const RunOfTank& run) {
+  return run.view.parameters().pump ? nullptr : std::make_shared<Pumping>(run);
 }
 
-Made gas(const TankView& view, const Seen& seen) {
-  return view.fluid().is_gas() ? std::make_shared<Gas>(view, seen) : nullptr;
+diagnostics::Made gas(const RunOfTank& run) {
+  return run.view.fluid().is_gas() ? std::make_shared<Gas>(run) : nullptr;
 }
 
 }  // namespace couplet::thermocline

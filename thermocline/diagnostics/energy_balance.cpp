@@ -106,14 +106,10 @@ class FluidRange final : public TankDiagnostic {
 
 }  // namespace
 
-Made energy_balance(const TankView& view, const Seen& seen) {
-  return std::make_shared<EnergyBalance>(view, seen);
-}
+diagnostics::Made energy_balance(const RunOfTank& run) { return std::make_shared<EnergyBalance>(run); }
 
-Made surroundings(const TankView& view, const Seen& seen) {
-  return std::make_shared<NeglectedLosses>(view, seen);
-}
+diagnostics::Made surroundings(const RunOfTank& run) { return std::make_shared<NeglectedLosses>(run); }
 
-Made fluid_range(const TankView& view, const Seen& seen) { return std::make_shared<FluidRange>(view, seen); }
+diagnostics::Made fluid_range(const RunOfTank& run) { return std::make_shared<FluidRange>(run); }
 
 }  // namespace couplet::thermocline

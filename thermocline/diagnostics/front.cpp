@@ -104,6 +104,6 @@ class FrontError final : public TankDiagnostic {
 
 }  // namespace
 
-Made front_error(const TankView& view, const Seen& seen) { return std::make_shared<FrontError>(view, seen); }
+diagnostics::Made front_error(const RunOfTank& run) { return std::make_shared<FrontError>(run); }
 
 }  // namespace couplet::thermocline

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -7,13 +8,6 @@
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::thermocline {
-
-#define FINDING(about, id, meaning)
-#define ESTIMATE(name, make) diagnostics::Made make(const TankView&, const Seen&);
-#define DIAGNOSTIC ESTIMATE
-#include "thermocline/diagnostics/table.def"
-#undef DIAGNOSTIC
-#undef ESTIMATE
 
 namespace {
 
@@ -35,20 +29,34 @@ class ExtremesOfRun final : public TankDiagnostic {
 
 }  // namespace
 
-diagnostics::Made extremes(const TankView& view, const Seen& seen) {
-  return std::make_shared<ExtremesOfRun>(view, seen);
-}
+diagnostics::Made extremes(const RunOfTank& run) { return std::make_shared<ExtremesOfRun>(run); }
+
+namespace {
+
+using diagnostics::When;
+using TankRow = diagnostics::TableRow<RunOfTank>;
+
+// The others read the extremes.
+constexpr std::array table{TankRow{"extremes", When::always, extremes},
+                           TankRow{"energy-balance", When::always, energy_balance},
+                           TankRow{"fluid-range", When::always, fluid_range},
+                           TankRow{"grains", When::always, grains},
+                           TankRow{"still-bed", When::always, still_bed},
+                           TankRow{"inversions", When::always, inversions},
+                           TankRow{"pumping", When::always, pumping},
+                           TankRow{"gas", When::always, gas},
+                           TankRow{"wall-strength", When::always, wall_strength},
+                           TankRow{"wall-mechanics", When::always, wall_mechanics},
+                           TankRow{"surroundings", When::always, surroundings},
+                           TankRow{"unused-input", When::always, unused_input},
+                           TankRow{"front-error", When::with_errors, front_error}};
+
+}  // namespace
 
 void add_diagnostics(const TankView& view, diagnostics::Diagnostics& all) {
   const auto [low, high] = std::ranges::minmax(view.model.bed().fluid());
   const auto seen = std::make_shared<Extremes>(Extremes{.coldest = low, .hottest = high});
-#define DIAGNOSTIC(name, make) all.add(name, make(view, seen));
-#define ESTIMATE(name, make) \
-  if (all.with_errors()) all.add(name, make(view, seen));
-#include "thermocline/diagnostics/table.def"
-#undef DIAGNOSTIC
-#undef ESTIMATE
-#undef FINDING
+  all.add(std::span<const TankRow>(table), {view, seen});
 }
 
 std::pair<double, double> TankDiagnostic::range_to_come() const {

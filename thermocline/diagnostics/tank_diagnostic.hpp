@@ -20,13 +20,16 @@ struct Extremes {
   }
 };
 
-using Seen = std::shared_ptr<Extremes>;
-using diagnostics::Made;
+/// Tank and the extreme values that its diagnostics share.
+struct RunOfTank {
+  const TankView& view;
+  std::shared_ptr<Extremes> seen;
+};
 
 /// Base of diagnostics that read the tank and its extreme values.
 class TankDiagnostic : public diagnostics::Diagnostic {
  public:
-  TankDiagnostic(const TankView& view, Seen seen) : view_(view), seen_(std::move(seen)) {}
+  explicit TankDiagnostic(const RunOfTank& run) : view_(run.view), seen_(run.seen) {}
 
  protected:
   const PackedBed& bed() const { return view_.model.bed(); }
@@ -46,8 +49,23 @@ class TankDiagnostic : public diagnostics::Diagnostic {
             const std::string& sentence) const;
 
   TankView view_;
-  Seen seen_;
+  std::shared_ptr<Extremes> seen_;
 };
+
+// Each makes a diagnostic, or nullptr if it does not apply to the tank.
+diagnostics::Made extremes(const RunOfTank& run);
+diagnostics::Made energy_balance(const RunOfTank& run);
+diagnostics::Made fluid_range(const RunOfTank& run);
+diagnostics::Made grains(const RunOfTank& run);
+diagnostics::Made still_bed(const RunOfTank& run);
+diagnostics::Made inversions(const RunOfTank& run);
+diagnostics::Made pumping(const RunOfTank& run);
+diagnostics::Made gas(const RunOfTank& run);
+diagnostics::Made wall_strength(const RunOfTank& run);
+diagnostics::Made wall_mechanics(const RunOfTank& run);
+diagnostics::Made surroundings(const RunOfTank& run);
+diagnostics::Made unused_input(const RunOfTank& run);
+diagnostics::Made front_error(const RunOfTank& run);
 
 /// Adds the diagnostics of a tank.
 void add_diagnostics(const TankView& view, diagnostics::Diagnostics& all);

@@ -13,8 +13,8 @@ namespace {
 /// that the report could not use.
 class UnusedInput final : public TankDiagnostic {
  public:
-  UnusedInput(const TankView& view, const Seen& seen)
-      : TankDiagnostic(view, seen), flowed_(view.parameters().flow.rows.size(), 0) {}
+  explicit UnusedInput(const RunOfTank& run)
+      : TankDiagnostic(run), flowed_(run.view.parameters().flow.rows.size(), 0) {}
   void observe(diagnostics::Report&) override {
     for (const BedStep& s : view_.happened.bed) {
       reached_ = s.t;
@@ -122,8 +122,6 @@ class UnusedInput final : public TankDiagnostic {
 
 }  // namespace
 
-Made unused_input(const TankView& view, const Seen& seen) {
-  return std::make_shared<UnusedInput>(view, seen);
-}
+diagnostics::Made unused_input(const RunOfTank& run) { return std::make_shared<UnusedInput>(run); }
 
 }  // namespace couplet::thermocline

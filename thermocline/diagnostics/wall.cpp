@@ -109,12 +109,12 @@ class WallMechanics final : public TankDiagnostic {
 
 }  // namespace
 
-Made wall_strength(const TankView& view, const Seen& seen) {
-  return view.model.shell() ? std::make_shared<WallStrength>(view, seen) : nullptr;
+diagnostics::Made wall_strength(const RunOfTank& run) {
+  return run.view.model.shell() ? std::make_shared<WallStrength>(run) : nullptr;
 }
 
-Made wall_mechanics(const TankView& view, const Seen& seen) {
-  return view.model.shell() ? std::make_shared<WallMechanics>(view, seen) : nullptr;
+diagnostics::Made wall_mechanics(const RunOfTank& run) {
+  return run.view.model.shell() ? std::make_shared<WallMechanics>(run) : nullptr;
 }
 
 }  // namespace couplet::thermocline

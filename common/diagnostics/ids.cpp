@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Findings of all programs. Each program must know all ids, because a case accepts findings for the whole job.
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "common/base/text.hpp"
+#include "common/diagnostics/finding.hpp"
+
+namespace couplet::diagnostics {
+namespace {
+
+constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::neglected;
+
+constexpr std::array ids{
+    // common
+    FindingId{answer, "error-estimate", "the estimated error is more than 0.15 of the solution"},
+    FindingId{answer, "questionable-key", "a value of the case is far outside the usual range"},
+    FindingId{answer, "questionable-mesh-scale", "the size of the mesh does not fit the scene"},
+    FindingId{answer, "given-without-effect",
+              "a load, inlet, source, body, motion or table of the case never acted"},
+    FindingId{
+        answer, "unseen-between-steps",
+        "an expression of time varies between two steps, by more than half of its largest value, in a way that no step sees"},
+    FindingId{answer, "distorted-mesh", "a cell of the moved mesh is folded at a corner"},
+    FindingId{answer, "table-left", "a table of a material was read outside its range"},
+    FindingId{
+        answer, "atmosphere-on-one-side",
+        "the load of a fluid is one even pressure, about that of the atmosphere, on one side of a structure only"},
+    FindingId{answer, "changed-since-checkpoint", "a resumed run continues with another case"},
+    FindingId{neglected, "inertia", "a static run under a load that inertia would resist"},
+    FindingId{neglected, "gravity", "the weight matters beside the loads"},
+    FindingId{neglected, "damping", "damping would take a part of the motion"},
+    // coupler
+    FindingId{answer, "iteration-of-pressure-and-structure",
+              "one pass per step is near its added-mass limit"},
+    FindingId{answer, "interface-oscillation",
+              "the interface oscillates from step to step with growing amplitude"},
+    FindingId{answer, "interface-work", "work given and work taken over the whole run differ"},
+    FindingId{answer, "velocity-and-displacement",
+              "a participant gives a velocity that is not the rate of the displacement beside it"},
+    FindingId{answer, "displacement-scale",
+              "a participant gives a displacement far larger than its interface: another unit"},
+    FindingId{answer, "structure-at-rest", "a loaded structure has not moved for ten steps"},
+    FindingId{answer, "unconverged-step",
+              "a step of an iterated coupling was accepted before it had converged"},
+    FindingId{neglected, "viscous-coupling-load", "no structure takes the forces that the fluid gives"},
+    FindingId{answer, "noise-of-the-coupling",
+              "residuals of the iteration are a noticeable part of the interface's acceleration"},
+    FindingId{answer, "surfaces-apart", "surfaces that move together differ in size or position"},
+    // fluid_solver
+    FindingId{answer, "flow-through-openings", "fluid leaves through an inlet or enters through an outlet"},
+    FindingId{answer, "weight-over-an-opening", "gravity, and one pressure over the height of an opening"},
+    FindingId{answer, "inflow-at-total-pressure",
+              "an outlet takes its pressure as the total pressure of fluid that enters"},
+    FindingId{answer, "given-step", "a prescribed time step far beyond what is stable on this mesh"},
+    FindingId{answer, "balance-of-the-kinetic-energy", "the flow has kinetic energy that no work explains"},
+    FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
+    FindingId{
+        answer, "eddy-viscosity-in-two-dimensions",
+        "a turbulence model in two dimensions or on a mesh one cell deep, where it is added friction only"},
+    FindingId{answer, "ringing-pressure", "waves that no step resolves ring in a trapezoidal rule"},
+    FindingId{answer, "small-changes-of-density", "a weakly compressible fluid changes its density too much"},
+    FindingId{neglected, "turbulence-model", "the mesh does not resolve layers of this Reynolds number"},
+    FindingId{neglected, "compressibility", "the Mach number is high"},
+    FindingId{neglected, "waves-of-pressure", "pressure waves or the fluid's compliance matter"},
+    FindingId{neglected, "mesh-motion", "an interface moves, but the mesh does not"},
+    // plate_modal
+    FindingId{answer, "balance-of-the-energies", "the energies of the modes do not balance"},
+    FindingId{answer, "step-that-resolves-the-contact", "an impact is shorter than ten steps"},
+    FindingId{answer, "deflection-beyond-the-modes", "the loads excite truncated modes"},
+    FindingId{answer, "load-faster-than-the-modes", "the load oscillates faster than the highest mode kept"},
+    FindingId{answer, "initial-velocity-beyond-the-modes", "the modes cannot represent the initial velocity"},
+    FindingId{answer, "load-that-moves-no-mode", "the load excites no mode"},
+    FindingId{answer, "load-within-a-face", "the load varies within a face"},
+    FindingId{neglected, "large-rotation", "rotations too large for linear modes"},
+    FindingId{neglected, "motion-in-the-plane", "loads in the plane of the plate"},
+    FindingId{neglected, "stretch-of-the-mid-surface", "deflection that stretches the mid-surface"},
+    FindingId{neglected, "shear-and-rotary-inertia", "modes with wavelengths too short for a thin plate"},
+    // solid_solver
+    FindingId{answer, "stress-error",
+              "estimated error of the stress at a probe, and of the largest equivalent stress"},
+    FindingId{answer, "quantity-error", "estimated error of a quantity of interest"},
+    FindingId{answer, "strain-energy", "work and strain energy, or two face gradients, disagree"},
+    FindingId{answer, "energy-growth", "the motion has more energy than was supplied"},
+    FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},
+    FindingId{answer, "impossible-temperature", "a temperature below absolute zero"},
+    FindingId{answer, "buckling", "the loads of a linear static run are near or above the buckling loads"},
+    FindingId{answer, "unstable-equilibrium", "the computed equilibrium is unstable"},
+    FindingId{answer, "limit-load", "a run by arc length passed a maximum or minimum of the load"},
+    FindingId{neglected, "geometric-non-linearity", "large displacement gradients in a linear run"},
+    FindingId{neglected, "contact", "faces of the body pass through each other"},
+    FindingId{neglected, "yielding", "the stress exceeds the yield strength"},
+    FindingId{neglected, "near-incompressibility",
+              "Poisson's ratio near 0.5 without one volume strain per cell"},
+    FindingId{neglected, "thermal-strain", "temperatures that would strain the body"},
+    FindingId{neglected, "storage-of-heat", "a steady temperature under loads that change too fast for it"},
+    FindingId{neglected, "thermoelastic-coupling", "heat of deformation would stiffen the body"},
+    // thermocline
+    FindingId{answer, "weather-data", "the weather is questionable"},
+    FindingId{answer, "calendar", "the plant's calendar is questionable"},
+    FindingId{answer, "prices", "prices of items that the plant does not have"},
+    FindingId{answer, "tank-state", "the tank has left the validity range of its closures"},
+    FindingId{answer, "day-report", "the report has no valid basis"},
+    FindingId{answer, "flow-schedule", "rows of a schedule that never ran, or a plant that moved no heat"},
+    FindingId{answer, "never-melted", "a phase-change filler that never melted"},
+    FindingId{neglected, "mixing-of-inverted-fluid", "cold fluid above hot that would sink"},
+    FindingId{neglected, "resolved-grains", "grains with a temperature gradient inside"},
+    FindingId{neglected, "range-of-the-film-correlation",
+              "grains whose film is not in the range of its correlation, and matters"},
+    FindingId{neglected, "conduction-through-the-grains", "a bed whose grains do not conduct along it"},
+    FindingId{neglected, "radiation-between-the-grains", "a gas bed whose grains do not radiate"},
+    FindingId{neglected, "pressure-loss-of-the-bed", "the bed's pressure loss consumes a share of the heat"},
+    FindingId{neglected, "yielding-of-the-wall", "the wall would yield"},
+    FindingId{neglected, "bending-of-the-wall", "bending adds to the wall's stress"},
+    FindingId{neglected, "compressible-flow-of-a-gas", "the gas flows at a high Mach number"},
+    FindingId{neglected, "specific-heat-of-a-gas-by-its-temperature", "the specific heat varies"},
+};
+
+}  // namespace
+
+std::span<const FindingId> finding_ids() { return ids; }
+
+const FindingId& finding_id(const std::string& id) {
+  for (const FindingId& known : ids)
+    if (id == known.id) return known;
+  throw std::logic_error("common/diagnostics/ids.cpp has no finding '" + id + "'");
+}
+
+std::string unknown_ids(std::span<const std::string> ids) {
+  std::vector<std::string> known;
+  for (const FindingId& f : finding_ids()) known.push_back(f.id);
+  std::string text;
+  for (const std::string& id : ids) {
+    if (std::ranges::count(known, id) > 0) continue;
+    const auto meant = base::closest(id, known);
+    text += fmt::format("{}unknown finding '{}'{}", text.empty() ? "" : "; ", id,
+                        meant ? fmt::format(", did you mean '{}'?", *meant) : "");
+  }
+  return text.empty() ? text : fmt::format("{}. Findings: {}", text, base::join(known));
+}
+
+}  // namespace couplet::diagnostics
