@@ -36,12 +36,6 @@ int main(int argc, char** argv) {
       .diagnose = [](const coupling::Participant& participant,
                      diagnostics::Diagnostics& all) { fluid::add_diagnostics(participant, all); },
       .environment = linalg::petsc_environment,
-      .effects =
-          [&](const diagnostics::CaseScene& scene) {
-            return diagnostics::effects_of(
-                fluid::fluid_effect_cards(),
-                fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
-          },
       .choose =
           [&](const diagnostics::CaseScene& scene) {
             return fluid::choose_effects(parameters,

@@ -57,8 +57,6 @@ int main(int argc, char** argv) {
             all.add("least-jacobian",
                     std::make_shared<LeastJacobian>(dynamic_cast<const Mover&>(participant)));
           },
-      .environment = linalg::petsc_environment,
-      .effects =
-          [&](const diagnostics::CaseScene&) { return diagnostics::effects_of(effect_cards(), parameters); }};
+      .environment = linalg::petsc_environment};
   return app::run_program(argc, argv, program);
 }

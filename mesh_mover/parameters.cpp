@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_mover/parameters.hpp"
 
-#include <algorithm>
-#include <array>
-
 namespace couplet::mesh_mover {
 
 namespace {
@@ -63,40 +60,6 @@ void declare_method(config::Section& s, Parameters& p) {
   s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("Poisson's ratio of the pseudo-solid");
 }
 
-using P = Parameters;
-std::string when(bool on, const char* reason) { return on ? reason : ""; }
-
-bool has(const P& p, BoundaryMotion motion) {
-  return std::ranges::any_of(p.boundaries, [&](const auto& b) { return b.second.motion == motion; });
-}
-
-const std::array cards{
-    Card{"volume stiffening", "`stiffening` above 0",
-         [](const P& p) { return when(p.stiffening > 0, "stiffening"); },
-         "a stiffness per face, computed once"},
-    Card{"sliding patches", "a boundary of `type: slip`",
-         [](const P& p) { return when(has(p, BoundaryMotion::slip), "a boundary of type slip"); },
-         "a separate matrix for each direction that is held differently; on curved patches the nearest "
-         "point of the patch for each mesh point"},
-    Card{"periodic patches", "a boundary of `type: periodic`",
-         [](const P& p) { return when(has(p, BoundaryMotion::periodic), "a boundary of type periodic"); },
-         "a sum over the points of these patches per component and motion"},
-    Card{"elastic mesh motion", "`method: pseudo-solid`",
-         [](const P& p) { return when(p.method == Method::pseudo_solid, "method: pseudo-solid"); },
-         "an elastic body of all cells, one coupled solve per motion"},
-    Card{"mesh motion by a barrier", "`method: barrier`, or `auto` where laplacian would invert a cell",
-         [](const P& p) { return when(p.method == Method::barrier, "method: barrier"); },
-         "Newton's method on the distortion of the cells: a matrix and its factors where they have aged"},
-    Card{"prescribed motion of patches", "a boundary of `type: moving`",
-         [](const P& p) { return when(has(p, BoundaryMotion::moving), "a boundary of type moving"); },
-         "its expressions at the patch's points"},
-    Card{"limits on cell quality", "a limit in `guard`",
-         [](const P& p) { return when(p.guard.judges_shape(), "guard"); },
-         "quality measures of all cells in each solve"},
-    Card{"third dimension", "`dimension: 3`",
-         [](const P& p) { return when(p.dimension == 3, "dimension: 3"); }},
-};
-
 }  // namespace
 
 void declare(config::Section& section, Parameters& p) {
@@ -145,7 +108,5 @@ void declare(config::Section& section, Parameters& p) {
       },
       "method");
 }
-
-std::span<const Card> effect_cards() { return cards; }
 
 }  // namespace couplet::mesh_mover

@@ -3,11 +3,10 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "common/config/section.hpp"
-#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/choices.hpp"
 #include "common/fv/prescribed_motion.hpp"
 #include "common/linalg/linear_solver.hpp"
 
@@ -64,8 +63,5 @@ struct Parameters {
 };
 
 void declare(config::Section& section, Parameters& parameters);
-
-using Card = diagnostics::EffectEntry<Parameters>;
-std::span<const Card> effect_cards();
 
 }  // namespace couplet::mesh_mover

@@ -20,12 +20,6 @@ int main(int argc, char** argv) {
             add_diagnostics(dynamic_cast<const couplet::plate::Structure&>(participant).view(), all);
           },
       .environment = couplet::linalg::petsc_environment,
-      .effects =
-          [&](const couplet::diagnostics::CaseScene& scene) {
-            return couplet::diagnostics::effects_of(
-                couplet::plate::plate_effect_cards(),
-                couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
-          },
       .problems_of_files =
           [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::plate::problems_of_files(parameters, scene.folder);

@@ -6,7 +6,7 @@
 #include "common/io/cut_mesh.hpp"
 #include "common/linalg/petsc.hpp"
 #include "solid_solver/boundary/checks.hpp"
-#include "solid_solver/effects.hpp"
+#include "solid_solver/choices.hpp"
 #include "solid_solver/solid.hpp"
 
 namespace {
@@ -52,10 +52,6 @@ int main(int argc, char** argv) {
               add_diagnostics(static_cast<couplet::solid::Solid&>(participant).view(), all);
           },
       .environment = couplet::linalg::petsc_environment,
-      .effects =
-          [&](const couplet::diagnostics::CaseScene&) {
-            return couplet::diagnostics::effects_of(couplet::solid::solid_effect_cards(), parameters);
-          },
       .choose =
           [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::solid::choose_effects(

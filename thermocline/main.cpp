@@ -19,10 +19,6 @@ int main(int argc, char** argv) {
             if (const auto* tank = dynamic_cast<const couplet::thermocline::Tank*>(&participant))
               add_diagnostics(tank->view(), all);
           },
-      .effects =
-          [&](const couplet::diagnostics::CaseScene&) {
-            return couplet::diagnostics::effects_of(couplet::thermocline::effect_cards(), parameters);
-          },
       .problems_of_files =
           [&](const couplet::diagnostics::CaseScene& scene) {
             return couplet::thermocline::problems_of_files(parameters, scene.folder);

@@ -80,12 +80,6 @@ int run(const Job& job, const Program& program) {
             parallel::comm_size(job.comm) == 1 ? "" : "s");
   warn_of_shared_cores(job);
   for (const diagnostics::EffectChoice& choice : job.choices) log::info("{}", diagnostics::text(choice));
-  if (program.effects) {
-    const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
-    log::info("{}", diagnostics::summary(program.effects({.time_step = job.simulation.time_step,
-                                                          .coupled = !job.alone,
-                                                          .has_mover = !job.alone && has_mover})));
-  }
   const std::unique_ptr<coupling::Participant> participant = program.make(context);
   return job.alone ? run_alone(job, *participant, program.diagnose)
                    : run_coupled(job, coupler, *participant, program.diagnose);

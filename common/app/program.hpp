@@ -13,8 +13,8 @@
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/choices.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/diagnostics/effects.hpp"
 
 namespace couplet::app {
 
@@ -52,8 +52,6 @@ struct Program {
   /// Holds libraries while the participant exists (petsc_environment()), or is empty. Programs without it do
   /// not link PETSc, which takes 60 ms to load.
   std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};
-  /// Lists the effects for the parameters that `declare` filled. Empty if not available.
-  std::function<std::vector<diagnostics::Effect>(const diagnostics::CaseScene&)> effects = {};
   /// Makes the decisions of `simulation.effects: auto` that the YAML leaves open. Empty if there are none.
   std::function<std::vector<diagnostics::EffectChoice>(const diagnostics::CaseScene&)> choose = {};
   /// Estimates memory and time per step for --explain. Empty if not available.

@@ -10,8 +10,8 @@
 
 #include "common/app/job.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/diagnostics/choices.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/diagnostics/effects.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/io/series.hpp"
 

@@ -64,6 +64,12 @@ struct FindingId {
   enum class About { answer, neglected } about;
   const char* id;
   const char* meaning;
+  /// Of a neglected effect, for --explain and docs/effects.md.
+  struct Effect {
+    const char* programs = "";  ///< that judge it, separated by blanks
+    const char* key = "";       ///< that simulates it: "gravity", "analysis: dynamic"; empty if there is none
+    const char* number = "";    ///< by which a run judges it
+  } effect{};
 };
 std::span<const FindingId> finding_ids();
 /// Throws std::logic_error for an unknown id.

@@ -12,7 +12,7 @@
 
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
-#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/choices.hpp"
 #include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
@@ -307,16 +307,6 @@ struct GradientField {
 };
 /// All such fields.
 std::span<const GradientField> gradient_fields();
-
-/// Input of the effect cards: the parameters, and the facts about the job around the fluid.
-struct FluidScene {
-  FluidParameters parameters;
-  bool moving_mesh = false;  ///< the job has a mesh mover
-  bool coupled = false;
-};
-
-using FluidCard = diagnostics::EffectEntry<FluidScene>;
-std::span<const FluidCard> fluid_effect_cards();
 
 /// A place of a patch at which its expressions are looked at. Velocities along the face carry no volume through it.
 struct PlaceOfPatch {

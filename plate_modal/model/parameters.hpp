@@ -10,7 +10,7 @@
 
 #include "common/config/section.hpp"
 #include "common/contact/contact.hpp"
-#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/choices.hpp"
 #include "common/time/time_scheme.hpp"
 #include "plate_modal/model/plate_model.hpp"
 
@@ -79,15 +79,5 @@ struct Parameters {
 
 /// Declares the keys of `participants.<name>` of a plate_modal.
 void declare(config::Section& section, Parameters& parameters);
-
-/// Input of the effect cards: the parameters, and whether a coupler gives fluid forces.
-struct PlateScene {
-  Parameters parameters;
-  bool coupled = false;
-  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN if unknown
-};
-using PlateCard = diagnostics::EffectEntry<PlateScene>;
-/// Effects that a modal structure can simulate beyond its modes, for --explain and docs/effects.md.
-std::span<const PlateCard> plate_effect_cards();
 
 }  // namespace couplet::plate

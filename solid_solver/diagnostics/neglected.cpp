@@ -17,7 +17,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 #include "solid_solver/diagnostics/view.hpp"
-#include "solid_solver/effects.hpp"
+#include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -25,6 +25,12 @@ namespace {
 using P = SolidParameters;
 
 bool deforms(const P& p) { return p.analysis != P::Analysis::thermal; }
+
+/// True if the volume strain of cells replaces that of faces, which avoids locking near incompressibility.
+bool has_volume_strain_of_cells(const P& p) {
+  return face_gradient_scheme(p) == elastic::FaceGradientScheme::symmetric &&
+         volume_strain_of(p) != elastic::VolumeStrain::faces;
+}
 
 bool has_interface(const P& p) {
   return std::ranges::any_of(p.boundaries, [](const auto& one) { return is_interface(one.second); });

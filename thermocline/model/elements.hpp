@@ -8,7 +8,7 @@
 
 #include "common/app/program.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/choices.hpp"
 #include "thermocline/model/parameters.hpp"
 
 /// Elements of a tank as separate participants. The tank gives temperatures; they return the heat that they
@@ -49,8 +49,6 @@ struct ElementParameters {
   BlanketElementParameters blanket;
 };
 void declare(config::Section& section, ElementParameters& parameters);
-/// Effects that a tank can simulate, for --explain and docs/effects.md.
-std::span<const diagnostics::EffectEntry<ElementParameters>> effect_cards();
 
 /// Adds the rows of flow.file to the parameters. Throws Error with file:line.
 TankParameters with_files(TankParameters parameters, const std::filesystem::path& case_folder);

@@ -12,7 +12,7 @@
 #include "common/app/loop/step_loop.hpp"
 #include "common/app/program.hpp"
 #include "common/config/load.hpp"
-#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/choices.hpp"
 
 namespace couplet::app {
 

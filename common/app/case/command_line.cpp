@@ -68,8 +68,8 @@ CommandLine::Strict strictness(const std::string& word) {
 
 /// Options that are not stored in the command line.
 struct Flags {
-  bool check = false, docs = false, schema = false, print_config = false, explain = false, effects = false,
-       verbose = false, quiet = false;
+  bool check = false, docs = false, schema = false, print_config = false, explain = false, verbose = false,
+       quiet = false;
   std::string strict;
 };
 
@@ -104,7 +104,6 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
   app.add_flag("--print-config", flags.print_config, "print all values in effect as YAML");
   app.add_flag("--explain", flags.explain,
                "print the effects of the scene, their costs and the launch line; runs nothing");
-  app.add_flag("--effects", flags.effects, "print the list of all effects as Markdown");
   app.add_flag("-v,--verbose", flags.verbose, "log more, on every rank");
   app.add_flag("-q,--quiet", flags.quiet, "log warnings and errors only");
 }
@@ -116,7 +115,6 @@ void take_task(const Flags& flags, CommandLine& line) {
   if (flags.schema) line.task = Task::schema;
   if (flags.print_config) line.task = Task::print_config;
   if (flags.explain) line.task = Task::explain;
-  if (flags.effects) line.task = Task::effects;
   line.verbosity = flags.verbose ? log::Verbosity::verbose
                    : flags.quiet ? log::Verbosity::quiet
                                  : log::Verbosity::normal;
@@ -141,16 +139,15 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
     app.parse(argc, argv);
     if (const std::vector<std::string> rest = app.remaining(); !rest.empty())
       throw CLI::ExtrasError(explain_extra(app, rest.front()), CLI::ExitCodes::ExtrasError);
-    if (flags.check + flags.docs + flags.schema + flags.print_config + flags.explain + flags.effects > 1)
-      throw CLI::ExcludesError(
-          "Use only one of --check, --docs, --schema, --print-config, --explain and --effects.",
-          CLI::ExitCodes::ExcludesError);
+    if (flags.check + flags.docs + flags.schema + flags.print_config + flags.explain > 1)
+      throw CLI::ExcludesError("Use only one of --check, --docs, --schema, --print-config and --explain.",
+                               CLI::ExitCodes::ExcludesError);
     if (flags.verbose && flags.quiet)
       throw CLI::ExcludesError("Use either --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
     line.strict = strictness(flags.strict);
     if (const std::string problem = diagnostics::unknown_ids(line.accept); !problem.empty())
       throw CLI::ValidationError("--accept: " + problem);
-    if (line.case_file.empty() && !flags.docs && !flags.schema && !flags.effects)
+    if (line.case_file.empty() && !flags.docs && !flags.schema)
       throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
                                  " case.yaml");
   } catch (const CLI::ParseError& error) {

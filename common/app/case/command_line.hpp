@@ -13,8 +13,8 @@ namespace couplet::app {
 
 /// Command line, which is the same for all programs.
 struct CommandLine {
-  enum class Task { run, check, docs, schema, print_config, explain, effects } task = Task::run;
-  std::filesystem::path case_file;       ///< empty for docs, schema and effects
+  enum class Task { run, check, docs, schema, print_config, explain } task = Task::run;
+  std::filesystem::path case_file;       ///< empty for docs and schema
   std::string participant;               ///< if empty, the only one in the YAML that names this program
   std::vector<std::string> overrides;    ///< "a.b=v", for config::Document::set
   std::filesystem::path restart_folder;  ///< empty for a fresh start

@@ -208,6 +208,36 @@ void print_expected(const diagnostics::CaseScene& scene, const Program& program)
   }
 }
 
+/// True if the values have a key that switches an effect on: "gravity", "analysis: dynamic", "bed.shells above 1" or one of two.
+bool is_on(const config::Document& values, const std::string& key) {
+  if (key.empty()) return false;
+  if (const std::size_t either = key.find(" or "); either != key.npos)
+    return is_on(values, key.substr(0, either)) || is_on(values, key.substr(either + 4));
+  const std::size_t word = key.find(": "), number = key.find(" above ");
+  const std::string path = key.substr(0, std::min(word, number));
+  const auto text = config::text_of(values, path);
+  if (word != key.npos) return text == key.substr(word + 2);
+  if (number != key.npos) return text && std::stod(*text) > std::stod(key.substr(number + 7));
+  return text.has_value() || !config::keys_of(values, path).empty() ||
+         !config::texts_of(values, path).empty();
+}
+
+/// Prints the effects that change the result of this program where a case leaves them out.
+void print_effects(const CaseFile& file, const Program& program) {
+  const config::Document values = config::Document::parse(config::effective(section_of(program)));
+  std::string on, off;
+  for (const diagnostics::FindingId& finding : diagnostics::finding_ids()) {
+    const auto& [programs, key, number] = finding.effect;
+    if (std::string_view(programs).find(program.name) == std::string_view::npos) continue;
+    if (is_on(values, key) || is_on(*file.document, key))
+      on += fmt::format("  on   {}: {}\n", finding.id, key);
+    else
+      off += fmt::format("  off  {}: {}; the run judges it by: {}\n", finding.id,
+                         *key == '\0' ? "not in the model" : fmt::format("'{}'", key), number);
+  }
+  fmt::print("{}{}", on, off);
+}
+
 /// Prints the effects of the scene and the launch line without running anything.
 int explain(const CommandLine& command_line, const Program& program) {
   const CaseFile file = read_case(command_line, program);
@@ -220,7 +250,7 @@ int explain(const CommandLine& command_line, const Program& program) {
              command_line.case_file.string());
   for (const diagnostics::EffectChoice& choice : file.choices)
     fmt::print("  {}\n", diagnostics::text(choice));
-  if (program.effects) fmt::print("{}", diagnostics::explanation(program.effects(scene)));
+  print_effects(file, program);
   if (program.expected) print_expected(scene, program);
   fmt::print("{} {}\n", file.coupled ? "whole case:       couplet run" : "launch:           " + program.name,
              command_line.case_file.string());
@@ -247,9 +277,6 @@ int answer(const CommandLine& command_line, const Program& program) {
       return 0;
     case Task::explain:
       return explain(command_line, program);
-    case Task::effects:
-      if (program.effects) fmt::print("{}", diagnostics::markdown(program.name, program.effects({})));
-      return 0;
     case Task::run:
       break;
   }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/diagnostics/effects.hpp"
 #include "common/diagnostics/diagnostics.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 #include "plate_modal/model/parameters.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"
-#include "solid_solver/effects.hpp"
 #include "tests/support/test.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
@@ -13,7 +11,6 @@ namespace couplet::testing::cards_test {
 using namespace diagnostics;
 using namespace solid;
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -44,17 +41,6 @@ SolidParameters static_solid() {
   p.analysis = SolidParameters::Analysis::static_;
   p.material = {.density = 1000, .youngs_modulus = 1e9, .poissons_ratio = 0.3};
   return p;
-}
-
-TEST(Effects, a_scene_has_the_effects_that_it_asks_for_and_no_others) {
-  SolidParameters p = static_solid();
-  p.gravity = {0, 0, -9.81};
-  std::vector<std::string> on;
-  for (const Effect& e : effects_of(solid_effect_cards(), p))
-    if (e.on()) on.push_back(e.name);
-  EXPECT_THAT(on, ElementsAre("gravity", "third dimension"));
-  p.analysis = SolidParameters::Analysis::dynamic;
-  EXPECT_THAT(summary(effects_of(solid_effect_cards(), p)), HasSubstr("inertia (analysis: dynamic)"));
 }
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

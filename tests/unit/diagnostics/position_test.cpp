@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/diagnostics/choices.hpp"
 #include "common/diagnostics/diagnostics.hpp"
-#include "common/diagnostics/effects.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::diagnostics::position_test {

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "common/diagnostics/effects.hpp"
+#include "common/diagnostics/choices.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {
-
-using SolidCard = diagnostics::EffectEntry<SolidParameters>;
-/// True if the volume strain of cells replaces that of faces, which avoids locking near incompressibility.
-bool has_volume_strain_of_cells(const SolidParameters& parameters);
-/// All effects beyond linear elasticity, in the order of the report.
-std::span<const SolidCard> solid_effect_cards();
 
 /// Resolves `effects: auto` of a solid: dimension and inertia. Inertia is judged by the lowest period of a
 /// clamped bar of the size of the mesh, T = 2 pi L^2/(3.516 h) sqrt(12 rho/E), relative to the time scale tau
