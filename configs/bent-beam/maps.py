@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Stretch along the axis and shear of its sections at K = 10, as figures 3.12 and 3.13 of the thesis, for beams 10, 20 and 40 sides long.
 Usage: maps.py [PICTURE.png] [--across N] [--build build]: runs solid_solver three times, about a minute with 4 cells across; by default
-docs/pictures/bent-beam.png."""
+out/bent-beam.png."""
 import argparse
 import math
 import pathlib
@@ -94,7 +94,7 @@ def text(section):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("picture", nargs="?", type=pathlib.Path, default=ROOT / "docs" / "pictures" / "bent-beam.png")
+    parser.add_argument("picture", nargs="?", type=pathlib.Path, default=HERE / "out/bent-beam.png")
     parser.add_argument("--across", type=int, default=4)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     options = parser.parse_args()
@@ -107,6 +107,7 @@ def main():
                            stdout=subprocess.DEVNULL)
             sections[sides] = Section(folder, options.across)
             print(f"L = {sides} sides: {text(sections[sides])}", flush=True)
+    options.picture.parent.mkdir(exist_ok=True)
     picture(sections, options.picture)
     print(f"picture: {options.picture}")
 

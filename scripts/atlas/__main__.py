@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the atlas of stability: where each scheme is stable and where it fails, from runs of the programs. Writes MAP.csv and MAP.png and, for
-docs/stability, docs/stability.md. Exit code 1 if a square is a wrong result without a guard or warning.
+"""Draws the atlas of stability: where each scheme is stable and where it fails, from runs of the programs. Writes MAP.csv and, for
+docs/stability, docs/stability.md; for other folders MAP.png. Exit code 1 if a square is a wrong result without a guard or warning.
 Usage: python3 scripts/atlas [MAP ...]"""
 import argparse
 import collections
@@ -14,14 +14,29 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "client/python")]
 import atlas  # noqa: E402
 
 
+MARKS = {atlas.HOLDS: "", atlas.POOR: " ~", atlas.WARNED: " w", atlas.REFUSED: "", atlas.RED: " **wrong**"}
+
+
+def tables(map_, squares):
+    """The squares of each panel as a table, the largest y first as in the picture."""
+    text, xs = "", map_.x["values"]
+    for panel in map_.panels:
+        text += f"\n| {panel or 'y'} | " + " | ".join(f"{x:g}" for x in xs) + " |\n|" + "---|" * (len(xs) + 1) + "\n"
+        for y in reversed(map_.y["values"]):
+            row = [squares[panel, float(x), float(y)] for x in xs]
+            text += f"| {y:g} | " + " | ".join("stop" if s.code else f"{s.number:.2g}{MARKS[s.outcome]}" for s in row) + " |\n"
+    return text
+
+
 def page(maps, folder):
     text = (pathlib.Path(__file__).parent / "head.txt").read_text()
     for m in maps.values():
         squares = atlas.read(folder / f"{m.name}.csv")
         counts = collections.Counter(s.outcome for s in squares.values())
         if squares:
-            text += f"\n## {m.title}\n\n{m.about}\n\n![{m.title}](stability/{m.name}.png)\n\n"
-            text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv).*\n"
+            text += f"\n## {m.title}\n\n{m.about}\n\n"
+            text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv). Columns: {m.x['label']}; rows: {m.y['label']}.*\n"
+            text += tables(m, squares)
         if squares and m.given.get("without-halving"):
             text += "\n*These runs did not halve failed steps, as the default settings do. Squares that stopped may be stable now.*\n"
     if lost := atlas.missing_tests():
@@ -61,7 +76,8 @@ def main():
         except RuntimeError as error:
             lost.append(f"{m.name}: could not be measured: {error}")
             continue
-        draw.picture(m, squares, arguments.out / f"{m.name}.png")
+        if arguments.out != ROOT / "docs/stability":  # the site draws those
+            draw.picture(m, squares, arguments.out / f"{m.name}.png")
         wrong = [k for k, s in squares.items() if s.outcome == atlas.RED]
         red += [f"RED {m.name}: {panel}, x {x:g}, y {y:g}" for panel, x, y in wrong]
         print(f"{m.name}: {len(squares)} squares, {len(wrong)} red, {time.monotonic() - start:.0f} s", flush=True)

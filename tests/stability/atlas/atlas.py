@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""No square of the atlas is red: every map has its whole table and picture, the outcome of each square follows from its error, exit code and warning, and each
+"""No square of the atlas is red: every map has its whole table, the outcome of each square follows from its error, exit code and warning, and each
 hard case has its test.
 Usage: atlas.py PROJECT_ROOT"""
 import math
@@ -14,7 +14,7 @@ wrong = []
 count = 0
 for name, m in atlas.maps().items():
     squares = atlas.read(root / f"docs/stability/{name}.csv")
-    if set(squares) != set(atlas.keys(m)) or not (root / f"docs/stability/{name}.png").exists():
+    if set(squares) != set(atlas.keys(m)):
         wrong.append(f"{name}: {len(squares)} squares")
     count += len(squares)
     wrong += [f"{name} {key}: {s}" for key, s in squares.items() if s.outcome == atlas.RED or s.outcome != atlas.outcome(s.error, s.code, s.doubted)]

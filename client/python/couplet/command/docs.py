@@ -14,18 +14,19 @@ def declare(parser):
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="builds the site into this folder and exits")
     parser.add_argument("--port", type=int, default=0, metavar="N", help="port on localhost (default: any free one)")
     parser.add_argument("--again", action="store_true", help="builds it again even if it exists")
+    parser.add_argument("--plots", action="store_true", help="builds it again with the plots of the validation studies and of the maps of stability, which takes minutes")
 
 
-def built(again):
+def built(arguments):
     """Folder with the site of this version."""
     from couplet.command import version
     from couplet.places import ROOT
     cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "couplet" / f"site-{version()}-{ROOT.name}"
     newest = max(((ROOT / page).stat().st_mtime for page in site.pages() if (ROOT / page).exists()), default=0)
     mark = cache / "index.html"
-    if again or not mark.exists() or mark.stat().st_mtime < newest:
-        print("Building the site (about 10 s) ...", flush=True)
-        site.build(cache)
+    if arguments.again or arguments.plots or not mark.exists() or mark.stat().st_mtime < newest:
+        print(f"Building the site ({'minutes' if arguments.plots else 'about 10 s'}) ...", flush=True)
+        site.build(cache, arguments.plots)
     return cache
 
 
@@ -42,11 +43,11 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 
 def run(arguments):
     if arguments.build:
-        for line in site.build(arguments.build):
+        for line in site.build(arguments.build, arguments.plots):
             print(line, file=sys.stderr)
         print(f"written: {arguments.build / 'index.html'}")
         return 0
-    folder = built(arguments.again)
+    folder = built(arguments)
     server = Server(("127.0.0.1", arguments.port), functools.partial(Quiet, directory=str(folder)))
     print(f"http://127.0.0.1:{server.server_port}/ (press Ctrl-C to stop)", flush=True)
     server.serve_forever()

@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 
 from couplet import files
-from couplet.documents import reference
+from couplet.documents import plots, reference
 from couplet.places import ROOT
 from couplet.places import build as build_folder
 from couplet.runs.case import expect
@@ -179,12 +179,13 @@ def copy_mathjax(folder):
                 files.copy(file, folder, "mathjax" / file.relative_to(MATHJAX))
 
 
-def stage(folder):
+def stage(folder, with_plots):
     """Copies all sources of the site to a folder. Returns the nav."""
     there, needed = pages(), set()
     known = set(there)
     for page in there:
         text = with_links(page, with_formulas(page, text_of(page)), known, needed)
+        text = plots.added(page, text, folder) if with_plots else text
         files.write(folder, "index.md" if str(page) == "README.md" else page, text.replace("](README.md", "](index.md") if str(page) == "README.md" else
                     re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})", text))
     files.write(folder, "gallery.md", gallery(known, needed))
@@ -195,13 +196,13 @@ def stage(folder):
     return nav_of(there)
 
 
-def build(site):
-    """Builds the site into a folder."""
+def build(site, with_plots=False):
+    """Builds the site into a folder, with the plots of studies and of the maps of stability, which take minutes, if asked."""
     expect(shutil.which("mkdocs") and MATHJAX.is_dir(), "the site is built by MkDocs and MathJax: apt install mkdocs mkdocs-material libjs-mathjax")
     site = pathlib.Path(site)
     with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
         docs, built = files.folder(scratch, "docs"), pathlib.Path(scratch) / "site"
-        nav = stage(docs)
+        nav = stage(docs, with_plots)
         config = pathlib.Path(scratch) / "mkdocs.yml"
         text = (HERE / "mkdocs.yml").read_text()
         for name, value in (("docs", docs), ("site", built), ("nav", nav)):

@@ -4,6 +4,7 @@ best of some variables. An interrupted study continues where it stopped, and two
 import fnmatch
 import os
 import pathlib
+import re
 import time
 
 from couplet import files
@@ -78,8 +79,9 @@ def run_axes(case, arguments):
             say(f"{name} was not run: {reason}")
     page = study.report(rows, peers, why)
     if arguments.publish:
-        for file in (*out.glob("*.png"), *out.glob("peers.csv"), out / "report.md", out / "runs.csv"):
+        for file in (*out.glob("peers.csv"), out / "runs.csv"):
             files.copy(file, files.folder(arguments.publish, "."))
+        files.write(arguments.publish, "report.md", re.sub(r"^!\[.*\]\(.*\)\n\n?", "", (out / "report.md").read_text(), flags=re.M))
     failed = [row for row in rows if not row.good]
     for row in failed:
         say(f"failed: {row.point.name}: {row.record.reason or row.reason}")
@@ -96,7 +98,7 @@ def declare(parser):
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="folder whose bin/ contains the programs")
     parser.add_argument("--list", action="store_true", help="lists the runs and their changes")
     parser.add_argument("--repeats", type=int, metavar="N", help="repetitions of each run of axes; their median counts")
-    parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report, its pictures and the table to this folder")
+    parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report without its plots and the tables to this folder")
     parser.add_argument("--again", action="store_true", help="repeats runs even if results exist")
     parser.add_argument("--peers", action="store_true", help="also writes the case for CalculiX or OpenFOAM, runs those that are installed, and shows them in the same pictures; reports why if it cannot")
     parser.add_argument("--allow-commands", action="store_true", help="with --peers: allows a .geo to run commands and write files, with your permissions")

@@ -4,6 +4,7 @@ import pathlib
 import re
 
 from couplet import files
+from couplet.places import ROOT
 from couplet.runs import Task, expect, run_all
 from couplet.runs.process import machine
 from couplet.study import estimates, fits, pictures, table
@@ -78,7 +79,7 @@ class Study:
         where = machine()
         versions = sorted({r.record.version for r in rows})
         report.text(f"{len(rows)} runs, {sum(not r.good for r in rows)} of them failed. Measured at {', '.join(versions)} on {where['processor']}, "
-                    f"{where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table: `runs.csv`. Repeat with `couplet study`.")
+                    f"{where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table: `runs.csv`. Repeat with `couplet study {self.case.file.relative_to(ROOT) if self.case.file.is_relative_to(ROOT) else self.case.file.name}`.")
         others = self.others(peers)
         for name, reason in (why or {}).items():
             report.text(f"{name} was not run: {reason}.")

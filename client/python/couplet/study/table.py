@@ -98,14 +98,17 @@ def set_errors(rows, quantities, others=()):
 
 
 def read(file, axes, quantities):
-    """Rows of a table written by write(), without the records of their runs."""
+    """Rows of a table written by write(). Their records lack the phases."""
     rows = []
     with open(file, newline="") as source:
-        for cells in csv.DictReader(source):
-            labels = {a.name: cells[a.name] for a in axes.all}
+        heads, count = next(lines := csv.reader(source)), len(axes.all)
+        for line in lines:
+            labels, cells = dict(zip(heads, line[:count])), dict(zip(heads[count:], line[count:]))  # an axis may have the name of a cost
             size = float(labels[axes.refining.name]) if axes.refining else 0
             point = Point(labels, {}, {}, size)
-            row = Row(point, types.SimpleNamespace(reason=cells["reason"]), axes.series_of(point))
+            costs = {c: float(cells.get(HEADS.get(c, c)) or 0) for c in COSTS}
+            record = types.SimpleNamespace(reason=cells["reason"], version=cells["version"], state="failed" if cells["reason"] else "done", phases={}, **costs)
+            row = Row(point, record, axes.series_of(point))
             for q in quantities:
                 error = cells[q.name] if q.is_error and q.name in cells else cells[f"error of {q.name}"]
                 value = error if q.is_error else cells[q.name]
