@@ -29,9 +29,9 @@ MUTANTS = [
     # Guards: each taken away must be missed.
     Mutant("the fluid's energy guard is silent", "fluid_solver/step/fractional_step.cpp",
            "const bool created = judgement_.energy.out_of_bounds", "const bool created = false && judgement_.energy.out_of_bounds",
-           "stability_fluid_energy_guard", "EnergyGuard.*"),
+           "stability_fluid_energy_growth", "EnergyGuard.*"),
     Mutant("an infinite tolerance of the pressure equation", "fluid_solver/pressure/pressure.cpp",
-           "if (!std::isfinite(absolute))", "if (absolute < 0)", "stability_fluid_energy_guard", "EnergyGuard.*"),
+           "if (!std::isfinite(absolute))", "if (absolute < 0)", "stability_fluid_energy_growth", "EnergyGuard.*"),
     Mutant("closed fluids whose interface displaces volume", "fluid_solver/closed_fluid.cpp",
            "if (share <= largest_open_share) return;", "if (share <= 10 * largest_open_share + 10) return;", "contract_fluid", "ClosedFluid.*"),
     Mutant("cells that cross themselves", "common/mesh/quality.cpp", "return other == 2;", "return other == 5;", "unit_mesh", "FindCrossed.*"),

@@ -2,7 +2,7 @@
 #include "common/app/supervision/supervisor.hpp"
 #include "tests/support/test.hpp"
 
-namespace couplet::start_guard_test {
+namespace couplet::supervisor_test {
 using namespace std::chrono_literals;
 
 TEST(StartGuardDeathTest, ends_a_start_that_takes_too_long) {
@@ -29,4 +29,4 @@ TEST(StartGuardDeathTest, is_silent_once_disarmed_and_where_no_timeout_is_asked_
       ::testing::ExitedWithCode(0), "^$");
 }
 
-}  // namespace couplet::start_guard_test
+}  // namespace couplet::supervisor_test

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What only conducts: columns (ground, roof), the blanket around the wall, and the gas with its radiation.
-#include "tests/support/test.hpp"
 #include "thermocline/wall/layers.hpp"
+#include "tests/support/test.hpp"
 #include "thermocline/wall/surroundings.hpp"
 
-namespace couplet::thermocline::conduction_test {
+namespace couplet::thermocline::layers_test {
 
 const double none = 0, given = std::numeric_limits<double>::infinity();
 const Insulator soil{2050, 1840, 1.2};
@@ -210,4 +210,4 @@ TEST(Environment, the_sun_warms_a_tank_by_what_its_shadow_lacks) {
   EXPECT_NEAR(roof, 0.5 * 800 * 0.6, 1e-9);
 }
 
-}  // namespace couplet::thermocline::conduction_test
+}  // namespace couplet::thermocline::layers_test

@@ -3,7 +3,7 @@
 // not.
 #include "../../verification/fluid/fluid_case.hpp"
 
-namespace couplet::fluid::test::energy_guard_test {
+namespace couplet::fluid::test::energy_growth_test {
 using testing::HasSubstr;
 
 /// Shear layers in a box of 1 m whose explicit viscous term is stable up to about 0.01 s.
@@ -175,4 +175,4 @@ INSTANTIATE_TEST_SUITE_P(viscous, Driven,
                            return info.param == ViscousTreatment::explicit_ ? "explicit" : "implicit";
                          });
 
-}  // namespace couplet::fluid::test::energy_guard_test
+}  // namespace couplet::fluid::test::energy_growth_test

@@ -3,7 +3,7 @@
 #include "tests/support/observed_run.hpp"
 #include "tests/verification/solid/support.hpp"
 
-namespace couplet::testing::audit_test {
+namespace couplet::testing::error_estimates_test {
 using namespace mesh;
 
 /// Cook's membrane of n x n quadrilaterals, E = 250 MPa, sheared by 6.25 MPa.
@@ -399,4 +399,4 @@ TEST(MeshEstimate, of_tetrahedra_that_bend_is_no_third_of_the_solution) {
   EXPECT_LT(told, 0.3);
 }
 
-}  // namespace couplet::testing::audit_test
+}  // namespace couplet::testing::error_estimates_test

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The symmetric operator with the vertices as unknowns of their own: the kernel's rows, their inverse and their inertia.
-#include "common/elasticity/finite/stress_stiffness.hpp"
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
+#include "common/elasticity/finite/stress_stiffness.hpp"
 #include "solid_solver/output/modal_analysis.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
-namespace couplet::testing::tied_test {
+namespace couplet::testing::symmetric_matrix_test {
 using namespace elastic;
 using namespace mesh;
 using namespace parallel;
@@ -190,4 +190,4 @@ TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
   EXPECT_LT(gap(mesh.comm, found, wanted), 1e-12);
 }
 
-}  // namespace couplet::testing::tied_test
+}  // namespace couplet::testing::symmetric_matrix_test

@@ -6,7 +6,7 @@
 #include "coupler/mapping/surface_checks.hpp"
 #include "tests/support/test.hpp"
 
-namespace couplet::guards_test {
+namespace couplet::view_test {
 using namespace coupling;
 using namespace coupler;
 
@@ -305,4 +305,4 @@ TEST(Places, a_load_that_is_not_finite_is_named_with_its_place) {
             "'fluid' gave a 'pressure-force' that is not finite at face 2, (0.625, 0, 0).");
 }
 
-}  // namespace couplet::guards_test
+}  // namespace couplet::view_test

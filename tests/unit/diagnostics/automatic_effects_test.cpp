@@ -4,7 +4,7 @@
 #include "fluid_solver/parameters/parameters.hpp"
 #include "tests/support/test.hpp"
 
-namespace couplet::testing::choices_test {
+namespace couplet::testing::automatic_effects_test {
 using namespace mesh;
 
 using namespace solid;
@@ -183,4 +183,4 @@ TEST(MeshFacts, are_those_of_a_box) {
   EXPECT_EQ(facts_of(flat).dim, 2);
 }
 
-}  // namespace couplet::testing::choices_test
+}  // namespace couplet::testing::automatic_effects_test

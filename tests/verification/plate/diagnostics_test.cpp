@@ -7,7 +7,7 @@
 #include "tests/support/observed_run.hpp"
 #include "tests/verification/plate/plates.hpp"
 
-namespace couplet::plate::guards_test {
+namespace couplet::plate::diagnostics_test {
 using namespace mesh;
 
 using namespace test;
@@ -404,4 +404,4 @@ TEST(PlateGuards, a_probe_stands_on_the_surface_or_near_it) {
   EXPECT_NE(text(0.03).find("probes.tip: (1, 0.5, 0.03) is 0.0275 m away"), std::string::npos) << text(0.03);
 }
 
-}  // namespace couplet::plate::guards_test
+}  // namespace couplet::plate::diagnostics_test
