@@ -27,7 +27,7 @@ import yaml
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 STEPS = 24
-QUICK = 3  # seconds
+QUICK = 1  # second
 SECONDS = 240  # limit of one run
 NOT_RESULTS = {"steps.csv", "participants.csv", "residuals.csv", "solver.csv"}  # of time and iterations
 TOLERANCE = 1e-5  # relative; iterative solvers leave 1e-8 to 1e-6

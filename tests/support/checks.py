@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What tests that run programs share: claims that are reported one by one, the line that starts a job, and the last row of a table."""
 import os
+import re
 import subprocess
 import sys
 
@@ -16,6 +17,15 @@ def mpmd(parts, ranks=(), mpirun=("mpirun", "--oversubscribe")):
     for i, part in enumerate(parts):
         line += [*([":"] if i else []), "-n", ranks[i] if i < len(ranks) else 1, *part]
     return [str(word) for word in line]
+
+
+def share(cases, words):
+    """Returns those cases whose number is I, I + N, I + 2 N, ... for the word I/N among `words`, which it takes away; all without such a word."""
+    word = next((word for word in words if re.fullmatch(r"[1-9]\d*/[1-9]\d*", word)), None)
+    first, step = map(int, word.split("/")) if word else (1, 1)
+    if word:
+        words.remove(word)
+    return list(cases)[first - 1::step]
 
 
 def check(claim, holds, detail=""):

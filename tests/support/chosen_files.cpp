@@ -76,8 +76,8 @@ bool choose_files(int& argc, char** argv) {
   std::set<std::string> missing(names.begin(), names.end());
   std::copy(at + 1, end, at);
   argv[--argc] = nullptr;
-  const std::string filter = filter_for(missing, ::testing::GTEST_FLAG(filter));
-  ::testing::GTEST_FLAG(filter) = filter;
+  ::testing::GTEST_FLAG(filter) = filter_for(missing, ::testing::GTEST_FLAG(filter));
+  if (::testing::GTEST_FLAG(filter) == "-*") missing.insert("(no test passes the filter)");
   for (const std::string& file : missing) fprintf(stderr, "--only: no test of its own: %s\n", file.c_str());
   return missing.empty();
 }

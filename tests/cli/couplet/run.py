@@ -148,7 +148,7 @@ def side_by_side(folder):
 
 def stop(folder):
     """A run that is stopped goes on to what the undisturbed one leaves."""
-    case = case_in(folder / "a", bin_, end_time=2, checkpoints=0.1)
+    case = case_in(folder / "a", bin_, end_time=1.2, checkpoints=0.1)
     whole = call(bin_, "run", case, "--set", f"simulation.output.folder={folder / 'whole'}", "-q")
     check("undisturbed", whole.returncode == 0, whole.stderr)
     for how in ("couplet stop", "SIGINT", "SIGTERM"):
@@ -159,7 +159,7 @@ def stop(folder):
             second = call(bin_, "run", case)
             check("a second job in the same folder is refused", second.returncode == 2 and "in use by another job" in second.stderr, second.stderr)
             watched = call(bin_, "watch", folder / "a/out", "--once")
-            check("watch shows the time", re.search(r"t=[\d.e-]+/2 s .* its", watched.stdout), watched.stdout)
+            check("watch shows the time", re.search(r"t=[\d.e-]+/1.2 s .* its", watched.stdout), watched.stdout)
             stopped = call(bin_, "stop", folder / "a/out")
             check("stop waits for the end and names the checkpoint", stopped.returncode == 0 and "saved as step-" in stopped.stdout, stopped.stdout + stopped.stderr)
         else:

@@ -121,7 +121,8 @@ def full(folder, whole, _, size):
 
 def chosen(every, count):
     """So many as are wanted, evenly spread, and of these the wanted part."""
-    every = [every[i * len(every) // count] for i in range(min(count, len(every)))] if count else every
+    count = min(count, len(every))
+    every = [every[(2 * i + 1) * len(every) // (2 * count)] for i in range(count)] if count else every
     return every[len(every) * PART // PARTS:len(every) * (PART + 1) // PARTS]
 
 

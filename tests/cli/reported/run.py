@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Runs the inputs of cases.yaml, which went wrong when users brought their problems to the programs. Each must end with the right value, or the right refusal.
-Usage: run.py BIN [WORD ...]   (with words: only the cases whose name has one of them)"""
+Usage: run.py BIN [I/N] [WORD ...]   (with I/N: every N-th run from the I-th on; with words: only the cases whose name has one of them)"""
 import csv
 import json
 import pathlib
@@ -14,7 +14,7 @@ import yaml
 
 here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parents[1] / "support"))
-from checks import check, end, mpmd  # noqa: E402
+from checks import check, end, mpmd, share  # noqa: E402
 
 programs = pathlib.Path(sys.argv[1]).resolve()
 WAYS = {"last": lambda v: v[-1], "largest": max, "least": min, "spread": lambda v: (max(v) - min(v)) / max(map(abs, v))}
@@ -50,9 +50,8 @@ def run(name, case, sets):
         check(f"{name}{' ' if sets else ''}{' '.join(sets)}", not wrong, "; ".join(wrong) + said[-1500:] if wrong else " ".join(f"{v:.6g}" for v in found))
 
 
-cases = yaml.safe_load((here / "cases.yaml").read_text())
-for name, case in cases.items():
-    for sets in case.get("each", [[]]):
-        if len(sys.argv) == 2 or any(word in name for word in sys.argv[2:]):
-            run(name, case, [*case.get("sets", []), *([sets] if isinstance(sets, str) else sets)])
+cases, words = yaml.safe_load((here / "cases.yaml").read_text()), sys.argv[2:]
+for name, sets in share([(name, sets) for name, case in cases.items() for sets in case.get("each", [[]])], words):
+    if not words or any(word in name for word in words):
+        run(name, cases[name], [*cases[name].get("sets", []), *([sets] if isinstance(sets, str) else sets)])
 end()
