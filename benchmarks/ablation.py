@@ -10,6 +10,7 @@ nor the build change. A copy also has a timer per diagnostic, which gives the sh
 import argparse
 import csv
 import dataclasses
+import datetime
 import hashlib
 import json
 import math
@@ -533,7 +534,7 @@ def write(args):
              f"{'-' if one['with'] is None else format(one['with'] / one['truth'], '.2f')} |" for name, one in found.items()]
     PAGE.write_text(f"""# Validation: ablation of the error estimators
 
-Written by `benchmarks/ablation.py` (programs of {version}). {len(found)} runs of {len({p for one in every for p in one['programs']})} programs, of fractions of a second each, whose error is known: closed forms,
+**Measured on {datetime.date.today()}.** Written by `benchmarks/ablation.py` (programs of {version}). {len(found)} runs of {len({p for one in every for p in one['programs']})} programs, of fractions of a second each, whose error is known: closed forms,
 published values, or the same case with a fine mesh or step. The estimate is the sum of a run's mesh, step, solver and coupling parts, or the part named. Each estimator was switched off
 in all runs of its program. {coverage(every)} of {len(every)} estimates are within a factor of 2 of the truth, {sum(is_near(one['with'], one['truth'], 3) for one in every)} within 3.
 

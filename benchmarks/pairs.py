@@ -10,6 +10,7 @@
 Both commits run their own case files with the same settings. Two runs of different length are made of each: their difference has the instructions of
 steps, without those of the start. A run of one step counts as a whole. Instructions inside MPI are left out, since a process that waits polls."""
 import argparse
+import datetime
 import importlib.machinery
 import json
 import pathlib
@@ -208,7 +209,7 @@ def write(arguments):
               "of the ratios of the turns.", "", "| case | before | now | now over before | commits |", "|---|---|---|---|---|",
               *(timed_row(name, timed[name]) for name in TIMED if name in timed)] if timed else []
     note = PAGE.read_text().partition("\n## ")[2] if PAGE.exists() else ""
-    PAGE.write_text("# Instructions beside an older commit\n\nWritten by `benchmarks/pairs.py write`. Millions of instructions, counted by valgrind, of one process each and without those inside MPI.\n\n"
+    PAGE.write_text(f"# Instructions beside an older commit\n\n**Counted on {datetime.date.today()}.** Written by `benchmarks/pairs.py write`. Millions of instructions, counted by valgrind, of one process each and without those inside MPI.\n\n"
                     "| case | program | of | before | now | change | commits |\n|---|---|---|---|---|---|---|\n" + "\n".join(lines) + "\n" + (f"\n## {note}" if note else ""))
 
 

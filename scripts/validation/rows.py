@@ -2,6 +2,9 @@
 """Rows as data: tables/NAME.yaml. Its keys: `about`; `sources`, folders whose change may change its rows; `note` before its rows; `pages`, functions that
 write what is made of the table; `library`, files below parts whose functions measure; `rows`.
 
+A program among the `sources` stands for itself and for the folders of common that its numbers come from (COMMON), without what only judges or prints
+them. Tables about diagnostics, messages or speed name 'common'.
+
 A row is `quantity: {wanted, long, but, sources, MEASURE: ARGUMENTS}` (job.Bar describes these). MEASURE is a function of shapes.py or of the library,
 'file.function' where two have it. It gets the job and ARGUMENTS: one value, a list in order, or a mapping by name. An entry with `rows` is a group: what
 else it holds is shared by its rows, and with `each` they are written once for every combination, the first varying slowest. '{name}' in a text is replaced, and
@@ -22,6 +25,9 @@ from validation import shapes
 from validation.job import Bar
 
 FOLDER = pathlib.Path(__file__).resolve().parent / "tables"
+MESHES = ("base", "parallel", "linalg", "mesh", "fv", "time")
+COMMON = {"fluid_solver": MESHES, "solid_solver": (*MESHES, "elasticity", "contact", "modes"), "mesh_mover": (*MESHES, "elasticity"),
+          "plate_modal": (*MESHES, "contact", "modes"), "thermocline": ("base", "fv", "time"), "coupler": ("base", "parallel", "linalg", "coupling")}
 WORDS = ("wanted", "long", "but", "sources")
 
 
@@ -46,6 +52,14 @@ class Table:
     sources: tuple
     note: str
     pages: list
+
+
+def needed(sources):
+    """Folders, and '!FOLDER' for what does not count, whose change may change rows with these sources."""
+    if "common" in sources:
+        return tuple(sources)
+    below = dict.fromkeys(f"common/{folder}" for program in sources for folder in COMMON.get(program, ()))
+    return (*below, *sources, *(f"!{program}/diagnostics" for program in sources if program in COMMON))
 
 
 def known():
@@ -81,7 +95,7 @@ def load(name, file=None):
     twice = {b.quantity for b in bars if sum(b.quantity == o.quantity for o in bars) > 1}
     if twice:
         raise ValueError(f"{file.name}: twice: {'; '.join(twice)}")
-    return Table(name, bars, tuple(data.get("sources") or ()), data.get("note", ""), [named(p) for p in data.get("pages") or ()])
+    return Table(name, bars, needed(data.get("sources") or ()), data.get("note", ""), [named(p) for p in data.get("pages") or ()])
 
 
 def written_out(rows, shared=None):
@@ -132,7 +146,7 @@ def bar(quantity, row, library):
         inspect.signature(function).bind(None, *words, **by_name)
     except TypeError as error:
         raise ValueError(f"'{quantity}', {measures[0]}: {error}") from None
-    return Bar(quantity, str(row["wanted"]), lambda job: function(job, *words, **by_name), bool(row.get("long")), row.get("but", ""), tuple(row.get("sources") or ()))
+    return Bar(quantity, str(row["wanted"]), lambda job: function(job, *words, **by_name), bool(row.get("long")), row.get("but", ""), needed(row.get("sources") or ()))
 
 
 def function_of(name, library):

@@ -35,12 +35,6 @@ def claims(job, program, names, least=0):
     return held([v["passed"] for n, v in found.items() if any(re.search(p, n) for p in names)], least or len(names))
 
 
-def filtered(job, program, filter_):
-    """Runs only these tests of a long executable."""
-    found, _ = job.gtest(program, filter_)
-    return held([v["passed"] for v in found.values()])
-
-
 def held(passed, least=1):
     return f"{sum(passed)} of {len(passed)} claims hold", len(passed) >= least and all(passed)
 

@@ -54,8 +54,12 @@ class History:
         return same[0] if len(same) == 1 else None
 
     def changed(self, commit, folders):
-        """Returns the folders with a change since the commit."""
-        return [f for f in folders if self.git("diff", "--name-only", commit, "HEAD", "--", f)]
+        """Returns the folders with a change since the commit; '!FOLDER' does not count."""
+        without = [f":(exclude){f[1:]}" for f in folders if f.startswith("!")]
+        return [f for f in folders if not f.startswith("!") and self.git("diff", "--name-only", commit, "HEAD", "--", f, *without)]
+
+    def date(self, commit):
+        return self.git("show", "-s", "--format=%cs", commit)
 
 
 def commit_of(cell):
@@ -100,9 +104,19 @@ def counts(verdicts):
     return text
 
 
-def write(file, name, table, note=""):
-    """`table`: [(quantity, Row)]; `note`: what to know of it, before its rows."""
-    text = f"# Validation: {name}\n\nWritten by `scripts/validate {name} --write` on {datetime.date.today()}, "
+def age(name, bars, rows, folders, history):
+    """Sentence about the age of a table's rows."""
+    old = {q: commit_of(commit) for q, commit, why in stale(name, bars, rows, folders, history) if why != "not measured"}
+    measured = [b.quantity for b in bars if b.quantity in rows and rows[b.quantity].verdict != "not measured"]
+    dates = sorted(filter(None, (commit and history.date(commit) for commit in old.values())))
+    text = f"On {datetime.date.today()}, {len(measured) - len(old)} of {len(bars)} rows were of the present sources, {len(old)} older"
+    text += f" (the oldest of {dates[0]})" if dates else ""
+    return text + f", and {len(bars) - len(measured)} not measured."
+
+
+def write(file, name, table, note="", age=""):
+    """`table`: [(quantity, Row)]; `note`: what to know of it, before its rows; `age`: how old they are."""
+    text = f"# Validation: {name}\n\n" + (f"**{age}**\n\n" if age else "") + f"Written by `scripts/validate {name} --write` on "
     text += f"{platform.machine()}: {counts(row.verdict for _, row in table)}. The last column names the commit that was measured.\n\n"
     text += f"{note}\n\n" if note else ""
     text += "| quantity | wanted | got | | commit |\n|---|---|---|---|---|\n"

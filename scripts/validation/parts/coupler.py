@@ -77,17 +77,6 @@ def exchanged(job, kind, times):
     return f"{ms:.2f} ms per pass, {passes:.1f} passes per step; MPI alone {plain:.2f} ms there and back: {ms / plain:.1f} times", ms <= times * plain
 
 
-# -- programs of others -----------------------------------------------------------------------------------------------
-def stokes(job, which):
-    """Frequency or decay of the spring-mounted cylinder."""
-    time, y = np.loadtxt(beside_the_job(job, "spring-cylinder", "run", "case.yaml") / "body.csv", delimiter=",", usecols=(0, 1), unpack=True)
-    decay = job.beside("configs/spring-cylinder/decay.py")
-    wanted = decay.stokes(2, 4, 1, 0.01)
-    late = time > 2 * np.pi / wanted[0]
-    got, right = decay.fitted(time[late], y[late], *wanted)[which], wanted[which]
-    return f"{got:.5f}, Stokes {right:.5f}: {100 * (got / right - 1):+.2f} %", bool(abs(got / right - 1) <= 0.02)
-
-
 def fenicsx(job):
     """Tip of the flap with DOLFINx's structure over solid_solver's, the same steps."""
     folder, end = job.scratch / "fenicsx", 0.2 if job.quick else 0.8

@@ -4,58 +4,10 @@ import math
 import re
 import sys
 
-import numpy as np
-
 from couplet.runs.process import RunFailed
 
 
-# -- damping ----------------------------------------------------------------------------------------------------------
-def fsi3(job, keys):
-    """Turek and Hron's case with these keys, and its amplitude in words."""
-    run = job.case("turek-hron", keys, timeout=20000)
-    found = job.beside("configs/turek-hron/summary.py").summary(run.folder)
-    return run, f"{1e3 * found['uy_mean']:.2f} +- {1e3 * found['uy_amp']:.2f} mm, {found['uy_f']:.2f} Hz"
-
-
-def work(job, *keys):
-    """Returns the work of fluid and structure over the run [J]."""
-    run, text = fsi3(job, keys)
-    given, taken, *_ = (float(np.sum(v)) for name, v in run.table("coupler", "balance.csv").items() if name.endswith("work of the step [J]"))
-    apart = abs(given + taken if given * taken < 0 else given - taken) / max(abs(given), abs(taken))
-    return f"{text}; work {given:.8g} and {taken:.8g} J: {apart:.1e} apart", apart <= 1e-10
-
-
-def ledger(job, *keys):
-    """Returns the energy that the plate's time scheme loses or creates, relative to its largest energy and to the input."""
-    energies = fsi3(job, keys)[0].table("solid", "energies.csv")
-    worst = np.abs(energies["lost by the scheme [J]"]).max() / (energies["strain [J]"] + energies["kinetic [J]"]).max()
-    return f"{worst:.1e} of the most energy that it holds", worst <= 1e-3
-
-
-ROOTS = (1.875104, 4.694091, 7.854757)  # of 1 + cos k cosh k = 0
 LENGTH, HEIGHT, MODULUS = 0.351, 0.02, 5.6e6 / (1 - 0.4**2)  # of FSI3's plate; plane strain [m, m, Pa]
-
-
-def vibration(job, mode):
-    """FSI3's plate in vacuo, struck in the shape of a mode of a beam, by the time scheme of coupled runs with 40 steps a period: amplitude of this mode in ten
-    periods, 100 periods later, over that of the first ten."""
-    k = ROOTS[mode - 1]
-    period = 2 * math.pi / (k / LENGTH) ** 2 / math.sqrt(MODULUS * HEIGHT**2 / 12 / 1000)
-    s, x = (math.cosh(k) + math.cos(k)) / (math.sinh(k) + math.sin(k)), f"({k / LENGTH!r}*(x - 0.249))"
-    run = job.case("undamped-strip", (
-        ".mesh=../turek-hron/solid.geo", ".mesh-parameters={nx: 44, ny: 4}", ".plane=strain", ".kinematics=finite-strain", ".time-scheme={type: generalised-alpha}",
-        ".material={density: 1000, youngs-modulus: 5.6 MPa, poissons-ratio: 0.4, law: saint-venant-kirchhoff}", ".probes={tip: {point: [0.6, 0.2]}}",
-        ".boundaries={root: {type: fixed-displacement, value: [0, 0]}, plate: {type: free}}", "simulation.output.interval=0", "simulation.accept=[error-estimate]", f"simulation.end-time={110 * period!r}",
-        f"simulation.time-step={period / 40!r}", f'.initial-velocity=["0", "{1e-4 / period!r}*(cosh({x}) - cos({x}) - {s!r}*(sinh({x}) - sin({x})))"]'))
-    t, y = run.column("solid", "probes.csv", "time [s]"), run.column("solid", "probes.csv", "tip y [m]")
-    spectrum = np.abs(np.fft.rfft(y * np.hanning(len(y)), 8 * len(y)))
-    near = np.abs(np.fft.rfftfreq(8 * len(y), t[1] - t[0]) * period - 1) < 0.2
-    frequency = np.fft.rfftfreq(8 * len(y), t[1] - t[0])[near][np.argmax(spectrum[near])]
-
-    n = round(10 / frequency / (t[1] - t[0]))
-    weight = np.hanning(n)
-    first, last = (2 * abs(np.sum(weight * y[part] * np.exp(-2j * np.pi * frequency * t[part]))) / weight.sum() for part in (slice(n), slice(-n, None)))
-    return f"{100 * (last / first - 1):+.2f} % of {1e6 * first:.2f} um, {frequency:.3f} Hz", abs(last / first - 1) <= 0.02
 
 
 # -- loads ------------------------------------------------------------------------------------------------------------
@@ -81,22 +33,6 @@ def in_time(job):
     return f"{a:.5f}, {b:.5f}, {c:.5f} N: order {order:.2f}", order >= 1.9
 
 
-def beside_finer(job):
-    fine, got = force(job, 0.0025, 192), force(job, 0.01, 48)
-    return f"{100 * (got / fine - 1):+.3f} % of {fine:.5f} N", abs(got / fine - 1) <= 1e-3
-
-
-def power(job):
-    """Compares, in the last step to 1.25 s, the power of the wall with the gain of the fluid and its dissipation (forces.csv, energy.csv)."""
-    step = 0.01
-    run, forces = swung(job, step, 48, AT, ".output.energy-budget=true")
-    energy = run.table("fluid", "energy.csv")
-    moved = -(5 / (4 * math.pi)) * (math.cos(0.4 * math.pi * (AT - step)) - math.cos(0.4 * math.pi * AT))
-    given = -forces[-1] * moved / step
-    taken = (energy["kinetic energy [J]"][-1] - energy["kinetic energy [J]"][-2]) / step + energy["viscous power [W]"][-2:].mean()
-    return f"wall {given:.5f} W, fluid {taken:.5f} W: {100 * (taken / given - 1):+.2f} %", abs(taken / given - 1) < 1e-10
-
-
 # -- ladder -----------------------------------------------------------------------------------------------------------
 STEPS = (0.01, 0.005, 0.0025, 0.00125)  # s
 COARSE = ("participants.solid.mesh-parameters={n_side: 40, n_tip: 4}", *(
@@ -119,15 +55,6 @@ def limit_of(tips):
     """Limit of the two finest steps for the order that they show (1 to 2)."""
     order = min(2, max(1, math.log2(abs(tips[1] - tips[2]) / abs(tips[2] - tips[3]))))
     return tips[3] + (tips[3] - tips[2]) / (2**order - 1)
-
-
-def coarsest(job, rho, mu):
-    """Compares the tip in steps of 10 ms with the limit."""
-    tips = [tip(job, rho, mu, step)[0] for step in STEPS]
-    if None in tips:
-        return "ended before", False
-    limit = limit_of(tips)
-    return f"{1e3 * tips[0]:.2f} mm, {100 * (tips[0] / limit - 1):+.2f} % of {1e3 * limit:.2f} mm", abs(tips[0] / limit - 1) <= 0.02
 
 
 def estimates(job):
@@ -191,11 +118,6 @@ def lines(job, case):
             raise RuntimeError(result.stdout[-1000:] + result.stderr[-1000:])
         return result.stdout
     return job.once(("restart", case), make)
-
-
-def equal(job, case):
-    found = {int(n): int(differ) for n, differ in re.findall(r": (\d) to \1: (\d+) tables differ", lines(job, case))}
-    return "; ".join(f"{n} {'rank' if n == 1 else 'ranks'}: {d} tables differ" for n, d in found.items()), sorted(found) == [1, 2, 3] and not any(found.values())
 
 
 def other(job, case):

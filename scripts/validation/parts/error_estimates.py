@@ -50,20 +50,6 @@ def scenes(job):
     return text + ", ".join(f"{share} and {truth}" for share, truth in near), not bad and len(good) == 10 and len(near) >= 8
 
 
-def periodic(job):
-    done = job.run([sys.executable, job.root / "tests/cli/periodic/run.py", job.build / "bin", job.root / "configs", "4", "32", "100"], 3600)
-    found = re.findall(r"^(ok|FAILED) +(alpha \d+), 40 steps per period, (\d+ periods): step ([\d.e+-]+), truth ([\d.e+-]+)", done.stdout, re.M)
-    text = "; ".join(f"{alpha}, {periods}: {step} for {truth}" for _, alpha, periods, step, truth in found)
-    return text or done.stdout[-300:], len(found) == 6 and all(word == "ok" for word, *_ in found)
-
-
-def street(job):
-    done = job.run([sys.executable, job.root / "tests/cli/periodic/street.py", job.build / "bin", job.root / "configs", "4", "30", "100"], 3600)
-    found = re.findall(r"^(ok|FAILED) +2D-2, (\d+ periods): step ([\d.e+-]+), truth ([\d.e+-]+) \(of it without the phase ([\d.e+-]+)", done.stdout, re.M)
-    return ("; ".join(f"{name}: {step} for {truth} ({shape} without the phase)" for _, name, step, truth, shape in found),
-            len(found) == 3 and all(word == "ok" for word, *_ in found))
-
-
 def interest(job, **truths_of):
     """`truths_of`: {study: {quantity: truth}}"""
     parts, met = [], True
@@ -100,12 +86,6 @@ def dual_weighted(job, *cases):
                     parts.append(f"{case} {mesh} {row['quantity']}: {float(row['estimated error']) / abs(truth):.2%}, {ratios[-1]:.2f} of the truth")
     near = [sum(1 / f <= r <= f for r in ratios) for f in (2, 3)]
     return f"{near[0]} of {len(ratios)} within a factor of 2, {near[1]} of 3: " + "; ".join(parts), near[0] == len(ratios)
-
-
-def heat_weighted(job):
-    """Numbers that the test records, which has the exact values."""
-    counts = [job.recorded("verification_heat_quantities", "within_a_factor", key)[0][0] for key in ("near", "all")]
-    return "{:.0f} of {:.0f} within a factor of 2".format(*counts), counts[0] == counts[1]
 
 
 # Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, implicit coupling,

@@ -2,13 +2,9 @@
 """The solid at large strain: bending, motion, speed."""
 import math
 
-import numpy as np
-
 # -- bending ----------------------------------------------------------------------------------------------------------
 # u1 / L of converged three-dimensional finite elements (L = 10 sides).
 SVK = {0.2: 0.06639, 0.4: 0.13108, 0.8: 0.24992, 1.6: 0.43134}
-NEO = 0.720308  # K = 5
-CURVE = {"saint-venant-kirchhoff": {1: 0.302484, 2: 0.496223, 5: 0.721578, 10: 0.824823}, "neo-hookean": {1: 0.302244, 2: 0.495443, 5: NEO, 10: 0.823304}}
 EDGE = {"quarter": (0.1, 0.1, 0.5), "middle": (0.1, 0.1, 1.0)}  # places on an edge of the section
 
 
@@ -28,24 +24,6 @@ def kirchhoff(job, across):
     return ", ".join(f"K {K}: {e:+.3f} %" for K, e in errors.items()), all(abs(e) <= 0.3 for e in errors.values())
 
 
-def hook(job, across, sides, wanted):
-    run, u = beam(job, across, sides * across, "neo-hookean", 10, 0.2 * sides)
-    error, steps = 100 * (u / wanted - 1), len(run.table("solid", "solver.csv")["iterations"])
-    return f"{u:.5f}, {error:+.3f} %, {steps} load steps that were accepted", abs(error) <= 0.3
-
-
-def curve(job, across):
-    """Figure 3.11, left: ten load steps to K 10 with each law."""
-    words, worst = [], 0
-    for law, wanted in CURVE.items():
-        probes = beam(job, across, 10 * across, law, 10, steps=10)[0].probes("solid")
-        u = np.hypot(probes["tip x [m]"], probes["tip y [m]"]) / 2
-        errors = {K: 100 * (float(np.interp(K / 10, probes["time [s]"], u)) / one - 1) for K, one in wanted.items()}
-        worst = max(worst, *map(abs, errors.values()))
-        words.append(f"{law} " + ", ".join(f"K {K}: {wanted[K] * (1 + e / 100):.4f} ({e:+.3f} %)" for K, e in errors.items()))
-    return "; ".join(words), worst <= 0.3
-
-
 def slender(job, across):
     """Table 3.7, and of figures 3.12 and 3.13 the growth of the axis and the largest shear."""
     words, close, maps = [], True, job.beside("configs/bent-beam/maps.py")
@@ -54,26 +32,6 @@ def slender(job, across):
         words.append(f"L {sides}: {u:.5f} ({100 * (u / wanted - 1):+.2f} %, elastica {100 * (u / 0.81061 - 1):+.2f} %), {maps.text(maps.Section(run.folder, across))}")
         close = close and abs(u / wanted - 1) <= 0.002
     return "; ".join(words), close
-
-
-def slopes(job):
-    """Returns the orders of convergence from the differences between three meshes, each halved."""
-    runs = [beam(job, n, 10 * n, "neo-hookean", 5) for n in (2, 4, 8)]
-    u = [value for _, value in runs]
-    of_u = math.log2((u[1] - u[0]) / (u[2] - u[1])) if (u[1] - u[0]) * (u[2] - u[1]) > 0 else 0
-    of_stress = []
-    for name in EDGE:  # Frobenius norms of differences of symmetric tensors
-        a, b, c = (np.array([math.sqrt(1 if k[0] == k[1] else 2) * run.last("solid", "probes.csv")[f"{name} stress-{k} [Pa]"] for k in ("xx", "yy", "zz", "xy", "yz", "xz")])
-                   for run, _ in runs)
-        of_stress.append(math.log2(np.linalg.norm(b - a) / np.linalg.norm(c - b)))
-    off = ", ".join(f"{100 * (v / NEO - 1):+.3f} %" for v in u)
-    return (f"u {of_u:.2f}; stress {', '.join(f'{o:.2f}' for o in of_stress)}; u off by {off} of {NEO}", of_u >= 1.7 and min(of_stress) >= 0.9)
-
-
-def newton_steps(job):
-    worst, hooked = (max(beam(job, n, 10 * n, law, K, steps=steps)[0].table("solid", "solver.csv")["iterations"].max() for n in (4, 8))
-                     for law, K, steps in (("saint-venant-kirchhoff", 1.6, 1), ("neo-hookean", 10, 8)))
-    return f"at most {worst:.0f} (Saint Venant-Kirchhoff, one step to K 1.6), {hooked:.0f} (neo-Hookean, eight to K 10)", max(worst, hooked) <= 10
 
 
 # -- motion -----------------------------------------------------------------------------------------------------------
@@ -93,33 +51,6 @@ def swing(job, across, along, limit, shape=0):
     errors = [100 * (x.max() / MAXIMUM - 1), 100 * (x.min() / MINIMUM - 1)]
     text = f"{x.max():.3f}, {x.min():.3f} m: {errors[0]:+.2f}, {errors[1]:+.2f} %; energy {whole[-1] / whole[0] - 1:+.1e}"
     return text, max(map(abs, errors)) <= limit
-
-
-def checkerboard(job, across, along, shape):
-    """Root mean square of what the mean stress of an inner cell differs from the mean of its neighbours over faces, over that of the mean
-    stress: 2 where the cells change sign like a board's fields, of the order of the cells' size squared where the stress is smooth."""
-    from couplet.peers.elements import FACES
-    series = column(job, across, along, shape)[0].fields("solid")
-    last, cells = len(series.times) - 1, [list(c) for c in series.cells]
-    mean = sum(np.array(series.field(last, f"stress-{c}")) for c in ("xx", "yy", "zz")) / 3
-    sides, of_face, beside = FACES["tetrahedron" if len(cells[0]) == 4 else "hexahedron"], {}, [[] for _ in cells]
-    for c, points in enumerate(cells):
-        for side in sides:
-            of_face.setdefault(frozenset(points[p] for p in side), []).append(c)
-    for a, b in (pair for pair in of_face.values() if len(pair) == 2):
-        beside[a].append(b)
-        beside[b].append(a)
-    inner = [c for c, near in enumerate(beside) if len(near) == len(sides)]
-    off = np.array([mean[c] - np.mean(mean[beside[c]]) for c in inner])
-    ratio = math.sqrt(np.mean(off**2) / np.mean(mean[inner] ** 2))
-    return f"{ratio:.3f} of {len(inner)} inner cells", ratio <= 0.5
-
-
-def vibration(job, scheme, limit):
-    """50 periods of 1.83 s; the largest distance of the energy from that of the first step, in parts of it."""
-    _, whole = column(job, 2, 8, 0, ("simulation.end-time=91.5", "simulation.time-step=0.01", *scheme))
-    drift = np.abs(whole / whole[0] - 1).max()
-    return f"{drift:.1e} at most, {whole[-1] / whole[0] - 1:+.1e} at the end", None if limit is None else drift <= limit
 
 
 # -- speed ------------------------------------------------------------------------------------------------------------

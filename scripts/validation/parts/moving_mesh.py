@@ -44,13 +44,6 @@ def left_over(results):
     return float(np.max(np.abs(series.coordinates(len(series.times) - 1) - series.reference()))) / 0.01
 
 
-def back(job, method, chi, limit):
-    """+0.5 and back by -0.5."""
-    results, _, valid = move(job, {"translation": ["0", "t < 1 ? 0.5*t : 0.5*(2-t)"]}, method, chi, steps=100, end=2)
-    left = left_over(results) if valid else math.inf
-    return f"largest displacement left over the shortest edge {left:.1e}", valid and left <= limit
-
-
 def cycles(job, method, degrees, n=100, chi=0.5, limit=1e-6):
     """Least scaled Jacobian at the outer ends of the first and the last oscillation."""
     results, rows, valid = move(job, {"angle": f"{math.radians(degrees)}*sin(2*pi*t)"}, method, chi, steps=20 * n, end=n, timeout=1800)
@@ -60,11 +53,6 @@ def cycles(job, method, degrees, n=100, chi=0.5, limit=1e-6):
     first, last = j[t < 1.001].min(), j[t > n - 1.001].min()
     return (f"least scaled Jacobian {first:.4f} in the first cycle, {last:.4f} in the last; left at the end {left_over(results):.1e} of the shortest edge",
             abs(last - first) <= limit)
-
-
-def in_space(job, mesh, boundaries, method, chi):
-    _, rows, valid = move(job, {}, method, chi, (f".mesh={mesh}.geo", ".dimension=3", f".boundaries={boundaries}"), steps=10)
-    return told(rows, valid), valid
 
 
 # -- bodies in the fluid ----------------------------------------------------------------------------------------------
@@ -82,11 +70,6 @@ def morison(job, frame):
     (drag, mass), fitted = swinging(job, frame)
     return (f"c_d {drag:.4f}, c_m {mass:.4f} by Fourier averages; {fitted[0]:.4f}, {fitted[1]:.4f} by least squares",
             abs(drag / 2.09 - 1) <= 0.02 and abs(mass / 1.45 - 1) <= 0.02)
-
-
-def both_frames(job):
-    gaps = [abs(a / b - 1) for a, b in zip(*(swinging(job, frame)[0] for frame in (False, True)))]
-    return f"c_d {100 * gaps[0]:.1e} %, c_m {100 * gaps[1]:.1e} % apart", max(gaps) <= 0.01
 
 
 def closes(job):

@@ -36,7 +36,6 @@ def reaches(job, *scene):
 # -- the valve --------------------------------------------------------------------------------------------------------
 START = 0.1e-3  # lift at rest [m]
 COARSE, SMALL = "{size: 4e-3, growth: 1.4}", "{size: 5e-3, growth: 1.6}"  # 7.0 k cells, as shipped; 4.0 k cells
-SOURCE = ("participants.fluid.compressibility=~", ".boundaries.outlet.absorbing=false")  # incompressible
 
 
 def meshed(words):
@@ -68,19 +67,6 @@ def crests(t, z):
 
 def off(value, right):
     return f"{100 * (value / right - 1):+.1f} %"
-
-
-def settling(job):
-    """Incompressible, from the start of the source: frequency from peak to peak, and what is left of the swing in the end."""
-    run = valve(job, (*SOURCE, *meshed(SMALL), "simulation.end-time=200 ms"))  # half an hour
-    t, z = lift(run, 2)
-    tops = crests(t, z)
-    if len(tops) < 2:
-        return "no two crests", False
-    f, late = 1 / (t[tops[1]] - t[tops[0]]), z[t > t[-1] - 1 / 56.3]
-    swing = np.ptp(late) / 2 / late.mean()
-    return (f"{f:.1f} Hz ({off(f, 56.3)}), {1e3 * lift(run, 1)[1].max():.2f} mm at point 1; swings by {100 * swing:.1f} % of {1e3 * late.mean():.2f} mm at point 2 in the last cycle of "
-            f"{1e3 * t[-1]:.0f} ms", abs(f / 56.3 - 1) <= 0.03 and swing <= 0.05)
 
 
 def unbalanced(run):
@@ -137,67 +123,7 @@ def price(job):
     return f"{hours:.1f}", hours <= 6
 
 
-def areas(run):
-    """(lift of point 2 [m], effective flow area of the whole valve [mm^2]) while it opens for the first time."""
-    found = run.table("fluid", "flow-areas.csv")
-    at = np.interp(found["time [s]"], *lift(run, 2))
-    until = int(np.argmax(at)) + 1
-    return at[:until], 2e6 * found["valve effective area [m^2]"][:until]
-
-
-def fine_areas(job):
-    """At lifts of point 2 of 1, 2, 3 mm, opening, incompressible, on 7.0 k and 45 k cells; how far each curve leaves the straight lines between points 0.25 mm apart."""
-    curves = [areas(valve(job, (*SOURCE, *meshed(mesh), "simulation.end-time=8 ms", "simulation.output.interval=0"))) for mesh in (COARSE, "~")]
-    knots, rough = np.arange(1e-3, 3.01e-3, 0.25e-3), 0
-    found = np.array([np.interp((1e-3, 2e-3, 3e-3), *curve) for curve in curves])
-    apart = np.abs(found[0] / found[1] - 1).max()
-    for at, area in curves:
-        inside = (at > 1e-3) & (at < 3e-3)
-        rough = max(rough, np.abs(area[inside] / np.interp(at[inside], knots, np.interp(knots, at, area)) - 1).max())
-    texts = ", ".join(f"{mm} mm {coarse:.0f} and {fine:.0f} mm^2" for mm, coarse, fine in zip((1, 2, 3), *found))
-    return f"opening, on 7.0 k and 45 k cells: {texts}; {100 * apart:.0f} % apart; each within {100 * rough:.1f} % of lines between points 0.25 mm apart", apart <= 0.1 and rough <= 0.03
-
-
 HALF, END, WHOLE = 0.3e-3, 0.6e-3, 8e-3  # checkpoint, end of this run, what was asked for [s]
-
-
-def mesh_one(job):
-    """The price of mesh 1 of the source, and how far lift and force of a run that is continued are apart from the whole one."""
-    def run(end, ranks=(1, 1, 1, 1), flags=()):
-        keys = (*SOURCE, *meshed("{size: 0.85e-3, growth: 1.12}"), f"simulation.end-time={end}", f"simulation.checkpoint.interval={HALF}", "simulation.output.interval=0")
-        return job.case("reed-valve", keys, ranks, 3 * 3600, flags)
-
-    def apart(other):
-        worst = 0
-        for file, column in (("reed/probes.csv", "point-1 z [m]"), ("fluid/forces.csv", "plate pressure z [N]")):
-            a, b = (dict(zip(np.round(found["time [s]"], 9), found[column])) for found in (r.table(*file.split("/")) for r in (whole, other)))
-            worst = max(worst, max(abs(a[t] - b[t]) for t in b if t > HALF + 1e-9) / max(map(abs, a.values())))
-        return worst
-
-    whole = run(END)
-    restart = ("--restart", str(min((whole.folder / "checkpoints").glob("step-*"))))
-    again, ranks = apart(run(END, flags=restart)), apart(run(HALF + 0.1e-3, (1, 2, 1, 2), restart))
-    cells = int(re.search(r"^\[fluid 0\] mesh: (\d+) cells", whole.log, re.M)[1])
-    wall = whole.cost.wall / 3600 * WHOLE / END
-    return (f"{cells / 1000:.0f} k cells, {2 * cells / 1000:.0f} k of the whole valve: {whole.cost.cpu / 3600 / END / 1e3:.2f} core-hours per millisecond on 4 processes and two cores, "
-            f"{whole.cost.memory:.0f} MB in the largest; 8 ms at that rate {wall:.1f} h of wall time; restarted: {'bit for bit' if again == 0 else f'{again:.0e} apart'}, "
-            f"fluid and mover on two ranks: {ranks:.0e} apart", again == 0 and ranks < 1e-4 and wall <= 3)
-
-
-# -- the slice --------------------------------------------------------------------------------------------------------
-def any_stiffness(job):
-    """The slice pressed shut as in coupling_reed_lands_*, the seat of the plate softer and stiffer."""
-    texts, met = [], True
-    for factor in (0.1, 1, 1e2, 1e4):
-        keys = (f"participants.reed.contact.scale={1e-4 * factor:g}", "simulation.end-time=3.8e-3", "simulation.output.interval=0",
-                '.boundaries.outlet.pressure="t<0.003?1000*sin(pi*t/0.003):0"')
-        run = job.case("reed-slice", keys, timeout=1200)
-        touching, deep = contact(run)
-        share = unbalanced(run)
-        met &= touching.size > 0 and share < 1e-6
-        texts.append(f"{factor:g} times: " + (f"{1e3 * touching[0]:.2f} to {1e3 * touching[-1]:.2f} ms, {1e6 * deep:.2g} um deep, " if touching.size else "does not land, ")
-                     + f"energies to {share:.0e}, {run.passes().mean():.2f} passes per step")
-    return "; ".join(texts), met
 
 
 def swapped(job):
@@ -215,13 +141,3 @@ def swapped(job):
         found[name] = gap[first], gap[low], gap[second], 1 / (t[second] - t[first])
     worst = max(abs(v[i] / found["plate"][i] - 1) for v in found.values() for i in range(4))
     return "; ".join(f"{name}: {v[0]:.3f}, {v[1]:.3f}, {v[2]:.3f} mm, {v[3]:.0f} Hz" for name, v in found.items()) + f" (first peak, trough, second peak): {100 * worst:.1f} % apart", worst <= 0.05
-
-
-def landings(job):
-    """What coupling_reed_lands_* print."""
-    passed, total, _, output = job.ctest("^coupling_reed_lands_(plate|modes|solid)$")
-    times = np.array([[1e3 * float(v) for v in found] for found in re.findall(r"touches from ([\d.e-]+) to ([\d.e-]+) s", output)])
-    deepest = [1e6 * float(v) for v in re.findall(r"springs of the seat let it +([\d.e-]+) m", output)]
-    apart = max(np.ptp(times[:, i]) / times[:, i].min() for i in (0, 1))
-    return (f"{passed} of {total} tests; in the seat from {times[:, 0].min():.2f} to {times[:, 0].max():.2f} ms on, until {times[:, 1].min():.2f} to {times[:, 1].max():.2f} ms "
-            f"({100 * apart:.0f} % apart), at most {max(deepest):.1f} um deep"), passed == total == 3 and apart <= 0.05

@@ -6,17 +6,6 @@ import re
 import shutil
 
 
-# -- files ------------------------------------------------------------------------------------------------------------
-def check_files(job, what, least):
-    """Files, or runs, of tests/cli/check_files."""
-    said = job.once("check files", lambda: job.run(["/usr/bin/python3", job.root / "tests/cli/check_files/run.py", job.build / "bin"], 600))
-    found = {kind: (int(n), int(wrong)) for n, kind, wrong in re.findall(r"(\d+) (files|runs), (\d+) judged wrongly", said.stdout)}
-    if len(found) != 2:
-        raise RuntimeError(said.stdout[-200:] + said.stderr[-200:])
-    n, wrong_ones = found[what]
-    return f"{n} {what}, {wrong_ones} judged wrongly", n >= least and wrong_ones == 0
-
-
 # -- sanitizers -------------------------------------------------------------------------------------------------------
 def sanitizer_build(job):
     folder = pathlib.Path(os.environ.get("COUPLET_ASAN_BUILD", job.root / "build-asan"))
@@ -63,18 +52,6 @@ def sanitized(job):
     return (f"{passed} of {passed + failed} tests pass" + (f", {failed - len(lost)} of the other {failed} alone" if failed else "")
             + f", {len(found)} kinds of reports of the sanitizers"
             + (f" (lost: {', '.join(lost[:4])})" if lost else "") + (f": {'; '.join(found[:3])}" if found else "")), not lost and passed > 200 and not found
-
-
-def corpora(job, **counts):
-    """Whole fuzzers with the sanitizers on, each at so many inputs."""
-    failed, tests = [], type(job)(job.root, sanitizer_build(job), job.quick)  # of which no more than these needs to be built
-    for name, count in counts.items():
-        result = watched(job, job.scratch / name, [f"COUPLET_FUZZ_COUNT={count}", *tests.test(name)], 3 * 3600, cwd=job.scratch)
-        found = reports(job.scratch / name)
-        if result.returncode != 0 or found:
-            failed.append(" ".join([name, *found[:1]]))
-    return (f"{len(counts) - len(failed)} of {len(counts)} corpora clean, {sum(counts.values())} inputs" + (f": not {', '.join(failed)}" if failed else ""),
-            not failed)
 
 
 # -- mutants ----------------------------------------------------------------------------------------------------------

@@ -1,37 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """The linear solid: motion, ranks, speed."""
-import math
-
-from couplet.study.quantities import top
-
-# -- D: thick plate -----------------------------------------------------------------------------------------------------
-def thick_peak(job, damping, gradient, mesh, step, wanted, limit):
-    """First maxima of the deflection and of the stress at the bottom. `wanted`: deflection [mm], its time [s] (none: not compared), stress [MPa]."""
-    keys = (".damping=" + ("{%s}" % damping if damping else "~"), ".mesh-parameters={n: %d, nz: %d}" % tuple(mesh), "simulation.end-time=0.0116", f"simulation.time-step={step}",
-            ".solution-method={type: newton-krylov, face-gradient: %s, relative-tolerance: 1e-8}" % gradient)
-    probes = job.case("thick-plate", keys, timeout=6 * 3600).probes("solid")
-    (t, w), (_, s) = (top(probes["time [s]"], values) for values in (-1e3 * probes["centre z [m]"], probes["bottom stress-xx [Pa]"] / 1e6))
-    gaps = [abs(w / wanted[0] - 1), abs(s / wanted[2] - 1)] + ([abs(t / wanted[1] - 1)] if wanted[1] else [])
-    return f"{w:.3f} mm at {t:.5f} s, {s:.2f} MPa", max(gaps) <= limit
-
-
-# -- dynamics ---------------------------------------------------------------------------------------------------------
-def vibration(job, scheme, dt):
-    """Returns (period, decay of the amplitude a period) of the free vibration of case C."""
-    run = job.case("vibrating-cantilever", (f"simulation.time-step={dt}", "simulation.output.interval=100", ".solution-method={face-gradient: thesis}",
-                                            f".time-scheme.type={scheme}"))
-    module = job.beside("configs/vibrating-cantilever/vibration.py")
-    return module.fit(*module.history(run.folder / "solid"))[:2]
-
-
-def elongation(job, dt):
-    """Returns the elongation relative to the period of the same mesh without error in time. That period is the trapezoidal one at 0.1 s minus its elongation, which grows with the square of the step and follows from 0.2 s."""
-    fine, coarse = (vibration(job, "trapezoidal", step)[0] for step in (0.1, 0.2))
-    period = fine - (coarse - fine) / 3
-    found = {scheme: vibration(job, scheme, dt) for scheme in ("euler", "three-point", "trapezoidal", "bathe")}
-    text = "; ".join(f"{scheme} {100 * (own / period - 1):.3f} / {100 * decay:.3f}" for scheme, (own, decay) in found.items())
-    return f"{text} % (undisturbed period {period:.3f} s)", all(math.isfinite(value) for both in found.values() for value in both)
-
 
 # -- parallel ---------------------------------------------------------------------------------------------------------
 def body(job, n, ranks=1, method="newton-krylov"):
@@ -117,24 +85,4 @@ def table_3_1(job):
     for n, (s, sa) in {(8, 12, 6): (2.1, 5.7), (16, 24, 12): (3.8, 4.3), FINE: (4.3, 3.4)}.items():
         t = {m: race(job).our_plate(job, n, m, 1e-7)["solution"] for m in ("S", "SA", "C", "newton-krylov")}
         found["x".join(map(str, n))] = {"S/SA": (t["S"] / t["SA"], s), "SA/C": (t["SA"] / t["C"], sa), "C/newton-krylov": (t["C"] / t["newton-krylov"], None)}
-    return reproduced(found)
-
-
-def table_3_4(job, step, steps, published):
-    """Case C: processor seconds per step over C's, and iterations per step. `published`: S, SA and SA with the predictor of Euler over C."""
-    methods = {"C": ("C", "none"), "S": ("S", "none"), "SA": ("SA", "none"), "SA-E": ("SA", "euler"), "newton-krylov": ("newton-krylov", "euler")}
-    beams = {name: race(job).beam(job, f"{race(job).METHODS[method]}, predictor: {predictor}", step=step, steps=steps, times=1)
-             for name, (method, predictor) in methods.items()}
-    text, met = reproduced({f"{step} s": {name: (beams[name][0] / beams["C"][0], wanted)
-                                          for name, wanted in zip(("S", "SA", "SA-E", "newton-krylov"), (*published, None))}})
-    return f"{text}; iterations per step {', '.join(f'{name} {n:.0f}' for name, (_, n) in beams.items())}", met
-
-
-def table_3_3(job, *published):
-    """Processor seconds per step by scheme, over those of the trapezoidal rule. `published`: each a step and the seconds of whole runs of case C by the block-coupled method."""
-    found = {}
-    for step, thesis in published:
-        seconds = {scheme: race(job).beam(job, race(job).METHODS["C"], step=step, steps=18, times=1, extra=(f"participants.solid.time-scheme={{type: {scheme}}}",))[0]
-                   for scheme in thesis}
-        found[f"{step} s"] = {s: (seconds[s] / seconds["trapezoidal"], round(thesis[s] / thesis["trapezoidal"], 2)) for s in thesis if s != "trapezoidal"}
     return reproduced(found)

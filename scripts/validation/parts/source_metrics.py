@@ -14,12 +14,6 @@ PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_
 HOUSE = ("common", *PROGRAMS)
 LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', re.S)
 CLASS = re.compile(r"\b(?:class|struct)\s+(?:\[\[\w+\]\]\s*)?([\w:]+)(?:\s+final)?\s*(?::([^:;{(][^;{(]*))?\{")
-JUDGING = re.compile(r"/(?:judge|diagnostics|effects)/|(?:guard|audit|estimate|verdict|effect|finding|position|judge|card|ledger|watch|error_part|role_check|fluid_check"
-                     r"|scene_check|question|step_error|velocity_error|quality)\w*\.[ch]pp$")
-JUDGING_WORDS = ("judge", "audit", "guard", "watch", "estimate", "verdict", "evidence", "card", "doubt", "look", "ledger", "trail", "position")
-# The names by which the fluid's steps ask for an optional feature.
-FEATURES = re.compile(r"\b(?:if|while)\s*\(.*\b\w*(?:gaps?|bod(?:y|ies)|yield\w*|impedance|absorb\w*|volume_?s?|compress\w*|closed|sound|frame|rotat\w*|lines?|eddy|eddies"
-                      r"|turbulen\w*|porous|periodic|robin)_?\w*\b")
 BAD_BEGINNING = re.compile(r"(?:Of|What|Whether|By|The same|That|Those)\b")
 
 
@@ -49,6 +43,25 @@ def lines(job, endings, folders, most):
     return f"{n}", n <= most
 
 
+def tokens(job, most):
+    """Comments and blanks do not count."""
+    one = re.compile(r'(//[^\n]*|/\*.*?\*/)|R"(\w*)\(.*?\)\2"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)|\d(?:[\w.\']|(?<=[eE])[+-])*|\w+|\S', re.S)
+    n = sum(not token[1] for text in texts(job).values() for token in one.finditer(text))
+    return f"{n}", n <= most
+
+
+def size(job, folder, megabytes, most):
+    """Files of the last commit, in a folder or '.'."""
+    sizes = [int(line.split()[3]) for line in job.run(["git", "-C", job.root, "ls-tree", "-r", "-l", "HEAD", folder]).stdout.splitlines()]
+    return f"{len(sizes)} files, {sum(sizes) / 1e6:.2f} MB", sum(sizes) <= megabytes * 1e6 and len(sizes) <= most
+
+
+def pack(job):
+    clone = job.scratch / "clone"
+    job.run(["git", "clone", "-q", "--bare", "--depth", "1", f"file://{job.root}", clone])
+    return f"{sum(f.stat().st_size for f in clone.rglob('*.pack')) / 1e6:.2f} MB", True
+
+
 def lines_of_programs(job, most):
     found = {}
     for f, text in texts(job).items():
@@ -59,37 +72,6 @@ def lines_of_programs(job, most):
 def files(job, most):
     sizes = [len(t.splitlines()) for t in texts(job).values()]
     return f"{len(sizes)} files, median {statistics.median(sizes):.0f} lines", len(sizes) <= most
-
-
-def small_files(job, below, share):
-    n = sum(len(t.splitlines()) < below for t in texts(job).values())
-    return f"{n} of {len(texts(job))} files", n <= share * len(texts(job))
-
-
-def boilerplate(job, share):
-    """License, includes, include guards, the lines that open and close namespaces, and the blank lines beside all of these."""
-    pattern, found, every = re.compile(r"// SPDX|#pragma once|#include\b|namespace\b.*\{$|\}\s*// (?:namespace|anonymous)"), 0, 0
-    for text in texts(job).values():
-        rows = [line.strip() for line in text.splitlines()]
-        marks = [bool(pattern.match(row)) for row in rows]
-        found += sum(mark or not row and any(marks[max(i - 1, 0):i + 2]) for i, (row, mark) in enumerate(zip(rows, marks)))
-        every += len(rows)
-    return f"{found} lines, {100 * found / every:.1f} %", found <= share * every
-
-
-# -- judging ------------------------------------------------------------------------------------------------------------
-def judging(job, most):
-    found = {f: len(t.splitlines()) for f, t in texts(job).items() if JUDGING.search(f)}
-    return f"{sum(found.values())} lines in {len(found)} files", sum(found.values()) <= most
-
-
-def judging_words(job):
-    """Words that names of files and classes must not contain. The words of snake case and of camel case count, in the singular and in the plural, and not parts of them:
-    `lookup` is no `look`, and `discard` no `card`."""
-    names = " ".join(f"{f} {' '.join(m[1] for m in CLASS.finditer(plain(t)))}" for f, t in texts(job).items())
-    there = {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", names)}
-    found = [word for word in JUDGING_WORDS if {word, f"{word}s"} & there]
-    return f"{len(found)} beside diagnostic and finding: {', '.join(found) or 'none'}", not found
 
 
 # Ten cases of different kinds as runs of seconds: (case, keys, whether it is a single static solve).
@@ -167,35 +149,6 @@ def largest_class(job, most):
     return f"{worst(found, 5)}; {over} of {len(found)} have more than {most}", not over
 
 
-def single_implementations(job):
-    """Classes with a pure virtual function from which exactly one class derives, those of tests included."""
-    abstract, derived = {}, {}
-    tests = [(job.root / f).read_text() for f in tracked(job, "tests") if f.endswith((".cpp", ".hpp"))]
-    for text in map(plain, [*texts(job).values(), *tests]):
-        for match in CLASS.finditer(text):
-            name, body = match[1].split("::")[-1], text[match.end():closing(text, match.end())]
-            if re.search(r"\)\s*(?:const\s*)?(?:noexcept\s*)?=\s*0\s*;", body):
-                abstract[name] = len(re.findall(r"\bvirtual\b", body))
-            for base in re.findall(r"(?:public\s+)?((?:\w+::)*\w+)", re.sub(r"<[^<>]*>", "", match[2] or "")):
-                derived.setdefault(base.split("::")[-1], set()).add(name)
-    lone = {name: n for name, n in abstract.items() if len(derived.get(name, ())) == 1}
-    return f"{len(lone)} of {len(abstract)} interfaces (virtual functions): {worst(lone, 8)}", not lone
-
-
-# -- habits -------------------------------------------------------------------------------------------------------------
-def saved_by_hand(job, most):
-    """Single values that checkpoints write and read by name, apart from `visit`."""
-    every = [t for f, t in texts(job).items() if not f.startswith(("common/io/", "common/base/"))]
-    writes, reads = (sum(len(re.findall(pattern, t)) for t in every) for pattern in (
-        r"\b(?:checkpoint|file|out|writer|to)_?\.write\w*\(\s*(?:\"|\w+ \+ \")", r"\b(?:checkpoint|file|in|reader|from)_?\.read\w*\(\s*(?:\"|\w+ \+ \")"))
-    return f"{writes} writes, {reads} reads", writes + reads <= most
-
-
-def branches(job, folders, most):
-    found = {f: n for f, t in texts(job).items() if f.startswith(tuple(folders)) for n in [sum(bool(FEATURES.search(line.split("//")[0])) for line in t.splitlines())] if n}
-    return f"{sum(found.values())} in {len(found)} files: {worst(found)}", sum(found.values()) <= most
-
-
 def comment_blocks(job, share):
     found, bad = 0, 0
     for text in texts(job).values():
@@ -215,14 +168,6 @@ def mirrored(job, share):
     headers = [f for f in texts(job) if f.endswith(".hpp")]
     there = [h for h in headers if f"tests/unit/{h.removeprefix('common/').removesuffix('.hpp')}_test.cpp" in tests]
     return f"{len(there)} of {len(headers)}", len(there) >= share * len(headers)
-
-
-def bare(job):
-    """The two exceptions are in the table of docs/architecture.md."""
-    headers = {f: text for f, text in texts(job).items() if f.endswith(".hpp")}
-    excepted = re.findall(r"^\| `([\w/.]+)` \| `couplet` \|", (job.root / "docs/architecture.md").read_text(), re.M)
-    rest = [f for f, text in headers.items() if re.search(r"^namespace couplet\s*\{", text, re.M) and f not in excepted]
-    return f"{len(rest)} of {len(headers)} headers, and {', '.join(excepted)} by a written exception", not rest
 
 
 def comparison(job):

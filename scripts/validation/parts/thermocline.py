@@ -121,15 +121,6 @@ def diameters(job, case, chosen, values):
     return f"stored share of the excess, efficiency, static factor of safety at {text}; least that stores 90 %: {least}", least == chosen
 
 
-def melting_layers(job):
-    """Case A with layers of capsules at both ends in place of rock and sand."""
-    study(job, "A", ("smooth-B", "smooth-PCM"), job.scratch / "melting")
-    columns = read(job.scratch / "melting/table.csv")
-    b, p = columns["smooth-B"], columns["smooth-PCM"]
-    text = "; ".join(f"{q} {b[q]:.1f} -> {p[q]:.1f}" for q in ("Q_C/Q_excess", "B_D", "discharge time", "h_th/h_bed"))
-    return text, p["Q_C/Q_excess"] > b["Q_C/Q_excess"] and p["B_D"] > b["B_D"]
-
-
 def optimise(job):
     """Diameter and cut-off against the stored share less a price of the volume, on a coarse tank: a grid of 9 x 9 and the search."""
     from couplet.runs import Case

@@ -3,6 +3,7 @@
 """Rows of tables are data: every table is read, each measure takes the arguments that its row gives, groups are written out in order, and what a row cannot mean
 is refused by its name; numbers read from a run are compared with what is right."""
 import pathlib
+import re
 import sys
 import tempfile
 import types
@@ -21,6 +22,12 @@ for name in rows.known():
     # A table without the rows that it had would lose what was measured.
     assert set(there) <= {b.quantity for b in read.bars}, (name, set(there) - {b.quantity for b in read.bars})
 assert len(rows.known()) >= 20
+assert sum(len(rows.load(name).bars) for name in rows.known()) <= 250
+for page in (ROOT / "docs/validation").glob("*.md"):  # a reader learns first how old the numbers are
+    assert re.search(r"\*\*[^*]*\b\d{4}-\d\d-\d\d\b[^*]*\*\*", page.read_text()[:400]), page
+assert all((ROOT / "common" / folder).is_dir() for folders in rows.COMMON.values() for folder in folders)
+assert rows.needed(["coupler", "configs"]) == ("common/base", "common/parallel", "common/linalg", "common/coupling", "coupler", "configs", "!coupler/diagnostics")
+assert rows.needed(["common", "coupler"]) == ("common", "coupler")
 
 
 def loaded(text):

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """docs/benchmarks.md: the coupled benchmarks beside the figures of others, from the committed tables: ours from docs/validation, theirs from
-the reference of FSI1 to FSI3 and from page.yaml. Usage: page.py [--check] (without: writes the page)."""
+the reference of FSI1 to FSI3 and from page.yaml. Usage: page.py [--check] (without: writes the page). --check also compares the numbers that README
+and docs/limitations.md quote with the tables."""
 import csv
 import pathlib
 import re
@@ -82,6 +83,21 @@ def text():
     return "\n".join(found)
 
 
+def misquoted():
+    """Yields what page.yaml's quotes say and no page or table does."""
+    for page, words, name, beginning in DATA["quotes"]:
+        said, file = words.replace("`", ""), ROOT / "docs/validation" / f"{name}.md"
+        rows = [r.got for q, r in table.read(file).items() if q.startswith(beginning)] if beginning else [file.read_text().partition("\n| quantity")[0]]
+        if said not in " ".join((ROOT / page).read_text().split()):
+            yield f"{page} does not say '{said}'"
+        if len(rows) != 1:
+            yield f"{page}: '{said}': {file.name} has {len(rows)} rows '{beginning}'"
+        there = [abs(float(n)) for n in re.findall(r"-?\d+(?:\.\d+)?", " ".join(rows))]
+        for number in re.findall(r"`([\d.]+)`", words):
+            if float(number) not in [round(n, len(number.partition(".")[2])) for n in there]:
+                yield f"{page}: '{said}': {number} is not in {file.name}, {beginning or 'the note'}"
+
+
 def write():
     PAGE.write_text(text())
 
@@ -89,5 +105,7 @@ def write():
 if __name__ == "__main__":
     if "--check" in sys.argv and PAGE.read_text() != text():
         sys.exit(f"{PAGE}: differs from the tables that it is made of. Write it again: scripts/validation/parts/benchmarks/page.py")
+    if "--check" in sys.argv and (wrong := list(misquoted())):
+        sys.exit("\n".join(wrong))
     if "--check" not in sys.argv:
         write()

@@ -73,18 +73,6 @@ participants:
     return launch([*launcher, job.build / "bin/fluid_solver", "case.yaml"], folder / "log", folder), (folder / "log").read_text()
 
 
-def beside_steps(job):
-    """Wall time of the process beyond the run's own account, which begins with the first step: opening the mesh, matrices, MPI."""
-    found = []
-    for ranks in (1, 2):
-        cost, text = steps(job, 100, STEPS, ranks)
-        account = {m[1]: float(m[2]) for m in re.finditer(r"^(\w+) +([\d.]+) +[\d.]+ %", text, re.M)}
-        step = sum(account.get(part, 0) for part in ("begin_step", "solve", "accept_step")) / STEPS
-        found.append((ranks, (cost.wall - account["total"]) / step, step))
-    words = "; ".join(f"{ratio:.1f} steps of {step:.2f} s on {ranks}" for ranks, ratio, step in found)
-    return words, max(ratio for _, ratio, _ in found) <= 20
-
-
 # -- wall -------------------------------------------------------------------------------------------------------------
 VERTICES, WALL_RANKS, WALL_STEPS = 1_000_000, 4, 5
 CASE = """simulation: {{end-time: {end}, time-step: 0.01, output: {{folder: out, interval: 0}}, checkpoint: {{interval: 0}}, accept: [error-estimate]}}
@@ -167,14 +155,6 @@ def rows(job, scene, ranks):
 def words(found, key):
     return "; ".join(f"{program} " + ", ".join(f"{r[key]:.0f} on {r['ranks']}" for r in found if r["program"] == program)
                      for program in dict.fromkeys(r["program"] for r in found))
-
-
-def per_step(job, key, ranks, scenes=SCENES):
-    """One of the counts on several numbers of ranks: `neighbours` must not be all others, `reductions` not grow but for the iterations, `gathers` be none."""
-    found = [row for scene in scenes for row in rows(job, scene, ranks)]
-    sign = {"neighbours": "exchanges messages with all others", "reductions": "reductions per step", "gathers": "gathers or scatters"}[key]
-    wrong = [line for line in scaling(job, "counts").failures(found) if sign in line]
-    return words(found, key), not wrong
 
 
 def flat(job, ranks, share):

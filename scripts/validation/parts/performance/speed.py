@@ -7,18 +7,9 @@ import sys
 import time
 
 
-# -- cells ------------------------------------------------------------------------------------------------------------
-TEST = "verification_fluid_fourth_order"
 PEAK, HEIGHT = 9.0, 0.0128  # of -dk/dt at Re 1600
 KEY = "participants.fluid.face-values="
 ORDERS = {"second": KEY + "second-order", "fourth": KEY + "fourth-order"}
-
-
-def order_of_lines(job):
-    (u,), passed = job.recorded(TEST, "are_fourth_order", "velocity_slope")
-    (p,), _ = job.recorded(TEST, "are_fourth_order", "pressure_slope")
-    (gain,), _ = job.recorded(TEST, "are_fourth_order", "gain")
-    return f"velocity {u:.2f}, pressure {p:.2f}; 64^2: {gain:.0f} times less error than second order", passed and min(u, p) >= 3.8
 
 
 def cavity(job):
@@ -28,12 +19,6 @@ def cavity(job):
         run = job.case("cavity-3d", [setting], timeout=7200)
         found[name] = job.beside("configs/cavity-3d/extrema.py").errors(run.folder / "fluid"), run.cost.cpu / 60
     return found
-
-
-def extrema_of_cavity(job):
-    found = cavity(job)
-    texts = [f"{name} order {', '.join(f'{key} {100 * off:.2f} %' for key, off in errors.items())} ({minutes:.1f} processor minutes)" for name, (errors, minutes) in found.items()]
-    return "; ".join(reversed(texts)), max(found["fourth"][0].values()) <= 0.02
 
 
 def peak(job, n, name, *sets):

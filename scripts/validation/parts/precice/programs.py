@@ -7,7 +7,6 @@ import pathlib
 import re
 import shlex
 import shutil
-import subprocess
 
 import numpy as np
 
@@ -100,27 +99,6 @@ def oscillator(job):
             max(abs(np.array(sorted(errors)) - own)) < 1e-7)
 
 
-def lines_of_circuit(windows=10):
-    """Error of the tutorial's circuit (L 1, C 2) where voltage and current are lines in time in each window of 1 s; the first current read is 0: no initial data."""
-    current, voltage, read = 1.0, 0.0, 0.0
-    for _ in range(windows):  # I' - U'/2 = I + U/2,  I'/4 + U' = U - read/4
-        right = current + voltage / 2, voltage - read / 4
-        current, voltage = (right[0] + right[1] / 2) / 1.125, (right[1] - right[0] / 4) / 1.125
-        read = current
-    return current - np.cos(windows / np.sqrt(2))
-
-
-def circuit(job):
-    source = folder("COUPLET_PRECICE_TUTORIALS")
-    if source is None:
-        return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
-    where = job.scratch / "circuit"
-    shutil.copytree(source / "resonant-circuit", where)
-    said = coupled(job, where, where / "precice-config.xml", [f"cd {where}/{side}-python && exec /usr/bin/python3 {side}.py" for side in ("coil", "capacitor")])
-    error, own = float(re.search(r"error=array\(\[([-\d.e]+)", said)[1]), lines_of_circuit()
-    return f"{error:.4f} ({own:.4f} with lines between the ends of the windows, computed by itself); {passes(said):.2f} passes{commit_of(source, job)}", abs(error) < 1e-2
-
-
 # -- solver dummies -----------------------------------------------------------------------------------------------------
 def dummies(job):
     source = folder("COUPLET_PRECICE_DUMMIES")
@@ -159,31 +137,6 @@ def cost(job):
     native, by_precice = min(seconds["native"]), min(seconds["precice"])
     same = "the same sums of all values" if len(sums) == 1 else "other sums of all values"
     return f"{1e3 * by_precice:.1f} ms, client {1e3 * native:.1f} ms: {by_precice / native:.2f}x (load {os.getloadavg()[0]:.0f}); {same}", len(sums) == 1 and by_precice <= 1.2 * native
-
-
-def cost_of_sockets(job):
-    """Measures the same window with the client itself. Both participants are launched separately and joined over sockets."""
-    where = job.scratch / "cost-sockets"
-    where.mkdir(exist_ok=True)
-    shutil.copy(TWO, where)
-    program, ratios, sums = f"{job.build}/bin/tests/precice_cost native", {}, set()
-    for kind in ("native", "unix", "tcp:lo") * 3:
-        words = [f"exec {program} {name} two.xml {VERTICES}" for name in ("One", "Two")]
-        if kind != "native":
-            own = "env -u OMPI_COMM_WORLD_SIZE -u PMIX_RANK"
-            guests = [f"COUPLET_JOIN={name}.relay {own} {program} {name} two.xml {VERTICES}" for name in ("One", "Two")]
-            started = [subprocess.Popen(["sh", "-c", g], cwd=where, stdout=subprocess.PIPE, text=True) for g in guests]
-            words = [f"exec {job.build}/bin/relay {name} --listen {kind}" for name in ("One", "Two")]
-        said = coupled(job, where, where / "two.xml", words)
-        if kind != "native":
-            said = "".join(p.communicate()[0] for p in started)
-        found = re.findall(r"([\d.]+) s a window, sum (\S+)", said)
-        ratios.setdefault(kind, []).append(max(float(s) for s, _ in found))
-        sums.add(tuple(sorted(total for _, total in found)))
-    least = {kind: min(values) for kind, values in ratios.items()}
-    text = ", ".join(f"{kind} {1e3 * least[kind]:.1f} ms ({least[kind] / least['native']:.2f}x)" for kind in ("unix", "tcp:lo"))
-    return (f"client by MPI {1e3 * least['native']:.1f} ms, {text} (load {os.getloadavg()[0]:.0f}); {'the same' if len(sums) == 1 else 'other'} sums of all values",
-            len(sums) == 1 and max(least.values()) <= 2 * least["native"])
 
 
 # -- configurations -----------------------------------------------------------------------------------------------------
