@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `effects: auto` chooses, scene by scene, beside what somebody who knows the field would.
-#include "solid_solver/choices.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
+#include "solid_solver/choices.hpp"
 #include "tests/support/test.hpp"
 
 namespace couplet::testing::automatic_effects_test {
