@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plots fields with matplotlib: displaced 2-D cells or, in 3-D, outer faces; patches over the arc length or, in 3-D, their faces."""
+from __future__ import annotations
+
 import pathlib
 
 import numpy as np
@@ -147,8 +149,10 @@ def output_near(series, at):
     return len(series.times) - 1 if at is None else series.nearest(at)
 
 
-def draw_surface(folder, name, patch, picture=None, at=None, component=None, warp=1.0, dpi=110):
-    """Draws a field on a patch (`output.surfaces`) at one output: in 2-D over the arc length, in 3-D on its faces."""
+def draw_surface(folder: str | pathlib.Path, name: str, patch: str, picture: str | pathlib.Path | None = None, at: float | None = None,
+                 component: str | None = None, warp: float = 1.0, dpi: int = 110) -> pathlib.Path:
+    """Draws a field on a patch (`output.surfaces`) at one output: in 2-D over the arc length, in 3-D on its faces. `at` is a time [s]; `component` is
+    "x", "y" or "z", without which a vector is drawn by its magnitude; displacements are drawn `warp` times as large. Returns the picture's path."""
     surface = surface_of(pathlib.Path(folder), patch)
     i = output_near(surface, at)
     values, label, plane = values_of(surface, i, name, component), label_of(surface, i, name, component), surface.is_plane()
@@ -162,8 +166,10 @@ def draw_surface(folder, name, patch, picture=None, at=None, component=None, war
     return saved(figure, f"{patch}, t = {surface.times[i]:.4g} s", picture, folder, pathlib.Path(surface.file.filename).with_name(f"{surface.name}-{name}.png"))
 
 
-def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110):
-    """Draws a field of one output (the last, or the one closest to the time `at`). Returns the picture's name."""
+def draw(folder: str | pathlib.Path, name: str, picture: str | pathlib.Path | None = None, at: float | None = None,
+         component: str | None = None, warp: float = 1.0, dpi: int = 110) -> pathlib.Path:
+    """Draws a field of one output (the last, or the one closest to the time `at` [s]), with the arguments of draw_surface(). Returns the picture's
+    path."""
     series = series_of(pathlib.Path(folder), name)
     i = output_near(series, at)
     values, points = values_of(series, i, name, component), places_of(series, i, warp, name)
@@ -174,7 +180,7 @@ def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110)
     return saved(figure, f"t = {series.times[i]:.4g} s", picture, folder, pathlib.Path(series.file.filename).with_name(f"{name}.png"))
 
 
-def draw_mode(folder, number, picture=None, dpi=110):
+def draw_mode(folder: str | pathlib.Path, number: int, picture: str | pathlib.Path | None = None, dpi: int = 110) -> pathlib.Path:
     """Draws a mode of modes.h5 (docs/formats.md) on the surface, with a maximum displacement of a tenth of the size. Returns the picture's name."""
     import h5py
     file = next((f for f in (pathlib.Path(folder) / "modes.h5", *sorted(pathlib.Path(folder).glob("*/modes.h5"))) if f.exists()), None)

@@ -8,6 +8,8 @@
     for event in c:                                     # "begin", "solve", "accept", "output", "save", "load"
         if event == "solve": c.write("displacement", motion(c.read("pressure-force")))
 """
+from __future__ import annotations
+
 import atexit
 import math
 import os
@@ -15,6 +17,7 @@ import socket
 import struct
 import sys
 import time
+from collections.abc import Iterator, Sequence
 
 import numpy
 from mpi4py import MPI  # MPI starts here
@@ -60,7 +63,10 @@ class _Reader:
 
 
 class Client:
-    def __init__(self, participant, program):
+    """One participant of a job. `dt` [s] is the step of the event, `time` [s] its begin (for "accept" and "output" its end), `number` counts
+    steps, and `folder` is that of the checkpoint to save or load."""
+
+    def __init__(self, participant: str, program: str):
         """Takes part in the start of the job. Collective over all processes of the participant. Ends the program with exit code 2 if the job does not
         start. If COUPLET_JOIN=FILE is set, the program was launched separately (MPI.COMM_WORLD is the participant) and joins through the relay that
         wrote FILE."""
@@ -117,28 +123,29 @@ class Client:
         return bytes(everything).decode().split("\x1e")[:-1]
 
     # -- the interface, before the first event ------------------------------------------------------------------------
-    def vertices(self, xyz, dimension=3):
+    def vertices(self, xyz: numpy.ndarray, dimension: int = 3) -> None:
         """Declares vertices `xyz` (n, 3) [m] in the reference configuration. For dimension 2, z = 0, and all values are per meter of depth."""
         self._xyz, self._dimension = numpy.asarray(xyz, float).reshape(-1, 3), dimension
 
-    def faces(self, centres, areas, corners=None):
+    def faces(self, centres: numpy.ndarray, areas: numpy.ndarray, corners: Sequence[Sequence[int]] | None = None) -> None:
         """Declares faces: centers [m] and areas out of this participant [m^2] (n, 3). `corners` lists vertex positions per face."""
         self._centres, self._areas = (numpy.asarray(a, float).reshape(-1, 3) for a in (centres, areas))
         self._corners = corners or [[] for _ in self._centres]
 
-    def takes(self, datum, unit, place, components=0):
+    def takes(self, datum: str, unit: str, place: str, components: int = 0) -> None:
         """Declares a received datum at `place` ("vertices" or "faces") with `components` values per location; 0 means one per dimension."""
         self._takes.append((datum, unit, ("vertices", "faces").index(place), components))
 
-    def gives(self, datum, unit, place, components=0):
+    def gives(self, datum: str, unit: str, place: str, components: int = 0) -> None:
+        """Declares a datum that is written in each "solve", with the arguments of takes()."""
         self._gives.append((datum, unit, ("vertices", "faces").index(place), components))
 
     # -- events -------------------------------------------------------------------------------------------------------
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         while (event := self.next()) is not None:
             yield event
 
-    def next(self):
+    def next(self) -> str | None:
         """Replies to the last event and waits for the next one. Returns None when the job is over. Collective."""
         while True:
             if self._pending:
@@ -154,23 +161,25 @@ class Client:
             if self.operation in EVENTS:
                 return EVENTS[self.operation]
 
-    def read(self, datum):
+    def read(self, datum: str) -> numpy.ndarray:
         """Returns the data of this process, (places, components): zeros before they are first given, and the last values after the last event."""
         entry = next(d for d in self._takes if d[0] == datum)
         return self._input.get(datum, numpy.zeros(self._shape(entry)))
 
-    def write(self, datum, values):
+    def write(self, datum: str, values: numpy.ndarray) -> None:
+        """Gives the data of this process, (places, components) in the unit that gives() declared."""
         entry = next(d for d in self._gives if d[0] == datum)
         self._output[datum] = numpy.ascontiguousarray(values, float).reshape(self._shape(entry))
 
-    def fail(self, why, halving_helps=True):
-        """Reports a failed step instead of writing."""
+    def fail(self, why: str, halving_helps: bool = True) -> None:
+        """Reports a failed step instead of writing. The job repeats it with half the step unless halving does not help."""
         self._status, self._why = (1 if halving_helps else 2), why
 
-    def advise(self, dt):
+    def advise(self, dt: float) -> None:
+        """Asks for steps of at most `dt` [s] from now on."""
         self._advised = dt
 
-    def checkpoint(self):
+    def checkpoint(self) -> str:
         """Prefix of file names for save and load."""
         return f"{self.folder}/{self.participant}"
 

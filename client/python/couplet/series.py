@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the fields of a participant (HDF5): in the volume, and on patches (surface-<patch>.h5 of `output.surfaces`)."""
+from __future__ import annotations
+
 import pathlib
 
 import h5py
@@ -9,9 +11,11 @@ WIDTH = {4: 3, 5: 4, 6: 4, 7: 5, 8: 6, 9: 8}  # points of a cell, by XDMF code
 
 
 class FieldSeries:
-    """One <name>.h5 series: times, cells (lists of point numbers), coordinates and fields by name."""
+    """One <name>.h5 series: times, cells (lists of point numbers), coordinates and fields by name.
 
-    def __init__(self, file):
+    `times` (outputs,) [s], `cells`: an array of point numbers per cell, `codes`: its XDMF code. Outputs are numbered from 0; -1 is the last."""
+
+    def __init__(self, file: str | pathlib.Path):
         self.file = h5py.File(file, "r")
         self.steps = sorted(self.file["steps"])
         self.times = np.array([float(self.file["steps"][s].attrs["time"]) for s in self.steps])
@@ -27,48 +31,51 @@ class FieldSeries:
                 self.cells.append(flat[at + 1 : at + 1 + width])
                 at += 1 + width
 
-    def nearest(self, time):
+    def nearest(self, time: float) -> int:
+        """Number of the output nearest to a time [s]."""
         return int(np.abs(self.times - time).argmin())
 
-    def coordinates(self, i):
+    def coordinates(self, i: int) -> np.ndarray:
+        """Points (points, 2 or 3) [m] where they are at output `i`."""
         step = self.file["steps"][self.steps[i]]
         return step["coordinates"][...] if "coordinates" in step else self.reference()
 
-    def field(self, i, name):
+    def field(self, i: int, name: str) -> np.ndarray:
+        """Values (cells or points, components) of a field at output `i`, in its SI unit. Raises KeyError if there is none of this name."""
         step = self.file["steps"][self.steps[i]]
         for place in ("cells", "points"):
             if place in step and name in step[place]:
                 return step[place][name][...]
         raise KeyError(f"no field '{name}' in {self.file.filename}")
 
-    def is_at_points(self, i, name):
+    def is_at_points(self, i: int, name: str) -> bool:
         """Returns true if the field exists only at points. field() prefers cells if both have it."""
         step = self.file["steps"][self.steps[i]]
         return not ("cells" in step and name in step["cells"])
 
-    def reference(self):
-        """Points of the undeformed mesh."""
+    def reference(self) -> np.ndarray:
+        """Points (points, 2 or 3) [m] of the undeformed mesh."""
         return self.file["mesh/coordinates"][...]
 
-    def is_flat(self):
+    def is_flat(self) -> bool:
         """Returns true if the mesh is two-dimensional."""
         points = self.reference()
         return points.shape[1] == 2 or np.ptp(points[:, 2]) == 0
 
-    def shares_of_points(self):
-        """Volumes (2-D: areas) of the cells, distributed evenly to their points."""
+    def shares_of_points(self) -> np.ndarray:
+        """Volumes [m^3] (2-D: areas [m^2]) of the cells, distributed evenly to their points: (points,)."""
         shares = np.zeros(len(self.reference()))
         for cell, volume in zip(self.cells, self.volumes()):
             shares[cell] += volume / len(cell)
         return shares
 
-    def centres(self):
-        """Cell centers (means of the points) in the undeformed mesh."""
+    def centres(self) -> np.ndarray:
+        """Cell centers (cells, 2 or 3) [m], means of the points, in the undeformed mesh."""
         points = self.reference()
         return np.array([points[cell].mean(axis=0) for cell in self.cells])
 
-    def volumes(self):
-        """Areas (2-D) of the cells in the undeformed mesh; in 3-D volumes of hulls, exact for planar faces."""
+    def volumes(self) -> np.ndarray:
+        """Areas [m^2] (2-D) of the cells in the undeformed mesh; in 3-D volumes [m^3] of hulls, exact for planar faces."""
         points = self.reference()
         if self.is_flat():
             found = []
@@ -79,11 +86,12 @@ class FieldSeries:
         from scipy.spatial import ConvexHull
         return np.array([ConvexHull(points[cell]).volume for cell in self.cells])
 
-    def names(self, i):
+    def names(self, i: int) -> list[str]:
+        """Names of the fields at output `i`."""
         step = self.file["steps"][self.steps[i]]
         return [name for place in ("cells", "points") if place in step for name in step[place]]
 
-    def edges_on_boundary(self):
+    def edges_on_boundary(self) -> np.ndarray:
         """Edges (2-D) that belong to only one cell, as pairs of point numbers."""
         count = {}
         for cell in self.cells:
@@ -95,7 +103,7 @@ class FieldSeries:
 SHAPES = ("buckling.h5", "mode-shapes.h5")  # beside the fields of a run
 
 
-def find_series(folder, name="*.h5"):
+def find_series(folder: str | pathlib.Path, name: str = "*.h5") -> FieldSeries:
     """The .h5 field series in a participant's output folder: that of the run, not that of its shapes, unless they are named."""
     for file in sorted(pathlib.Path(folder).glob(name)):
         if file.name in SHAPES and file.name != name:
@@ -118,16 +126,16 @@ class Surface(FieldSeries):
             raise ValueError(f"{file}: is no surface; its format is {form!r}")
         self.name = pathlib.Path(file).stem.removeprefix("surface-")
 
-    def is_plane(self):
+    def is_plane(self) -> bool:
         """Returns true if the faces are edges (2-D), with values per meter of depth."""
         return len(self.cells[0]) == 2
 
-    def places(self, i=-1):
-        """Face centers [m]: means of their points."""
+    def places(self, i: int = -1) -> np.ndarray:
+        """Face centers (faces, 2 or 3) [m]: means of their points."""
         points = self.coordinates(i)
         return np.array([points[face].mean(axis=0) for face in self.cells])
 
-    def areas(self, i=-1):
+    def areas(self, i: int = -1) -> np.ndarray:
         """Face areas [m^2]. Edges count as length times 1 m. Quadrilaterals use half the cross product of the diagonals (planar faces)."""
         points = self.coordinates(i)
         if self.is_plane():
@@ -137,14 +145,14 @@ class Surface(FieldSeries):
                 for f, (b, d, a, c) in zip(self.cells, last)]
         return np.array([0.5 * np.linalg.norm(np.cross(u, v)) for u, v in ends])
 
-    def integral(self, name, i=-1):
+    def integral(self, name: str, i: int = -1) -> np.ndarray:
         """Sum over the faces of the field times the area: for a traction [Pa] the force [N]. Point fields use the mean over each face."""
         field = np.asarray(self.field(i, name), float)
         if self.is_at_points(i, name):
             field = np.array([field[face].mean(axis=0) for face in self.cells])
         return np.tensordot(self.areas(i), field, axes=1)
 
-    def chains(self, i=-1):
+    def chains(self, i: int = -1) -> list[tuple[np.ndarray, np.ndarray]]:
         """Returns [(ordered edge numbers, ordered points)] in 2-D. An open part starts at its end with the lowest number, a closed one at its point with the
         largest x. Both have the body on the same side as the edges."""
         points, after = self.coordinates(i), {}
@@ -167,13 +175,13 @@ class Surface(FieldSeries):
         return found
 
 
-def surface_names(folder):
+def surface_names(folder: str | pathlib.Path) -> list[str]:
     """Patches with a surface in a participant's folder."""
     return [file.stem.removeprefix("surface-") for file in sorted(pathlib.Path(folder).glob("surface-*.h5")) if h5py.is_hdf5(file)]
 
 
-def find_surface(folder, patch):
-    """Surface of a patch in a participant's folder."""
+def find_surface(folder: str | pathlib.Path, patch: str) -> Surface:
+    """Surface of a patch in a participant's folder. Raises FileNotFoundError with the names that there are."""
     file = pathlib.Path(folder) / f"surface-{patch.replace('/', '_')}.h5"
     if not file.exists():
         there = surface_names(folder)
@@ -181,7 +189,7 @@ def find_surface(folder, patch):
     return Surface(file)
 
 
-def extrema(t, y, window=0.15):
+def extrema(t: np.ndarray, y: np.ndarray, window: float = 0.15) -> list[tuple[float, float, str]]:
     """Local maxima and minima as (time, value, kind), from the parabola through three samples, that are extreme within `window` seconds on either
     side. End points are excluded."""
     found = []
@@ -197,7 +205,7 @@ def extrema(t, y, window=0.15):
     return sorted(found)
 
 
-def extremum(place, values, sign):
+def extremum(place: np.ndarray, values: np.ndarray, sign: int) -> float:
     """Extremum along a line of the quartic through the five points around the largest sign * value."""
     from scipy.interpolate import barycentric_interpolate
     i = int(np.clip(np.argmax(sign * values), 2, len(values) - 3))

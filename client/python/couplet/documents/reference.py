@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reference of all keys and the schemas for editors, from the programs' own declarations. They are not in the repository: `scripts/docs` writes them
-into the build, the installation contains them, and the site shows the keys."""
+"""Reference of all keys and the schemas for editors, from the programs' own declarations, and the page of the Python
+interface. They are not in the repository: `scripts/docs` writes them into the build, the installation contains them,
+and the site shows the pages."""
 import re
 import subprocess
 
-from couplet.documents import schema
+from couplet.documents import api, schema
 from couplet.places import PACKAGE
 
 PROGRAMS = ("coupler", "fluid_solver", "solid_solver", "mesh_mover", "thermocline", "plate_modal")
@@ -54,11 +55,11 @@ def plain(heading):
 
 
 def pages(folder):
-    """Returns {file: text} of docs/config.md, which has the keys of `simulation`, and of one page for the keys of each program in `folder`. It is
-    empty unless all programs are there."""
+    """Returns {file: text} of docs/config.md, which has the keys of `simulation`, of one page for the keys of each program in `folder`, and of the page
+    of the Python interface. It is empty unless all programs are there."""
     if not all((folder / program).is_file() for program in PROGRAMS):
         return {}
-    found, rows, simulation = {}, "", ""
+    found, rows, simulation = {"docs/python.md": api.page()}, "", ""
     for program in PROGRAMS:
         shown = re.sub(r"^#+ .*$", plain, ask(folder, program, "--docs").strip(), flags=re.M)
         own, mark, common = shown.partition("\n# simulation\n")

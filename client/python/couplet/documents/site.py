@@ -21,12 +21,12 @@ from couplet.runs.gallery import entries
 # Pages by kind (https://diataxis.fr). All others, except cases, are for developers.
 TUTORIALS = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
              "docs/tutorials/own-coupled.md", "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
-REFERENCE = ("docs/command.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in reference.PROGRAMS),
+REFERENCE = ("docs/command.md", "docs/python.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in reference.PROGRAMS),
              "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/meshes.md", "docs/input-data.md", "docs/expressions.md", "docs/quantities.md",
              "docs/plots.md", "docs/checkpoints.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
 THEORY = tuple(f"docs/theory/{name}.md" for name in ("README", "solid", "solid-gradients", "solid-motion", "solid-solution", "heat-contact", "fluid", "fluid-models", "mesh-motion", "coupling"))
 EXPLANATION = ("docs/coupling.md", "docs/mapping.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/plant.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
-GENERATED = ("docs/command.md", "docs/config.md", "docs/effects.md", "docs/stability.md")
+GENERATED = ("docs/command.md", "docs/python.md", "docs/config.md", "docs/effects.md", "docs/stability.md")
 # MathJax as Debian packages it, with the parts that the configuration below loads.
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
 MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_CHTML-full.js", "jax/output/CommonHTML", "jax/element/mml/optable", "fonts/HTML-CSS/TeX/woff", "extensions")

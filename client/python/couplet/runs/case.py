@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Case file as seen by the runner: participants, changes on a command line, and dependencies of a result."""
+from __future__ import annotations
+
 import copy
 import functools
 import hashlib
@@ -9,6 +11,8 @@ import pathlib
 import re
 import shlex
 import sys
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import yaml
 
@@ -121,9 +125,10 @@ def content_of(file, time, size):
 
 
 class Case:
-    """`file` is the YAML, or one with another study of a case beside it ({case: case.yaml, study: ...}). `build` is the folder with bin/."""
+    """One case. `file` is the YAML, its folder, or a YAML with another study of a case beside it ({case: case.yaml, study: ...}). `build` is the
+    folder with bin/. `data` has the sections, and `participants` those of the participants. Raises Wrong with file and line for what cannot be read."""
 
-    def __init__(self, file, build=None):
+    def __init__(self, file: str | pathlib.Path, build: str | pathlib.Path | None = None):
         self.file, self.build = pathlib.Path(file), pathlib.Path(build or places.build())
         if self.file.is_dir():
             self.file /= "case.yaml"
@@ -140,7 +145,7 @@ class Case:
         self.participants = self.data.get("participants") or {}
         self.trusted = False  # True: Python that lies beside the case may draw its picture
 
-    def changed(self, sets):
+    def changed(self, sets: Sequence[str]) -> Case:
         """The case with the participants and programs that arguments of --set give it."""
         case, own = copy.copy(self), re.compile(r"(participants(\.[^.]+(\.program)?)?|coupling)=")
         case.data = with_changes(self.data, dict(s.split("=", 1) for s in sets if own.match(s)))
@@ -148,30 +153,32 @@ class Case:
         return case
 
     @property
-    def study(self):
+    def study(self) -> dict[str, Any]:
+        """Section `study`. Raises Wrong if there is none."""
         section = self.data.get("study")
         expect(isinstance(section, dict), f"{self.asked}: there is no section 'study'.")
         return section
 
     @property
-    def has_picture(self):
+    def has_picture(self) -> bool:
         """Returns true if the case has a section `plot` or a plot.py."""
         return "plot" in self.data or (self.file.parent / "plot.py").is_file()
 
     @property
-    def draws_itself(self):
+    def draws_itself(self) -> bool:
         """Returns true if Python beside the case draws its picture, or a curve of it."""
         return "'python':" in str(self.data["plot"]) if "plot" in self.data else self.has_picture
 
     @property
-    def coupled(self):
+    def coupled(self) -> bool:
+        """Returns true if the coupler takes part."""
         return bool(self.data.get("coupling")) and len(self.participants) > 1
 
-    def absolute(self, key, participant):
+    def absolute(self, key: str, participant: str) -> str:
         """Full path of a key, which starts at a participant unless it starts with a section."""
         return key if re.match(r"(simulation|participants|coupling)\.", key) else f"participants.{participant}.{key}"
 
-    def assignments(self, changes):
+    def assignments(self, changes: Mapping[str, Any]) -> list[str]:
         """Arguments of --set. A key below a missing mapping is set with that mapping, which an earlier change may have set as a whole. The last
         change of a key counts."""
         added, plain, whole = {}, [], {}
@@ -192,7 +199,8 @@ class Case:
                 added.pop(key, None)
         return plain + [f"{key}={json.dumps(value)}" for key, value in added.items()]
 
-    def program(self, participant):
+    def program(self, participant: str) -> pathlib.Path:
+        """Path of the participant's program."""
         entry = self.participants.get(participant)
         expect(participant in self.participants, f"{self.file}: there is no participant '{participant}'.")
         expect(isinstance(entry, dict), f"{self.file}: participants.{participant}: expected a mapping with at least the key 'program'.")
@@ -200,7 +208,7 @@ class Case:
         expect(name == pathlib.PurePath(name).name, f"{self.file}: participants.{participant}.program: '{name}' is a path; give the name of a program, and start one in another folder with --with {participant}='COMMAND ...'.")
         return self.build / "bin" / name
 
-    def guest(self, participant, played_by=None):
+    def guest(self, participant: str, played_by: Mapping[str, Sequence] | None = None) -> Sequence | None:
         """Command of an external program, which does not read the case: the given one, else a file of that name beside the case, with the participant's
         name. None for our programs, and if there is none: another program beside ours, such as a shell, is never started."""
         if played_by and participant in played_by:
@@ -214,7 +222,8 @@ class Case:
                 return [*([sys.executable] if name.endswith(".py") else []), beside, participant]
         return None
 
-    def parts(self, changes, alone=None, ranks=None, raw=(), flags=(), played_by=None):
+    def parts(self, changes: Mapping[str, Any], alone: str | None = None, ranks: Mapping[str, int] | None = None, raw: Sequence[str] = (),
+              flags: Sequence[str] = (), played_by: Mapping[str, Sequence] | None = None) -> list[tuple[int, list[str]]]:
         """Programs of a job in the order of their ranks: [(number of ranks, words)]. `alone` runs only this participant; `ranks` is {participant or
         coupler: number}; `raw` are further --set arguments; `flags` are arguments of all our programs; `played_by` is {participant: command}."""
         sets = [*(word for a in (*self.assignments(changes), *raw) for word in ("--set", a)), *flags]
@@ -226,20 +235,22 @@ class Case:
             return len(names) > 1 and self.guest(name, played_by) or [self.program(name), self.file, "--participant", name, *sets]
         return [(int((ranks or {}).get(name, 1)), [str(word) for word in words(name)]) for name in names]
 
-    def words(self, alone=None, ranks=None, sets=(), flags=(), played_by=None):
+    def words(self, alone: str | None = None, ranks: Mapping[str, int] | None = None, sets: Sequence[str] = (), flags: Sequence[str] = (),
+              played_by: Mapping[str, Sequence] | None = None) -> list:
         """Arguments of couplet run and couplet-exec for this job."""
         words = [self.file, *(["--bin", self.build / "bin"] if self.build != places.build() or "COUPLET_BIN" in os.environ else []), *(["--participant", alone] if alone else [])]
         words += ["-n", ",".join(f"{name}={n}" for name, n in ranks.items())] if ranks else []
         return words + [w for s in sets for w in ("--set", s)] + [*flags] + [w for name, line in (played_by or {}).items() for w in ("--with", f"{name}={shlex.join(map(str, line))}")]
 
-    def command(self, changes, alone=None, ranks=None, raw=(), flags=(), played_by=None):
+    def command(self, changes: Mapping[str, Any], alone: str | None = None, ranks: Mapping[str, int] | None = None, raw: Sequence[str] = (),
+                flags: Sequence[str] = (), played_by: Mapping[str, Sequence] | None = None) -> list:
         """Command line of a job, for the arguments of parts(). Several programs are one application, whose processes couplet-exec turns into them."""
         parts = self.parts(changes, alone, ranks, raw, flags, played_by)
         total = sum(n for n, _ in parts)
         line = parts[0][1] if len(parts) == 1 else [places.command("couplet-exec"), *self.words(None, ranks, [*self.assignments(changes), *raw], flags, played_by)]
         return line if total == 1 else ["mpirun", "--oversubscribe", "-n", total, *line]
 
-    def named(self, node):
+    def named(self, node: Any) -> Iterator[pathlib.Path]:
         """Files named in the case, such as a mesh or a weather file in another folder."""
         if isinstance(node, dict) or isinstance(node, list):
             for child in node.values() if isinstance(node, dict) else node:
@@ -247,7 +258,7 @@ class Case:
         elif isinstance(node, str) and 0 < len(node) < 200 and "\n" not in node and (self.file.parent / node).is_file():
             yield self.file.parent / node
 
-    def digest(self, changes=None):
+    def digest(self, changes: Mapping[str, Any] | None = None) -> str:
         """Digest of everything a result depends on besides its settings: the files of case and changes, and the programs."""
         mark = hashlib.sha256()
         inputs = {f.resolve() for f in self.named([self.data, list((changes or {}).values())])} | {

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """One job from its launch line to its end, as if started by hand: output is forwarded as it comes, signals reach the programs, and no process is left
 behind."""
+from __future__ import annotations
+
 import collections
 import ctypes
 import datetime
@@ -14,12 +16,17 @@ import signal
 import subprocess
 import sys
 import time
+import typing
+from collections.abc import Mapping
 
 from couplet import places
 from couplet.runs import folder as folders
 from couplet.runs.case import COUPLER, OURS, Case, expect, load, mapping_of
 from couplet.runs.process import Pages, culprit
 from couplet.runs.process import RunFailed, environment, last_words
+
+if typing.TYPE_CHECKING:
+    from couplet.runs.results import Results
 
 PATIENCE = 5.0  # [s] for mpirun to end before everything is killed; it does not listen while it launches many processes
 NOBODY_LEFT = 20.0  # [s] that mpirun may stay without any program before it is taken for stuck
@@ -202,7 +209,8 @@ class Job:
         return last_words("\n".join(self.last))
 
 
-def run(case, ranks=None, changes=None, show=False, alone=None, build=None, **more):
+def run(case: Case | str | pathlib.Path, ranks: Mapping[str, int] | None = None, changes: Mapping[str, typing.Any] | None = None, show: bool = False,
+        alone: str | None = None, build: str | pathlib.Path | None = None, **more) -> Results:
     """Runs a case to its end and returns its Results. `ranks` is {participant: number}, `changes` {key: value}. Raises RunFailed with the last output
     of the programs. Only from the main thread, which receives the signals."""
     from couplet.runs.results import Results

@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results in the output folder of a run: series, probes, monitors, step reports, and the summary of each participant."""
+from __future__ import annotations
+
 import csv
 import json
 import pathlib
+import typing
 
 from couplet.runs.case import expect
 
+if typing.TYPE_CHECKING:  # starting a run needs neither numpy nor h5py
+    import numpy as np
 
-def read_csv(file, heads=None):
+    from couplet.series import FieldSeries, Surface
+
+
+def read_csv(file: str | pathlib.Path, heads: list[str] | None = None) -> dict[str, np.ndarray]:
     """Columns of a CSV by their heads (given, or from its first line). Texts are kept, and a truncated row (of a running job) is skipped."""
     import numpy as np  # imported late, since starting a run does not need it
     with open(file, newline="") as lines:
@@ -25,65 +33,67 @@ def read_csv(file, heads=None):
 class Results:
     """Output folder of a run: <folder>/<participant>/..."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: str | pathlib.Path):
         self.folder = pathlib.Path(folder)
 
-    def participants(self):
+    def participants(self) -> list[str]:
+        """Names of the participants that have written something, and the coupler."""
         return sorted(f.name for f in self.folder.iterdir() if f.is_dir() and f.name not in ("checkpoints", "meshes")
                       and any(f.glob("*.log")))
 
-    def table(self, participant, file):
-        """Columns of <participant>/<file>. Files are read on first use."""
+    def table(self, participant: str, file: str) -> dict[str, np.ndarray]:
+        """Columns of <participant>/<file> by their heads. Raises LookupError if there is no such file."""
         path = self.folder / participant / file
         if not path.exists():
             raise LookupError(f"there is no {participant}/{file}")
         return read_csv(path)
 
-    def column(self, participant, file, name):
+    def column(self, participant: str, file: str, name: str) -> np.ndarray:
+        """One column of a table. Raises LookupError with the columns that there are."""
         table = self.table(participant, file)
         if name not in table:
             raise LookupError(f"{participant}/{file} has no column '{name}'; it has: {', '.join(table)}")
         return table[name]
 
-    def last(self, participant, file):
+    def last(self, participant: str, file: str) -> dict[str, float]:
         """Returns {head: last value} of a table."""
         return {name: values[-1] for name, values in self.table(participant, file).items()}
 
-    def passes(self):
+    def passes(self) -> np.ndarray:
         """Coupling iterations of each accepted step."""
         import numpy as np
         return np.unique(self.table("coupler", "residuals.csv")["step"], return_counts=True)[1]
 
-    def fields(self, participant):
+    def fields(self, participant: str) -> FieldSeries:
         """Field series of a participant: times, cells, and fields by name as arrays."""
         from couplet.series import find_series
         return find_series(self.folder / participant)
 
-    def surfaces(self, participant):
+    def surfaces(self, participant: str) -> list[str]:
         """Patches with written fields (`output.surfaces`)."""
         from couplet.series import surface_names
         return surface_names(self.folder / participant)
 
-    def surface(self, participant, patch):
+    def surface(self, participant: str, patch: str) -> Surface:
         """Fields on a patch over time with one row per face or point; areas, integrals, and the chain of edges in 2-D."""
         from couplet.series import find_surface
         return find_surface(self.folder / participant, patch)
 
-    def probes(self, participant):
+    def probes(self, participant: str) -> dict[str, np.ndarray]:
         """Columns of probes.csv by their heads, such as 'tip displacement x [m]'."""
         return self.table(participant, "probes.csv")
 
-    def findings(self):
+    def findings(self) -> list[dict[str, typing.Any]]:
         """Findings of the run: [{participant, id, severity, ...}] as in run.json."""
         return [{"participant": name, **found} for name in self.participants() for found in self.report(name).get("findings", ())]
 
-    def budget(self):
+    def budget(self) -> dict[str, dict[str, float]]:
         """Error contributions {participant: {mesh, step, linear, coupling, model: share of the solution}} as far as the run could estimate them.
         `model` is due to neglected effects."""
         told = {name: {k: v for k, v in self.report(name).get("errors", {}).items() if isinstance(v, (int, float))} for name in self.participants()}
         return {name: parts for name, parts in told.items() if parts}
 
-    def report(self, participant):
+    def report(self, participant: str) -> dict[str, typing.Any]:
         """Content of run.json, which every program writes at its end; {} before. Raises Wrong if it is damaged."""
         path = self.folder / participant / "run.json"
         if not path.exists():
@@ -95,11 +105,11 @@ class Results:
         expect(isinstance(told, dict), f"{path}: this is not the report of a run, or it is damaged")
         return told
 
-    def steps(self, participant):
+    def steps(self, participant: str) -> dict[str, np.ndarray]:
         """Columns of steps.csv: time, dt, iterations, error, energy, seconds of each accepted step."""
         return self.table(participant, "steps.csv")
 
-    def costs(self):
+    def costs(self) -> dict[str, typing.Any]:
         """Costs over all participants: steps, iterations, memory [MB], processor seconds of work (without waiting), phases {name: seconds}."""
         found = {"steps": 0, "iterations": 0, "memory": 0.0, "work": 0.0, "phases": {}}
         for name in self.participants():
