@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of studies: at most eight series in a panel, titles and names inside the picture, other programs in the front, processor
-seconds. usage: pictures.py"""
+seconds; the site draws those of a published study from its tables, and each published study names its case. usage: pictures.py"""
 import pathlib
+import re
 import sys
 import tempfile
 import types
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "client/python"))
+from couplet.documents import plots  # noqa: E402
+from couplet.runs import Case  # noqa: E402
 from couplet.study import pictures  # noqa: E402
 from couplet.study.axes import Point  # noqa: E402
 from couplet.study.table import Row  # noqa: E402
@@ -69,6 +72,12 @@ def main():
             failed += check(f"{name}: no word is cut, three panels", inside and len(made.axes) == 3)
         made, inside = looked_at(lambda: pictures.phases(LONG, many, file))
         failed += check("phases: at most eight, no word is cut, processor seconds of each run", inside and len(made.axes[1].get_legend().get_texts()) <= 8 and "(1.6 s)" in made.axes[0].get_yticklabels()[0].get_text())
+        cook = pathlib.Path("docs/validation/studies/cook/report.md")
+        text = plots.added(cook, (ROOT / cook).read_text(), pathlib.Path(scratch))
+        drawn = re.findall(r"!\[[^]]+\]\(([^)]+)\)", text)
+        failed += check("a published study is drawn from its tables", len(drawn) == 4 and all((pathlib.Path(scratch) / cook.parent / name).stat().st_size > 3000 for name in drawn), drawn)
+    cases = [re.search(r"`couplet study ([\w./-]+)`", report.read_text()) for report in ROOT.glob("docs/validation/studies/*/report.md")]
+    failed += check("each published study names its case", len(cases) > 10 and all(case and Case(ROOT / case[1]).study.get("axes") for case in cases), cases)
     return 1 if failed else 0
 
 

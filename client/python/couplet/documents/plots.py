@@ -20,6 +20,8 @@ def of_study(page, text, folder):
         try:
             study = Study(Case(ROOT / re.search(r"`couplet study ([\w./-]+)`", text)[1]), scratch)
             runs, peers = (table.read(file, study.axes, study.quantities) if file.exists() else [] for file in (ROOT / page.parent / "runs.csv", ROOT / page.parent / "peers.csv"))
+            for row in peers:
+                row.series = row.record.version  # the column holds the name of the program
             drawn = study.report(runs, peers).with_name("report.md").read_text()
         except (KeyError, ValueError, ZeroDivisionError):
             return text + "\nThe study of the case has changed since these runs, which are therefore not plotted.\n"
