@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the atlas of stability: where each scheme is stable and where it fails, from runs of the programs. Writes MAP.csv and, for
-docs/stability, docs/stability.md; for other folders MAP.png. Exit code 1 if a square is a wrong result without a guard or warning.
+"""Draws the atlas of stability: where each scheme is stable and where it fails, from runs of the programs. Writes
+MAP.csv and, for docs/stability, docs/stability.md; for other folders MAP.png. Exit code 1 if a square is a wrong result
+without a guard or warning.
 Usage: python3 scripts/atlas [MAP ...]"""
 import argparse
 import collections
@@ -24,7 +25,11 @@ def tables(map_, squares):
         text += f"\n| {panel or 'y'} | " + " | ".join(f"{x:g}" for x in xs) + " |\n|" + "---|" * (len(xs) + 1) + "\n"
         for y in reversed(map_.y["values"]):
             row = [squares[panel, float(x), float(y)] for x in xs]
-            text += f"| {y:g} | " + " | ".join("stop" if s.code else f"{s.number:.2g}{MARKS[s.outcome]}" for s in row) + " |\n"
+            text += (
+                f"| {y:g} | "
+                + " | ".join("stop" if s.code else f"{s.number:.2g}{MARKS[s.outcome]}" for s in row)
+                + " |\n"
+            )
     return text
 
 
@@ -35,25 +40,49 @@ def page(maps, folder):
         counts = collections.Counter(s.outcome for s in squares.values())
         if squares:
             text += f"\n## {m.title}\n\n{m.about}\n\n"
-            text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv). Columns: {m.x['label']}; rows: {m.y['label']}.*\n"
+            text += (
+                f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}:"
+                f" [table](stability/{m.name}.csv). Columns: {m.x['label']}; rows: {m.y['label']}.*\n"
+            )
             text += tables(m, squares)
         if squares and m.given.get("without-halving"):
-            text += "\n*These runs did not halve failed steps, as the default settings do. Squares that stopped may be stable now.*\n"
+            text += (
+                "\n*These runs did not halve failed steps, as the default settings do. Squares that stopped may be"
+                " stable now.*\n"
+            )
     if lost := atlas.missing_tests():
         raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")
-    text += "\n## Hard cases\n\nThese cases are tests in `tests/stability` (label `stability`). Each has a failure mechanism, a criterion, and a neighboring case that fails.\n\n"
+    text += (
+        "\n## Hard cases\n\nThese cases are tests in `tests/stability` (label `stability`). Each has a failure"
+        " mechanism, a criterion, and a neighboring case that fails.\n\n"
+    )
     text += "| part | case | mechanism | criterion | tested by | failing neighbor |\n|---|---|---|---|---|---|\n"
     tests = lambda names: "<br>".join(f"`{n.split(': ')[-1]}`" for n in names)
     for c in atlas.hard_cases():
-        text += f"| {c['part']} | {c['case']} | {c['mechanism']} | {c['criterion']} | {tests(c['holds'])} | {tests(c['fails'])} |\n"
+        text += (
+            f"| {c['part']} | {c['case']} | {c['mechanism']} | {c['criterion']} | {tests(c['holds'])} |"
+            f" {tests(c['fails'])} |\n"
+        )
     return text
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("maps", nargs="*", metavar="MAP", help="names of maps (listed by --list); default: all")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", metavar="FOLDER", help="the folder with bin/ of the programs")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/stability", metavar="FOLDER", help="where tables and pictures go (docs/stability)")
+    parser.add_argument(
+        "--build",
+        type=pathlib.Path,
+        default=ROOT / "build",
+        metavar="FOLDER",
+        help="the folder with bin/ of the programs",
+    )
+    parser.add_argument(
+        "--out",
+        type=pathlib.Path,
+        default=ROOT / "docs/stability",
+        metavar="FOLDER",
+        help="where tables and pictures go (docs/stability)",
+    )
     parser.add_argument("--fresh", action="store_true", help="reruns every square; otherwise only missing ones")
     parser.add_argument("--list", action="store_true", help="lists the maps")
     parser.add_argument("--page", action="store_true", help="no runs: only docs/stability.md, from existing tables")
@@ -69,10 +98,17 @@ def main():
         if arguments.maps and m.name not in arguments.maps:
             continue
         from atlas import draw
+
         start = time.monotonic()
         try:
             with tempfile.TemporaryDirectory(prefix="couplet-stability-") as scratch:
-                squares = atlas.make(m, arguments.out / f"{m.name}.csv", atlas.Runner(arguments.build.resolve(), scratch), arguments.fresh, arguments.jobs)
+                squares = atlas.make(
+                    m,
+                    arguments.out / f"{m.name}.csv",
+                    atlas.Runner(arguments.build.resolve(), scratch),
+                    arguments.fresh,
+                    arguments.jobs,
+                )
         except RuntimeError as error:
             lost.append(f"{m.name}: could not be measured: {error}")
             continue

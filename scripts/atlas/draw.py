@@ -11,7 +11,13 @@ from matplotlib.patches import Patch
 
 import atlas
 
-COLORS = {atlas.HOLDS: "#7cc67c", atlas.POOR: "#cfe8a9", atlas.WARNED: "#f6c75c", atlas.REFUSED: "#a9b8d6", atlas.RED: "#e0453a"}
+COLORS = {
+    atlas.HOLDS: "#7cc67c",
+    atlas.POOR: "#cfe8a9",
+    atlas.WARNED: "#f6c75c",
+    atlas.REFUSED: "#a9b8d6",
+    atlas.RED: "#e0453a",
+}
 
 WIDEST_X, WIDEST_Y = 34, 26  # characters of a label's line beside a panel
 
@@ -29,8 +35,14 @@ def picture(map_, squares, file):
     n = len(map_.panels)
     columns = min(n, 2 if n == 4 else 3)  # four beside each other are too small to read on a page
     lines = -(-n // columns)
-    figure, axes = plt.subplots(lines, columns, squeeze=False, dpi=110, constrained_layout=True,
-                                figsize=(1.2 + columns * max(2.6, 0.62 * len(xs)), 1.2 + lines * max(2.0, 0.46 * len(ys))))
+    figure, axes = plt.subplots(
+        lines,
+        columns,
+        squeeze=False,
+        dpi=110,
+        constrained_layout=True,
+        figsize=(1.2 + columns * max(2.6, 0.62 * len(xs)), 1.2 + lines * max(2.0, 0.46 * len(ys))),
+    )
     for ax, panel in zip(axes.flat, map_.panels):
         for j, y in enumerate(ys):
             for i, x in enumerate(xs):
@@ -45,8 +57,15 @@ def picture(map_, squares, file):
             cy = place(ys, vs, map_.y["log"])
             ax.plot(cx, cy, "k--", lw=1.5, label=label)
             ax.legend(fontsize=6.5, loc="upper left")
-        ax.set(xlim=(-0.5, len(xs) - 0.5), ylim=(-0.5, len(ys) - 0.5), xticks=range(len(xs)), yticks=range(len(ys)),
-               xticklabels=[f"{x:g}" for x in xs], yticklabels=[f"{y:g}" for y in ys], title=panel)
+        ax.set(
+            xlim=(-0.5, len(xs) - 0.5),
+            ylim=(-0.5, len(ys) - 0.5),
+            xticks=range(len(xs)),
+            yticks=range(len(ys)),
+            xticklabels=[f"{x:g}" for x in xs],
+            yticklabels=[f"{y:g}" for y in ys],
+            title=panel,
+        )
         ax.tick_params(labelsize=7)
         ax.set_xlabel(textwrap.fill(map_.x["label"], WIDEST_X), fontsize=8)
         ax.set_ylabel(textwrap.fill(map_.y["label"], WIDEST_Y), fontsize=8)
@@ -54,8 +73,12 @@ def picture(map_, squares, file):
     for ax in list(axes.flat)[n:]:
         ax.axis("off")
     there = {s.outcome for s in squares.values()}
-    figure.legend(handles=[Patch(color=c, label=o) for o, c in COLORS.items() if o in there], loc="lower center",
-                  ncol=5, fontsize=7.5)
+    figure.legend(
+        handles=[Patch(color=c, label=o) for o, c in COLORS.items() if o in there],
+        loc="lower center",
+        ncol=5,
+        fontsize=7.5,
+    )
     figure.get_layout_engine().set(rect=(0, 0.26 / figure.get_figheight(), 1, 1 - 0.26 / figure.get_figheight()))
     figure.suptitle(f"{map_.title}: {map_.criterion}", fontsize=9.5)
     figure.savefig(file)

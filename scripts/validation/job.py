@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a bar gets its numbers: from the project's programs, test executables and scripts, never from a model beside them."""
+"""How a bar gets its numbers: from the project's programs, test executables and scripts, never from a model beside
+them."""
 import dataclasses
 import functools
 import hashlib
@@ -22,7 +23,8 @@ KEPT = "validated.json"  # in the folder of a kept run: what it was made of, and
 class Bar:
     quantity: str
     wanted: str
-    measure: Callable  # (job) -> (got, met); met is None where the row only reports ('wanted' begins with "reported" then, too)
+    # (job) -> (got, met); met is None where the row only reports ('wanted' begins with "reported" then, too)
+    measure: Callable
     long: bool = False  # takes more than a minute: left out by --quick
     but: str = ""  # how case, mesh, reading or statistic differ from what was first asked for, and why
     sources: tuple = ()  # folders whose change may change this row; those of its table if none are given
@@ -49,8 +51,8 @@ def was_kept(out, identity):
 
 
 class Job:
-    """Paths, a scratch folder, and results that several bars share (each made once). With `keep`, a folder, runs of cases stay there, and one that the same
-    programs made of the same case is not repeated."""
+    """Paths, a scratch folder, and results that several bars share (each made once). With `keep`, a folder, runs of
+    cases stay there, and one that the same programs made of the same case is not repeated."""
 
     def __init__(self, root, build, quick, keep=None):
         self.root, self.build, self.quick, self.keep, self._kept = root, build, quick, keep, {}
@@ -67,7 +69,8 @@ class Job:
             shutil.rmtree(self.scratch, ignore_errors=True)
 
     def once(self, key, make):
-        """Returns the result of make() or raises its exception again, so that a run of hours is not repeated for every row that reads it."""
+        """Returns the result of make() or raises its exception again, so that a run of hours is not repeated for every
+        row that reads it."""
         if key not in self._kept:
             try:
                 self._kept[key] = make()
@@ -78,8 +81,9 @@ class Job:
         return self._kept[key]
 
     def run(self, command, timeout=1800, **options):
-        return subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=timeout,
-                              env=self.environment, **options)
+        return subprocess.run(
+            [str(c) for c in command], capture_output=True, text=True, timeout=timeout, env=self.environment, **options
+        )
 
     def done(self, command, timeout=1800, **options):
         """Runs a command in the same way. Raises an error with the end of its output if it fails."""
@@ -93,33 +97,61 @@ class Job:
     @functools.cached_property
     def registered(self):
         """Returns {test of ctest: the words of its command}."""
-        return {t["name"]: t.get("command", []) for t in json.loads(self.done(["ctest", "--test-dir", self.build, "--show-only=json-v1"], 120).stdout)["tests"]}
+        return {
+            t["name"]: t.get("command", [])
+            for t in json.loads(self.done(["ctest", "--test-dir", self.build, "--show-only=json-v1"], 120).stdout)[
+                "tests"
+            ]
+        }
 
     def test(self, name):
         """The words that run a registered test on one rank: its executable, and whose tests of it (`--only`)."""
         words = next((self.registered[n] for n in (name, f"{name}_2", f"{name}_3") if n in self.registered), [])
-        first = next((k for k, w in enumerate(words) if w.startswith(f"{pathlib.Path(self.build).resolve()}/tests/")), None)
+        first = next(
+            (k for k, w in enumerate(words) if w.startswith(f"{pathlib.Path(self.build).resolve()}/tests/")), None
+        )
         if first is None or not os.access(words[first], os.X_OK):
             raise FileNotFoundError(f"the executable of test {name} is not built")
         return [w for w in words[first:] if not w.startswith("--gtest_filter")]
 
     def gtest(self, name, filter_="*", timeout=7200, count=None):
-        """Runs a test executable (a fuzz program at `count` inputs); gives {"Suite.test": {"passed": bool, **recorded properties}} and its output."""
+        """Runs a test executable (a fuzz program at `count` inputs); gives {"Suite.test": {"passed": bool, **recorded
+        properties}} and its output."""
+
         def make():
             file = self.scratch / f"{name}-{count}.json"
             inputs = ["env", f"COUPLET_FUZZ_COUNT={count}"] if count else []
-            result = self.run([*inputs, *self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout, cwd=self.scratch)
+            result = self.run(
+                [*inputs, *self.test(name), f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"],
+                timeout,
+                cwd=self.scratch,
+            )
             if not file.exists():
                 raise RuntimeError(f"{name} ended with code {result.returncode}: {result.stdout[-200:]}")
-            known, tests = {"name", "value_param", "type_param", "status", "result", "timestamp", "time", "classname", "failures", "file", "line"}, {}
+            known, tests = {
+                "name",
+                "value_param",
+                "type_param",
+                "status",
+                "result",
+                "timestamp",
+                "time",
+                "classname",
+                "failures",
+                "file",
+                "line",
+            }, {}
             for suite in json.loads(file.read_text())["testsuites"]:
                 for test in suite["testsuite"]:
                     if test.get("result") != "SKIPPED":  # does not apply to this mesh: says nothing about a bar
-                        tests[f"{suite['name']}.{test['name']}"] = {"passed": not test.get("failures") and test.get("result") == "COMPLETED",
-                                                                    **{k: v for k, v in test.items() if k not in known}}
+                        tests[f"{suite['name']}.{test['name']}"] = {
+                            "passed": not test.get("failures") and test.get("result") == "COMPLETED",
+                            **{k: v for k, v in test.items() if k not in known},
+                        }
             if not tests:
                 raise LookupError(f"{name} has no test {filter_}")
             return tests, result.stdout
+
         return self.once(("gtest", name, filter_, count), make)
 
     def recorded(self, name, pattern, key):
@@ -133,19 +165,23 @@ class Job:
 
     def ctest(self, pattern, timeout=1800):
         """Runs registered tests by name; gives (passed, total, skipped, output)."""
+
         def make():
             result = self.run(["ctest", "--test-dir", self.build, "-R", pattern, "-V"], timeout)
             passed = len(re.findall(r"^\s*\d+/\d+ Test.*\bPassed\b", result.stdout, flags=re.M))
             skipped = len(re.findall(r"\*\*\*Skipped", result.stdout))
             total = len(re.findall(r"^\s*\d+/\d+ Test ", result.stdout, flags=re.M))
             return passed, total, skipped, result.stdout
+
         return self.once(("ctest", pattern), make)
 
     # -- programs -----------------------------------------------------------------------------------------------------
     def case_run(self, case, out, overrides, ranks, timeout, flags=()):
-        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: ranks of each participant; `flags`: further arguments of all programs.
-        A failure has what was written until then as its `results`."""
-        command = Case(case, self.build).command({"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides, flags=flags)
+        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: ranks of each participant;
+        `flags`: further arguments of all programs. A failure has what was written until then as its `results`."""
+        command = Case(case, self.build).command(
+            {"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides, flags=flags
+        )
         identity = self.keep and made_of(command, pathlib.Path(case).parent)
         if self.keep and not was_kept(out, identity):
             shutil.rmtree(out, ignore_errors=True)
@@ -165,10 +201,16 @@ class Job:
         return results
 
     def case(self, case, keys=(), ranks=(), timeout=3600, flags=()):
-        """Results of configs/<case>: a folder, a file 'folder/name' of it, or a path that ends in .yaml. `participant` is its first one; a key '.key' is one of that
-        participant. `ranks`: ranks of the coupler and of the participants in their order, or one number for the only participant. Runs with the same keys are made once."""
+        """Results of configs/<case>: a folder, a file 'folder/name' of it, or a path that ends in .yaml. `participant`
+        is its first one; a key '.key' is one of that participant. `ranks`: ranks of the coupler and of the participants
+        in their order, or one number for the only participant. Runs with the same keys are made once. """
+
         def make():
-            file = self.root / (case if case.endswith(".yaml") else f"configs/{case}.yaml" if "/" in case else f"configs/{case}/case.yaml")
+            file = self.root / (
+                case
+                if case.endswith(".yaml")
+                else f"configs/{case}.yaml" if "/" in case else f"configs/{case}/case.yaml"
+            )
             participants = list(Case(file).participants)
             participant = participants[0]
             words = [f"participants.{participant}{k}" if k.startswith(".") else k for k in keys]
@@ -177,6 +219,7 @@ class Job:
             results = self.case_run(file, self.scratch / f"run-{name}", words, by_name, timeout, flags)
             results.participant = participant
             return results
+
         return self.once(("case", case, tuple(keys), ranks, flags), make)
 
     def beside(self, file):

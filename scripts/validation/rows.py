@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows as data: tables/NAME.yaml. Its keys: `about`; `sources`, folders whose change may change its rows; `note` before its rows; `pages`, functions that
-write what is made of the table; `library`, files below parts whose functions measure; `rows`.
+"""Rows as data: tables/NAME.yaml. Its keys: `about`; `sources`, folders whose change may change its rows; `note` before
+its rows; `pages`, functions that write what is made of the table; `library`, files below parts whose functions measure;
+`rows`.
 
-A program among the `sources` stands for itself and for the folders of common that its numbers come from (COMMON), without what only judges or prints
-them. Tables about diagnostics, messages or speed name 'common'.
+A program among the `sources` stands for itself and for the folders of common that its numbers come from (COMMON),
+without what only judges or prints them. Tables about diagnostics, messages or speed name 'common'.
 
-A row is `quantity: {wanted, long, but, sources, MEASURE: ARGUMENTS}` (job.Bar describes these). MEASURE is a function of shapes.py or of the library,
-'file.function' where two have it. It gets the job and ARGUMENTS: one value, a list in order, or a mapping by name. An entry with `rows` is a group: what
-else it holds is shared by its rows, and with `each` they are written once for every combination, the first varying slowest. '{name}' in a text is replaced, and
-is the value itself where it is the whole text:
+A row is `quantity: {wanted, long, but, sources, MEASURE: ARGUMENTS}` (job.Bar describes these). MEASURE is a function
+of shapes.py or of the library, 'file.function' where two have it. It gets the job and ARGUMENTS: one value, a list in
+order, or a mapping by name. An entry with `rows` is a group: what else it holds is shared by its rows, and with `each`
+they are written once for every combination, the first varying slowest. '{name}' in a text is replaced, and is the value
+itself where it is the whole text:
 
-    plates: {each: {n: [8, 16], 'word, limit': [[hard, 1e-3], [soft, 1e-2]]}, rows: {'{word} plate, {n} cells': {wanted: '<= {limit}', plate: ['{n}', '{limit}']}}}
+    plates: {each: {n: [8, 16], 'word, limit': [[hard, 1e-3], [soft, 1e-2]]}, rows: {'{word} plate, {n} cells': {wanted:
+    '<= {limit}', plate: ['{n}', '{limit}']}}}
 """
 import dataclasses
 import importlib
@@ -26,8 +29,14 @@ from validation.job import Bar
 
 FOLDER = pathlib.Path(__file__).resolve().parent / "tables"
 MESHES = ("base", "parallel", "linalg", "mesh", "fv", "time")
-COMMON = {"fluid_solver": MESHES, "solid_solver": (*MESHES, "elasticity", "contact", "modes"), "mesh_mover": (*MESHES, "elasticity"),
-          "plate_modal": (*MESHES, "contact", "modes"), "thermocline": ("base", "fv", "time"), "coupler": ("base", "parallel", "linalg", "coupling")}
+COMMON = {
+    "fluid_solver": MESHES,
+    "solid_solver": (*MESHES, "elasticity", "contact", "modes"),
+    "mesh_mover": (*MESHES, "elasticity"),
+    "plate_modal": (*MESHES, "contact", "modes"),
+    "thermocline": ("base", "fv", "time"),
+    "coupler": ("base", "parallel", "linalg", "coupling"),
+}
 WORDS = ("wanted", "long", "but", "sources")
 
 
@@ -42,7 +51,9 @@ class Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"), list("-+0123456789."))
+Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"), list("-+0123456789.")
+)
 
 
 @dataclasses.dataclass
@@ -95,7 +106,9 @@ def load(name, file=None):
     twice = {b.quantity for b in bars if sum(b.quantity == o.quantity for o in bars) > 1}
     if twice:
         raise ValueError(f"{file.name}: twice: {'; '.join(twice)}")
-    return Table(name, bars, needed(data.get("sources") or ()), data.get("note", ""), [named(p) for p in data.get("pages") or ()])
+    return Table(
+        name, bars, needed(data.get("sources") or ()), data.get("note", ""), [named(p) for p in data.get("pages") or ()]
+    )
 
 
 def written_out(rows, shared=None):
@@ -141,20 +154,39 @@ def bar(quantity, row, library):
     if len(measures) != 1:
         raise ValueError(f"'{quantity}': one measure, but there is {', '.join(measures) or 'none'}")
     function, arguments = function_of(measures[0], library), frozen(row[measures[0]])
-    words, by_name = ((), arguments) if isinstance(arguments, dict) else (arguments if isinstance(arguments, tuple) else () if arguments is None else (arguments,), {})
+    words, by_name = (
+        ((), arguments)
+        if isinstance(arguments, dict)
+        else (arguments if isinstance(arguments, tuple) else () if arguments is None else (arguments,), {})
+    )
     try:
         inspect.signature(function).bind(None, *words, **by_name)
     except TypeError as error:
         raise ValueError(f"'{quantity}', {measures[0]}: {error}") from None
-    return Bar(quantity, str(row["wanted"]), lambda job: function(job, *words, **by_name), bool(row.get("long")), row.get("but", ""), needed(row.get("sources") or ()))
+    return Bar(
+        quantity,
+        str(row["wanted"]),
+        lambda job: function(job, *words, **by_name),
+        bool(row.get("long")),
+        row.get("but", ""),
+        needed(row.get("sources") or ()),
+    )
 
 
 def function_of(name, library):
     file, _, word = name.rpartition(".")
-    places = [library[file]] if file in library else [] if file else [shapes] if hasattr(shapes, word) else library.values()
-    found = [getattr(p, word) for p in places if inspect.isfunction(getattr(p, word, None)) and getattr(p, word).__module__ == p.__name__]
+    places = (
+        [library[file]] if file in library else [] if file else [shapes] if hasattr(shapes, word) else library.values()
+    )
+    found = [
+        getattr(p, word)
+        for p in places
+        if inspect.isfunction(getattr(p, word, None)) and getattr(p, word).__module__ == p.__name__
+    ]
     if len(found) != 1:
-        raise ValueError(f"{len(found)} functions '{name}' in shapes.py or the library {', '.join(library) or '(none)'}")
+        raise ValueError(
+            f"{len(found)} functions '{name}' in shapes.py or the library {', '.join(library) or '(none)'}"
+        )
     return found[0]
 
 

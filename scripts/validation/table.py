@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The committed table of a validation: docs/validation/NAME.md. Rows carry the commit that was measured; what no longer counts
-is reported: a row whose commit is not in the history of the one at hand, or whose bar reads differently now, is 'stale'."""
+"""The committed table of a validation: docs/validation/NAME.md. Rows carry the commit that was measured; what no longer
+counts is reported: a row whose commit is not in the history of the one at hand, or whose bar reads differently now, is
+'stale'."""
 import dataclasses
 import datetime
 import platform
@@ -47,16 +48,24 @@ class History:
         return self.git("merge-base", "--is-ancestor", commit, "HEAD") is not None
 
     def landed(self, commit):
-        """The commit of the history that a rebase made of this one (same author's date and subject); None if there is none."""
+        """The commit of the history that a rebase made of this one (same author's date and subject); None if there is
+        none."""
         mark = self.git("show", "-s", "--format=%at %s", commit)
-        same = [line.split(" ", 1)[0] for line in (self.git("log", "--format=%h %at %s") or "").splitlines()
-                if mark and line.split(" ", 1)[1] == mark]
+        same = [
+            line.split(" ", 1)[0]
+            for line in (self.git("log", "--format=%h %at %s") or "").splitlines()
+            if mark and line.split(" ", 1)[1] == mark
+        ]
         return same[0] if len(same) == 1 else None
 
     def changed(self, commit, folders):
         """Returns the folders with a change since the commit; '!FOLDER' does not count."""
         without = [f":(exclude){f[1:]}" for f in folders if f.startswith("!")]
-        return [f for f in folders if not f.startswith("!") and self.git("diff", "--name-only", commit, "HEAD", "--", f, *without)]
+        return [
+            f
+            for f in folders
+            if not f.startswith("!") and self.git("diff", "--name-only", commit, "HEAD", "--", f, *without)
+        ]
 
     def date(self, commit):
         return self.git("show", "-s", "--format=%cs", commit)
@@ -99,25 +108,40 @@ def counts(verdicts):
     reported = sum(v in ("reported", "stale (reported)") for v in verdicts)
     text = f"{verdicts.count('met')} of {len(verdicts) - reported} bars met"
     text += f", {reported} rows only report" if reported else ""
-    for word, found in (("stale", sum(v.startswith("stale") for v in verdicts)), ("not measured", verdicts.count("not measured"))):
+    for word, found in (
+        ("stale", sum(v.startswith("stale") for v in verdicts)),
+        ("not measured", verdicts.count("not measured")),
+    ):
         text += f", {found} {word}" if found else ""
     return text
 
 
 def age(name, bars, rows, folders, history):
     """Sentence about the age of a table's rows."""
-    old = {q: commit_of(commit) for q, commit, why in stale(name, bars, rows, folders, history) if why != "not measured"}
+    old = {
+        q: commit_of(commit) for q, commit, why in stale(name, bars, rows, folders, history) if why != "not measured"
+    }
     measured = [b.quantity for b in bars if b.quantity in rows and rows[b.quantity].verdict != "not measured"]
     dates = sorted(filter(None, (commit and history.date(commit) for commit in old.values())))
-    text = f"On {datetime.date.today()}, {len(measured) - len(old)} of {len(bars)} rows were of the present sources, {len(old)} older"
+    text = (
+        f"On {datetime.date.today()}, {len(measured) - len(old)} of {len(bars)} rows were of the present sources,"
+        f" {len(old)} older"
+    )
     text += f" (the oldest of {dates[0]})" if dates else ""
     return text + f", and {len(bars) - len(measured)} not measured."
 
 
 def write(file, name, table, note="", age=""):
     """`table`: [(quantity, Row)]; `note`: what to know of it, before its rows; `age`: how old they are."""
-    text = f"# Validation: {name}\n\n" + (f"**{age}**\n\n" if age else "") + f"Written by `scripts/validate {name} --write` on "
-    text += f"{platform.machine()}: {counts(row.verdict for _, row in table)}. The last column names the commit that was measured.\n\n"
+    text = (
+        f"# Validation: {name}\n\n"
+        + (f"**{age}**\n\n" if age else "")
+        + f"Written by `scripts/validate {name} --write` on "
+    )
+    text += (
+        f"{platform.machine()}: {counts(row.verdict for _, row in table)}. The last column names the commit that was"
+        " measured.\n\n"
+    )
     text += f"{note}\n\n" if note else ""
     text += "| quantity | wanted | got | | commit |\n|---|---|---|---|---|\n"
     for quantity, row in table:
@@ -136,6 +160,8 @@ def stale(name, bars, rows, folders, history):
             yield bar.quantity, "-", "not measured"
         elif row.verdict.startswith("stale"):
             reworded = commit and (history.has(commit) or history.landed(commit))
-            yield bar.quantity, row.commit, "the bar reads differently now" if reworded else "its commit is not in this history"
+            yield bar.quantity, row.commit, (
+                "the bar reads differently now" if reworded else "its commit is not in this history"
+            )
         elif changed := history.changed(commit, bar.sources or folders):
             yield bar.quantity, row.commit, f"changed since: {', '.join(changed)}"

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The only place of the package that writes files (tests/architecture checks it). A case folder from elsewhere may hold links to files of the user, and nothing is written
-through them: a file is written under a new name and then renamed. The folder of each function is the one that the user or the case names. It may be a link, as for the
-programs; nothing below it may be."""
+"""The only place of the package that writes files (tests/architecture checks it). A case folder from elsewhere may hold
+links to files of the user, and nothing is written through them: a file is written under a new name and then renamed.
+The folder of each function is the one that the user or the case names. It may be a link, as for the programs; nothing
+below it may be."""
 import contextlib
 import csv
 import os
@@ -18,7 +19,13 @@ def below(folder, name):
     expect(not pathlib.PurePath(name).is_absolute() and ".." not in parts, f"'{name}': expected a name below {place}.")
     for word in parts:
         place /= word
-        expect(not place.is_symlink(), f"{place} is a symbolic link; nothing is written through symbolic links. Remove it, or choose another name.")
+        expect(
+            not place.is_symlink(),
+            (
+                f"{place} is a symbolic link; nothing is written through symbolic links. Remove it, or choose another"
+                " name."
+            ),
+        )
     return place
 
 
@@ -31,7 +38,8 @@ def folder(base, name):
 
 @contextlib.contextmanager
 def part(folder, name):
-    """Yields the path of a new, empty file with the suffix of `name`, which becomes that file when all is written. Creates the folders in `name`."""
+    """Yields the path of a new, empty file with the suffix of `name`, which becomes that file when all is written.
+    Creates the folders in `name`."""
     file = below(folder, name)
     expect(not file.exists() or file.is_file(), f"{file} is no file; choose another name.")
     if file.parent != pathlib.Path(folder):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Locations of programs, cases and documents: in a checkout of the project, below the prefix of an installation, or, for a package installed by
-pip, where the programs are found."""
+"""Locations of programs, cases and documents: in a checkout of the project, below the prefix of an installation, or,
+for a package installed by pip, where the programs are found."""
 import os
 import pathlib
 import shutil
@@ -11,7 +11,8 @@ BY_PIP = not IN_CHECKOUT and not (PACKAGE / "VERSION").exists()  # `cmake --inst
 
 
 def build():
-    """Folder whose bin/ contains the programs: that of COUPLET_BIN, build/ of a checkout, the prefix, or that of the `coupler` on PATH."""
+    """Folder whose bin/ contains the programs: that of COUPLET_BIN, build/ of a checkout, the prefix, or that of the
+    `coupler` on PATH."""
     if "COUPLET_BIN" in os.environ:
         return pathlib.Path(os.environ["COUPLET_BIN"]).absolute().parent
     if BY_PIP and (found := shutil.which("coupler")):

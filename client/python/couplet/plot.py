@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what a run wrote: monitors, lines and planes, residuals, fields, or the picture that a case declares in its section `plot`. Columns of the same
-unit share a diagram. A line is drawn over its length, a plane as a map of each column, and residuals over all coupling iterations. The name of
-each picture is printed."""
+"""Draws what a run wrote: monitors, lines and planes, residuals, fields, or the picture that a case declares in its
+section `plot`. Columns of the same unit share a diagram. A line is drawn over its length, a plane as a map of each
+column, and residuals over all coupling iterations. The name of each picture is printed."""
 import os
 import pathlib
 import shlex
@@ -27,8 +27,10 @@ MOST_LINES = 12  # with names of their own
 def read(file):
     """Columns by name. Truncated rows of a running job are skipped."""
     columns = columns_of(file)
-    expect(next(iter(columns)).startswith("time") and not np.isnan(next(iter(columns.values()))).any(),
-           f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.")
+    expect(
+        next(iter(columns)).startswith("time") and not np.isnan(next(iter(columns.values()))).any(),
+        f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.",
+    )
     return columns
 
 
@@ -55,7 +57,15 @@ def by_unit(names):
 
 def curves(x, label, columns, names, log, title):
     units = by_unit(names)
-    made, axes = plt.subplots(len(units), 1, figsize=(7.5, 1.2 + 2.4 * len(units)), dpi=120, sharex=True, squeeze=False, constrained_layout=True)
+    made, axes = plt.subplots(
+        len(units),
+        1,
+        figsize=(7.5, 1.2 + 2.4 * len(units)),
+        dpi=120,
+        sharex=True,
+        squeeze=False,
+        constrained_layout=True,
+    )
     for ax, (unit, some) in zip(axes[:, 0], units.items()):
         for name in some:
             y = np.abs(columns[name]) if log else columns[name]
@@ -77,12 +87,14 @@ def maps(columns, names, title):
     a, b = columns["along [-]"], columns["up [-]"]
     across = int(np.ceil(np.sqrt(len(names))))
     down = -(-len(names) // across)
-    made, axes = plt.subplots(down, across, figsize=(4.2 * across, 3.4 * down), dpi=120, squeeze=False, constrained_layout=True)
+    made, axes = plt.subplots(
+        down, across, figsize=(4.2 * across, 3.4 * down), dpi=120, squeeze=False, constrained_layout=True
+    )
     for ax, name in zip(axes.flat, names):
         drawn = ax.scatter(a, b, c=columns[name], s=12, marker="s", cmap="viridis")
         made.colorbar(drawn, ax=ax)
         ax.set_title(name, fontsize=8)
-    for ax in axes.flat[len(names):]:
+    for ax in axes.flat[len(names) :]:
         ax.axis("off")
     made.suptitle(title, fontsize=10)
     return made
@@ -93,10 +105,18 @@ def profiles(columns, names, title):
     time, place = columns[next(iter(columns))], list(columns)[1]
     times = np.unique(time)
     times = times[np.linspace(0, len(times) - 1, min(MOST_LINES, len(times))).astype(int)]
-    made, axes = plt.subplots(1, len(names), figsize=(1 + 3.2 * len(names), 4.2), dpi=120, sharey=True, squeeze=False, constrained_layout=True)
+    made, axes = plt.subplots(
+        1, len(names), figsize=(1 + 3.2 * len(names), 4.2), dpi=120, sharey=True, squeeze=False, constrained_layout=True
+    )
     for ax, name in zip(axes[0], names):
         for i, t in enumerate(times):
-            ax.plot(columns[name][time == t], columns[place][time == t], lw=1, color=plt.get_cmap("viridis")(i / max(1, len(times) - 1)), label=f"{t / 3600:.4g} h")
+            ax.plot(
+                columns[name][time == t],
+                columns[place][time == t],
+                lw=1,
+                color=plt.get_cmap("viridis")(i / max(1, len(times) - 1)),
+                label=f"{t / 3600:.4g} h",
+            )
         ax.set_xlabel(name)
         ax.grid(alpha=0.3)
     axes[0, 0].set_ylabel(place)
@@ -139,7 +159,8 @@ def draw(folder, file, options):
 
 
 def of_case(file, options):
-    """Draws the picture of the case, from its section `plot` or its own plot.py. Returns the exit code, or None if there are only monitors, which options.files then names."""
+    """Draws the picture of the case, from its section `plot` or its own plot.py. Returns the exit code, or None if
+    there are only monitors, which options.files then names."""
     case = Case(file)
     case.trusted = options.allow_commands
     out = options.out or output_of(case, ())
@@ -147,40 +168,102 @@ def of_case(file, options):
     matplotlib.rcParams["text.parse_math"] = "plot" in case.data  # whose titles may hold formulas
     if options.film:
         from couplet.plots.film import film
+
         folder, file = film(case, out, options.low, options.high)
         print(f"frames: {folder}", f"film: {file}" if file else "film: none, ffmpeg is not installed", sep="\n")
         return 0
     if "plot" in case.data:
         from couplet.plots.draw import draw
+
         print(f"picture: {draw(case, out, options.picture)}")
         return 0
     if case.has_picture:
-        expect(case.trusted, f"{case.file.parent / 'plot.py'} draws the picture of this case. If you trust it, add --allow-commands")
+        expect(
+            case.trusted,
+            f"{case.file.parent / 'plot.py'} draws the picture of this case. If you trust it, add --allow-commands",
+        )
         expect(options.out is None, f"--out: {case.file.parent / 'plot.py'} looks for the run where the case puts it")
         paths = [str(places.PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
-        return subprocess.run([sys.executable, case.file.parent / "plot.py", *([options.picture] if options.picture else [])],
-                              env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}).returncode
+        return subprocess.run(
+            [sys.executable, case.file.parent / "plot.py", *([options.picture] if options.picture else [])],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
+        ).returncode
     expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(file))}")
     options.files = [out]
     return None
 
 
 def declare(parser):
-    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a CSV file of a run, a folder of such files, or a case: then its section plot (docs/plots.md), its plot.py, or all files of its run")
-    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="output folder of the run, with a case (default: the one that the case names)")
-    parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="only columns whose name contains one of these words")
+    parser.add_argument(
+        "files",
+        nargs="+",
+        type=pathlib.Path,
+        metavar="FILE",
+        help=(
+            "a CSV file of a run, a folder of such files, or a case: then its section plot (docs/plots.md), its"
+            " plot.py, or all files of its run"
+        ),
+    )
+    parser.add_argument(
+        "--out",
+        type=pathlib.Path,
+        metavar="FOLDER",
+        help="output folder of the run, with a case (default: the one that the case names)",
+    )
+    parser.add_argument(
+        "--only", nargs="+", default=[], metavar="WORD", help="only columns whose name contains one of these words"
+    )
     parser.add_argument("--from", dest="low", type=float, metavar="T", help="starts at this time [s]")
     parser.add_argument("--to", dest="high", type=float, metavar="T", help="ends at this time [s]")
-    parser.add_argument("--at", type=float, metavar="T", help="draws lines and planes of the output nearest to this time [s] (default: the last)")
+    parser.add_argument(
+        "--at",
+        type=float,
+        metavar="T",
+        help="draws lines and planes of the output nearest to this time [s] (default: the last)",
+    )
     parser.add_argument("--log", action="store_true", help="logarithmic scale; residuals always have it")
-    parser.add_argument("--field", metavar="NAME", help="draws this field of the run in FOLDER or FOLDER/PARTICIPANT: cells in two dimensions, outer faces in three")
-    parser.add_argument("--surface", metavar="PATCH", help="draws --field on this patch (output.surfaces of the case), in two dimensions over the arc length")
+    parser.add_argument(
+        "--field",
+        metavar="NAME",
+        help=(
+            "draws this field of the run in FOLDER or FOLDER/PARTICIPANT: cells in two dimensions, outer faces in three"
+        ),
+    )
+    parser.add_argument(
+        "--surface",
+        metavar="PATCH",
+        help="draws --field on this patch (output.surfaces of the case), in two dimensions over the arc length",
+    )
     parser.add_argument("--mode", type=int, metavar="N", help="draws this mode from modes.h5 in FOLDER")
-    parser.add_argument("--component", choices=("x", "y", "z"), help="draws a component of --field instead of its magnitude")
-    parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="draws --field on the body displaced by F times its displacement (default: 1)")
-    parser.add_argument("--film", action="store_true", help="draws the maps of a case's section plot at each output between --from and --to: film/frame-*.png, and film.mp4 if ffmpeg is installed")
-    parser.add_argument("--allow-commands", action="store_true", help="runs the plot.py and the functions in Python by which a case draws its picture, with your permissions")
-    parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="name of the picture, for a single file (default: FILE.png beside FILE.csv)")
+    parser.add_argument(
+        "--component", choices=("x", "y", "z"), help="draws a component of --field instead of its magnitude"
+    )
+    parser.add_argument(
+        "--warp",
+        type=float,
+        default=1.0,
+        metavar="F",
+        help="draws --field on the body displaced by F times its displacement (default: 1)",
+    )
+    parser.add_argument(
+        "--film",
+        action="store_true",
+        help=(
+            "draws the maps of a case's section plot at each output between --from and --to: film/frame-*.png, and"
+            " film.mp4 if ffmpeg is installed"
+        ),
+    )
+    parser.add_argument(
+        "--allow-commands",
+        action="store_true",
+        help="runs the plot.py and the functions in Python by which a case draws its picture, with your permissions",
+    )
+    parser.add_argument(
+        "--picture",
+        type=pathlib.Path,
+        metavar="FILE.png",
+        help="name of the picture, for a single file (default: FILE.png beside FILE.csv)",
+    )
 
 
 def run(options):
@@ -188,11 +271,19 @@ def run(options):
     expect(options.field or not options.surface, "--surface: name the field that is drawn on it with --field NAME")
     if options.field or options.mode is not None:
         from couplet import fields
+
         folder, look = options.files[0], (options.picture, options.at, options.component, options.warp)
         expect(len(options.files) == 1, "--field, --mode: give one folder of a run")
         expect(folder.is_dir(), f"{folder}: there is no such folder; has the case been run?")
-        print(fields.draw_mode(folder, options.mode, options.picture) if options.mode is not None else
-              fields.draw_surface(folder, options.field, options.surface, *look) if options.surface else fields.draw(folder, options.field, *look))
+        print(
+            fields.draw_mode(folder, options.mode, options.picture)
+            if options.mode is not None
+            else (
+                fields.draw_surface(folder, options.field, options.surface, *look)
+                if options.surface
+                else fields.draw(folder, options.field, *look)
+            )
+        )
         return 0
     if options.files[0].suffix in (".yaml", ".yml") or (options.files[0] / "case.yaml").is_file():
         expect(len(options.files) == 1, "one case at a time")
@@ -200,11 +291,18 @@ def run(options):
         if code is not None:
             return code
     else:
-        expect(options.out is None and not options.film, "--out, --film: belong to CASE.yaml; of a run give its folder alone")
+        expect(
+            options.out is None and not options.film,
+            "--out, --film: belong to CASE.yaml; of a run give its folder alone",
+        )
     monitors, folders = [], 0
     for name in options.files:
         folders += name.is_dir()
-        monitors += [(name, f) for f in sorted(name.rglob("*.csv")) if is_monitor(f)] if name.is_dir() else [(name.parent, name)]
+        monitors += (
+            [(name, f) for f in sorted(name.rglob("*.csv")) if is_monitor(f)]
+            if name.is_dir()
+            else [(name.parent, name)]
+        )
     expect(not options.picture or not folders and len(monitors) == 1, "--picture names one picture: give one file.")
     expect(monitors, "There is no monitor (.csv) in these folders. Run the case first.")
     failed = 0

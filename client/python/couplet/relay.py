@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Connection of a participant's process to the coupler: over MPI or, if launched separately, over a socket to its relay in the job (docs/protocol.md,
-"Launched separately")."""
+"""Connection of a participant's process to the coupler: over MPI or, if launched separately, over a socket to its relay
+in the job (docs/protocol.md, "Launched separately")."""
 import os
 import socket
 import struct
@@ -54,29 +54,46 @@ class OverSocket:
         end = time.monotonic() + seconds
         while not os.path.exists(file):
             if time.monotonic() > end:
-                raise ConnectionError(f"COUPLET_JOIN: there is no '{file}' yet: no relay of the job has written it (COUPLET_JOIN_WAIT: seconds to wait, 60).")
+                raise ConnectionError(
+                    f"COUPLET_JOIN: there is no '{file}' yet: no relay of the job has written it (COUPLET_JOIN_WAIT:"
+                    " seconds to wait, 60)."
+                )
             time.sleep(0.02)
         with open(file) as lines:
             mark, name, token, *places = lines.read().splitlines()
         if mark != "couplet relay 1":
             raise ValueError(f"COUPLET_JOIN: '{file}' was not written by a relay of this version.")
         if name != f"participant {participant}":
-            raise ValueError(f"'{file}' is of the relay of '{name.removeprefix('participant ')}'; this program is '{participant}'.")
+            raise ValueError(
+                f"'{file}' is of the relay of '{name.removeprefix('participant ')}'; this program is '{participant}'."
+            )
         if comm.size != len(places):
-            raise ValueError(f"'{participant}' has {comm.size} processes, its relay {len(places)}: start as many of both.")
+            raise ValueError(
+                f"'{participant}' has {comm.size} processes, its relay {len(places)}: start as many of both."
+            )
         kind, *where = places[comm.rank].split()
         if kind == "unix":
             self._socket = socket.socket(socket.AF_UNIX)
             self._socket.connect(where[0])
         else:  # numeric address of either family
-            family, _, _, _, place = socket.getaddrinfo(*where, type=socket.SOCK_STREAM, flags=socket.AI_NUMERICHOST | socket.AI_NUMERICSERV)[0]
+            family, _, _, _, place = socket.getaddrinfo(
+                *where, type=socket.SOCK_STREAM, flags=socket.AI_NUMERICHOST | socket.AI_NUMERICSERV
+            )[0]
             self._socket = socket.socket(family)
             self._socket.connect(place)
         if kind == "tcp":  # like watch() of stream.cpp: a lost partner is detected within 5 s
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-            for option, value in (("TCP_KEEPIDLE", 2), ("TCP_KEEPINTVL", 1), ("TCP_KEEPCNT", 3), ("TCP_USER_TIMEOUT", 5000), ("TCP_NODELAY", 1)):
+            for option, value in (
+                ("TCP_KEEPIDLE", 2),
+                ("TCP_KEEPINTVL", 1),
+                ("TCP_KEEPCNT", 3),
+                ("TCP_USER_TIMEOUT", 5000),
+                ("TCP_NODELAY", 1),
+            ):
                 self._socket.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
-        self._socket.sendall(f"couplet-join {version} {token.removeprefix('token ')} {comm.rank} {comm.size} {participant}\n".encode())
+        self._socket.sendall(
+            f"couplet-join {version} {token.removeprefix('token ')} {comm.rank} {comm.size} {participant}\n".encode()
+        )
         answer = b""
         while not answer.endswith(b"\n") and len(answer) < 400 and (byte := self._socket.recv(1)):
             answer += byte

@@ -13,7 +13,8 @@ WIDTH = {4: 3, 5: 4, 6: 4, 7: 5, 8: 6, 9: 8}  # points of a cell, by XDMF code
 class FieldSeries:
     """One <name>.h5 series: times, cells (lists of point numbers), coordinates and fields by name.
 
-    `times` (outputs,) [s], `cells`: an array of point numbers per cell, `codes`: its XDMF code. Outputs are numbered from 0; -1 is the last."""
+    `times` (outputs,) [s], `cells`: an array of point numbers per cell, `codes`: its XDMF code. Outputs are numbered
+    from 0; -1 is the last. """
 
     def __init__(self, file: str | pathlib.Path):
         self.file = h5py.File(file, "r")
@@ -41,7 +42,8 @@ class FieldSeries:
         return step["coordinates"][...] if "coordinates" in step else self.reference()
 
     def field(self, i: int, name: str) -> np.ndarray:
-        """Values (cells or points, components) of a field at output `i`, in its SI unit. Raises KeyError if there is none of this name."""
+        """Values (cells or points, components) of a field at output `i`, in its SI unit. Raises KeyError if there is
+        none of this name."""
         step = self.file["steps"][self.steps[i]]
         for place in ("cells", "points"):
             if place in step and name in step[place]:
@@ -75,7 +77,8 @@ class FieldSeries:
         return np.array([points[cell].mean(axis=0) for cell in self.cells])
 
     def volumes(self) -> np.ndarray:
-        """Areas [m^2] (2-D) of the cells in the undeformed mesh; in 3-D volumes [m^3] of hulls, exact for planar faces."""
+        """Areas [m^2] (2-D) of the cells in the undeformed mesh; in 3-D volumes [m^3] of hulls, exact for planar
+        faces."""
         points = self.reference()
         if self.is_flat():
             found = []
@@ -84,6 +87,7 @@ class FieldSeries:
                 found.append(0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))
             return np.array(found)
         from scipy.spatial import ConvexHull
+
         return np.array([ConvexHull(points[cell]).volume for cell in self.cells])
 
     def names(self, i: int) -> list[str]:
@@ -104,7 +108,8 @@ SHAPES = ("buckling.h5", "mode-shapes.h5")  # beside the fields of a run
 
 
 def find_series(folder: str | pathlib.Path, name: str = "*.h5") -> FieldSeries:
-    """The .h5 field series in a participant's output folder: that of the run, not that of its shapes, unless they are named."""
+    """The .h5 field series in a participant's output folder: that of the run, not that of its shapes, unless they are
+    named."""
     for file in sorted(pathlib.Path(folder).glob(name)):
         if file.name in SHAPES and file.name != name:
             continue
@@ -117,7 +122,8 @@ def find_series(folder: str | pathlib.Path, name: str = "*.h5") -> FieldSeries:
 class Surface(FieldSeries):
     """Patch over time. Its cells are faces with two points in 2-D, and three or four in 3-D.
 
-    field(i, name) has one row per face, or per point for fields at points; 2-D vectors are padded to three components."""
+    field(i, name) has one row per face, or per point for fields at points; 2-D vectors are padded to three components.
+    """
 
     def __init__(self, file):
         super().__init__(file)
@@ -136,25 +142,33 @@ class Surface(FieldSeries):
         return np.array([points[face].mean(axis=0) for face in self.cells])
 
     def areas(self, i: int = -1) -> np.ndarray:
-        """Face areas [m^2]. Edges count as length times 1 m. Quadrilaterals use half the cross product of the diagonals (planar faces)."""
+        """Face areas [m^2]. Edges count as length times 1 m. Quadrilaterals use half the cross product of the diagonals
+        (planar faces)."""
         points = self.coordinates(i)
         if self.is_plane():
             return np.array([np.linalg.norm(points[b] - points[a]) for a, b in self.cells])
         last = [(f[1], f[-1], f[0], f[2]) for f in self.cells]
-        ends = [(points[b] - points[d], points[c] - points[a]) if len(f) == 4 else (points[f[1]] - points[f[0]], points[f[2]] - points[f[0]])
-                for f, (b, d, a, c) in zip(self.cells, last)]
+        ends = [
+            (
+                (points[b] - points[d], points[c] - points[a])
+                if len(f) == 4
+                else (points[f[1]] - points[f[0]], points[f[2]] - points[f[0]])
+            )
+            for f, (b, d, a, c) in zip(self.cells, last)
+        ]
         return np.array([0.5 * np.linalg.norm(np.cross(u, v)) for u, v in ends])
 
     def integral(self, name: str, i: int = -1) -> np.ndarray:
-        """Sum over the faces of the field times the area: for a traction [Pa] the force [N]. Point fields use the mean over each face."""
+        """Sum over the faces of the field times the area: for a traction [Pa] the force [N]. Point fields use the mean
+        over each face."""
         field = np.asarray(self.field(i, name), float)
         if self.is_at_points(i, name):
             field = np.array([field[face].mean(axis=0) for face in self.cells])
         return np.tensordot(self.areas(i), field, axes=1)
 
     def chains(self, i: int = -1) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Returns [(ordered edge numbers, ordered points)] in 2-D. An open part starts at its end with the lowest number, a closed one at its point with the
-        largest x. Both have the body on the same side as the edges."""
+        """Returns [(ordered edge numbers, ordered points)] in 2-D. An open part starts at its end with the lowest
+        number, a closed one at its point with the largest x. Both have the body on the same side as the edges."""
         points, after = self.coordinates(i), {}
         for number, (a, b) in enumerate(self.cells):
             after.setdefault(int(a), []).append((number, int(b)))
@@ -177,7 +191,11 @@ class Surface(FieldSeries):
 
 def surface_names(folder: str | pathlib.Path) -> list[str]:
     """Patches with a surface in a participant's folder."""
-    return [file.stem.removeprefix("surface-") for file in sorted(pathlib.Path(folder).glob("surface-*.h5")) if h5py.is_hdf5(file)]
+    return [
+        file.stem.removeprefix("surface-")
+        for file in sorted(pathlib.Path(folder).glob("surface-*.h5"))
+        if h5py.is_hdf5(file)
+    ]
 
 
 def find_surface(folder: str | pathlib.Path, patch: str) -> Surface:
@@ -185,13 +203,16 @@ def find_surface(folder: str | pathlib.Path, patch: str) -> Surface:
     file = pathlib.Path(folder) / f"surface-{patch.replace('/', '_')}.h5"
     if not file.exists():
         there = surface_names(folder)
-        raise FileNotFoundError(f"{folder}: there is no surface '{patch}'; " + (f"there is: {', '.join(there)}" if there else "`output.surfaces` names what is written"))
+        raise FileNotFoundError(
+            f"{folder}: there is no surface '{patch}'; "
+            + (f"there is: {', '.join(there)}" if there else "`output.surfaces` names what is written")
+        )
     return Surface(file)
 
 
 def extrema(t: np.ndarray, y: np.ndarray, window: float = 0.15) -> list[tuple[float, float, str]]:
-    """Local maxima and minima as (time, value, kind), from the parabola through three samples, that are extreme within `window` seconds on either
-    side. End points are excluded."""
+    """Local maxima and minima as (time, value, kind), from the parabola through three samples, that are extreme within
+    `window` seconds on either side. End points are excluded."""
     found = []
     for sign, kind in ((1, "max"), (-1, "min")):
         z = sign * y
@@ -208,6 +229,9 @@ def extrema(t: np.ndarray, y: np.ndarray, window: float = 0.15) -> list[tuple[fl
 def extremum(place: np.ndarray, values: np.ndarray, sign: int) -> float:
     """Extremum along a line of the quartic through the five points around the largest sign * value."""
     from scipy.interpolate import barycentric_interpolate
+
     i = int(np.clip(np.argmax(sign * values), 2, len(values) - 3))
     near = slice(i - 2, i + 3)
-    return sign * float(np.max(sign * barycentric_interpolate(place[near], values[near], np.linspace(place[i - 1], place[i + 1], 401))))
+    return sign * float(
+        np.max(sign * barycentric_interpolate(place[near], values[near], np.linspace(place[i - 1], place[i + 1], 401)))
+    )

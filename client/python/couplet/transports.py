@@ -5,9 +5,11 @@ import re
 
 
 def choose():
-    """Selects shared memory if the whole job is on one machine and the user made no choice, like the programs of the job. Different choices are
-    incompatible, and probing all networks is slow."""
-    if "OMPI_COMM_WORLD_SIZE" not in os.environ or os.environ["OMPI_COMM_WORLD_SIZE"] != os.environ.get("OMPI_COMM_WORLD_LOCAL_SIZE"):
+    """Selects shared memory if the whole job is on one machine and the user made no choice, like the programs of the
+    job. Different choices are incompatible, and probing all networks is slow."""
+    if "OMPI_COMM_WORLD_SIZE" not in os.environ or os.environ["OMPI_COMM_WORLD_SIZE"] != os.environ.get(
+        "OMPI_COMM_WORLD_LOCAL_SIZE"
+    ):
         return
     if any("OMPI_MCA_" + name in os.environ for name in ("pml", "btl", "mtl", "mca_param_files")):
         return

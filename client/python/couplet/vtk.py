@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the fields of a run as .vtu files, one an output, with a .pvd that lists them as a series in time: what every version of ParaView and VTK, meshio and
-most other programs read. Coordinates are those of the moved mesh."""
+"""Writes the fields of a run as .vtu files, one an output, with a .pvd that lists them as a series in time: what every
+version of ParaView and VTK, meshio and most other programs read. Coordinates are those of the moved mesh."""
 import base64
 import pathlib
 from xml.sax.saxutils import quoteattr
@@ -20,7 +20,10 @@ def array(name, values):
     data = values.tobytes()
     text = base64.b64encode(np.uint64(len(data)).tobytes() + data).decode()
     components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim > 1 else ""
-    return f'<DataArray type="{NAMES[values.dtype]}" Name={quoteattr(name)}{components} format="binary">{text}</DataArray>\n'
+    return (
+        f'<DataArray type="{NAMES[values.dtype]}"'
+        f' Name={quoteattr(name)}{components} format="binary">{text}</DataArray>\n'
+    )
 
 
 def padded(values):
@@ -33,12 +36,26 @@ def grid(series, i):
     """Text of one .vtu."""
     cells, points = series.cells, padded(series.coordinates(i))
     step = series.file["steps"][series.steps[i]]
-    text = f'<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n'
+    text = (
+        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"'
+        f' header_type="UInt64">\n<UnstructuredGrid>\n<Piece NumberOfPoints="{len(points)}"'
+        f' NumberOfCells="{len(cells)}">\n'
+    )
     text += f"<Points>\n{array('Points', points)}</Points>\n<Cells>\n"
-    text += array("connectivity", np.concatenate([np.asarray(c, "i8") for c in cells]) if len(cells) else np.zeros(0, "i8"))
-    text += array("offsets", np.cumsum([len(c) for c in cells], dtype="i8")) + array("types", np.array([VTK[c] for c in series.codes], "u1")) + "</Cells>\n"
+    text += array(
+        "connectivity", np.concatenate([np.asarray(c, "i8") for c in cells]) if len(cells) else np.zeros(0, "i8")
+    )
+    text += (
+        array("offsets", np.cumsum([len(c) for c in cells], dtype="i8"))
+        + array("types", np.array([VTK[c] for c in series.codes], "u1"))
+        + "</Cells>\n"
+    )
     for place, word in (("points", "PointData"), ("cells", "CellData")):
-        text += f"<{word}>\n" + "".join(array(name, padded(values[...])) for name, values in step.get(place, {}).items()) + f"</{word}>\n"
+        text += (
+            f"<{word}>\n"
+            + "".join(array(name, padded(values[...])) for name, values in step.get(place, {}).items())
+            + f"</{word}>\n"
+        )
     return text + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
 
 
@@ -47,12 +64,26 @@ def write(folder):
     lists = []
     for file in sorted(pathlib.Path(folder).glob("*/*.h5")):
         with h5py.File(file, "r") as content:
-            if content.attrs.get("format") not in ("couplet fields", b"couplet fields", "couplet surface", b"couplet surface"):
+            if content.attrs.get("format") not in (
+                "couplet fields",
+                b"couplet fields",
+                "couplet surface",
+                b"couplet surface",
+            ):
                 continue
         series, place, entries = FieldSeries(file), file.parent.relative_to(folder) / "vtk", ""
         for i, time in enumerate(series.times):
             name = f"{file.stem}-{i:06d}.vtu"
             files.write(folder, place / name, grid(series, i))
             entries += f'<DataSet timestep="{time:.12g}" part="0" file={quoteattr(name)}/>\n'
-        lists.append(files.write(folder, place / f"{file.stem}.pvd", f'<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">\n<Collection>\n{entries}</Collection>\n</VTKFile>\n'))
+        lists.append(
+            files.write(
+                folder,
+                place / f"{file.stem}.pvd",
+                (
+                    '<VTKFile type="Collection" version="1.0"'
+                    f' byte_order="LittleEndian">\n<Collection>\n{entries}</Collection>\n</VTKFile>\n'
+                ),
+            )
+        )
     return lists

@@ -15,9 +15,20 @@ AT = 1.25  # s
 
 
 def swung(job, step, cells, end, *keys):
-    """A cylinder that moves by -(5/4 pi)(1 - cos 0.4 pi t), viscosity 1 Pa s: results, and the x force [N] of each step."""
-    run = job.case("oscillating-cylinder", (".viscosity=1 Pa s", ".viscous=implicit", '.motion.translation=["-(5/(4*pi))*(1-cos(0.4*pi*t))", 0]',
-                                            ".mesh-parameters={n: %d}" % cells, f"simulation.end-time={end}", f"simulation.time-step={step}", *keys))
+    """A cylinder that moves by -(5/4 pi)(1 - cos 0.4 pi t), viscosity 1 Pa s: results, and the x force [N] of each
+    step."""
+    run = job.case(
+        "oscillating-cylinder",
+        (
+            ".viscosity=1 Pa s",
+            ".viscous=implicit",
+            '.motion.translation=["-(5/(4*pi))*(1-cos(0.4*pi*t))", 0]',
+            ".mesh-parameters={n: %d}" % cells,
+            f"simulation.end-time={end}",
+            f"simulation.time-step={step}",
+            *keys,
+        ),
+    )
     return run, sum(values for name, values in run.table("fluid", "forces.csv").items() if name.endswith(" x [N]"))
 
 
@@ -35,17 +46,34 @@ def in_time(job):
 
 # -- ladder -----------------------------------------------------------------------------------------------------------
 STEPS = (0.01, 0.005, 0.0025, 0.00125)  # s
-COARSE = ("participants.solid.mesh-parameters={n_side: 40, n_tip: 4}", *(
-    f"participants.{name}.mesh-parameters={{n_side: 20, n_tip: 2, growth: 1.3, wall_growth: 1.3, wall_cells: 5}}" for name in ("fluid", "mover")))
+COARSE = (
+    "participants.solid.mesh-parameters={n_side: 40, n_tip: 4}",
+    *(
+        f"participants.{name}.mesh-parameters={{n_side: 20, n_tip: 2, growth: 1.3, wall_growth: 1.3, wall_cells: 5}}"
+        for name in ("fluid", "mover")
+    ),
+)
 
 
 def tip(job, rho, mu, step):
-    """Returns the tip's displacement at 0.2 s [m] and the run's own relative estimate of the step's error, or None if the run ended earlier."""
+    """Returns the tip's displacement at 0.2 s [m] and the run's own relative estimate of the step's error, or None if
+    the run ended earlier."""
     try:
-        run = job.case("perpendicular-flap", (
-            "simulation.end-time=0.2", f"simulation.time-step={step}", "simulation.output.interval=0", "simulation.checkpoint.interval=0",
-            "participants.fluid.boundaries.inlet.ramp=0.4", f"participants.fluid.viscosity={mu}", f"participants.solid.material.density={rho}",
-            "coupling.convergence.max-iterations=100", *COARSE), timeout=3000)
+        run = job.case(
+            "perpendicular-flap",
+            (
+                "simulation.end-time=0.2",
+                f"simulation.time-step={step}",
+                "simulation.output.interval=0",
+                "simulation.checkpoint.interval=0",
+                "participants.fluid.boundaries.inlet.ramp=0.4",
+                f"participants.fluid.viscosity={mu}",
+                f"participants.solid.material.density={rho}",
+                "coupling.convergence.max-iterations=100",
+                *COARSE,
+            ),
+            timeout=3000,
+        )
     except RunFailed:
         return None, None
     return run.probes("solid")["tip x [m]"][-1], run.report("coupler")["errors"]["step"]
@@ -67,11 +95,18 @@ def estimates(job):
             continue
         limit = limit_of(tips)
         truths = [(abs(value / limit - 1), told) for value, told in found[:3]]
-        ratios += [told / truth for truth, told in truths if truth > 1e-4]  # less is what the coupling's tolerance leaves
+        ratios += [
+            told / truth for truth, told in truths if truth > 1e-4
+        ]  # less is what the coupling's tolerance leaves
     good = sum(1 / 3 <= r <= 3 for r in ratios)
-    return (f"{good} of {len(ratios)}; {sum(r > 3 for r in ratios)} above three times the truth, {sum(r < 1 / 3 for r in ratios)} below a third, {sum(r < 1 / 5 for r in ratios)} "
-            f"below a fifth; "
-            f"{min(ratios):.2f} to {max(ratios):.1f} times it"), good >= 0.8 * len(ratios)
+    return (
+        (
+            f"{good} of {len(ratios)}; {sum(r > 3 for r in ratios)} above three times the truth,"
+            f" {sum(r < 1 / 3 for r in ratios)} below a third, {sum(r < 1 / 5 for r in ratios)} below a fifth;"
+            f" {min(ratios):.2f} to {max(ratios):.1f} times it"
+        ),
+        good >= 0.8 * len(ratios),
+    )
 
 
 def rung(job, rho, mu):
@@ -81,7 +116,10 @@ def rung(job, rho, mu):
         return f"tip {text} m", False
     gaps = [abs(a - b) for a, b in zip(tips, tips[1:])]
     order = math.log2(gaps[-2] / gaps[-1]) if gaps[-1] > 0 else math.inf
-    return f"tip {text} m: order {order:.2f}, last difference {gaps[-1] / abs(tips[-1]):.1e} of the tip", order >= 1.8 or gaps[-1] <= 1e-4 * abs(tips[-1])
+    return (
+        f"tip {text} m: order {order:.2f}, last difference {gaps[-1] / abs(tips[-1]):.1e} of the tip",
+        order >= 1.8 or gaps[-1] <= 1e-4 * abs(tips[-1]),
+    )
 
 
 # -- tolerances -------------------------------------------------------------------------------------------------------
@@ -91,8 +129,15 @@ BY_HAND = {10: 34, 91: 37, 1000: 44}  # passes of ten steps with a pressure tole
 def passes(job, density):
     """Returns the passes of ten steps, or None if one of them failed."""
     try:
-        log = job.case("tests/coupling/piston/case.yaml", ("participants.fluid.pressure-tolerance=1e-6", "coupling.convergence.relative=1e-4",
-                                                           f"participants.fluid.density={density}"), timeout=120).log
+        log = job.case(
+            "tests/coupling/piston/case.yaml",
+            (
+                "participants.fluid.pressure-tolerance=1e-6",
+                "coupling.convergence.relative=1e-4",
+                f"participants.fluid.density={density}",
+            ),
+            timeout=120,
+        ).log
     except RunFailed:
         return None
     halvings, mean = re.search(r"(\d+) halvings.*iterations: mean ([\d.]+)", log).groups()
@@ -102,7 +147,10 @@ def passes(job, density):
 def piston(job, ratio):
     found = [passes(job, round(1000 * ratio * (1 + 1e-4 * k), 4)) for k in range(12)]
     done = [n for n in found if n is not None]
-    text = f"{len(found) - len(done)} of {len(found)} runs with failed steps; {min(done)} to {max(done)} passes in the others"
+    text = (
+        f"{len(found) - len(done)} of {len(found)} runs with failed steps; {min(done)} to {max(done)} passes in the"
+        " others"
+    )
     return text, len(done) == len(found) and max(done) <= BY_HAND[ratio]
 
 
@@ -117,11 +165,14 @@ def lines(job, case):
         if f"{case}: 3 to 1" not in result.stdout:
             raise RuntimeError(result.stdout[-1000:] + result.stderr[-1000:])
         return result.stdout
+
     return job.once(("restart", case), make)
 
 
 def other(job, case):
     found = re.findall(r": (\d) to (\d): apart by (\S+) .*?ranks by (\S+)", lines(job, case))
     text = ", ".join(f"{a} to {b}: {off}" for a, b, off, _ in found)
-    return (f"{text} of the largest value; uninterrupted runs on other ranks: {max(float(r) for *_, r in found):.2g}",
-            len(found) == 4 and all(float(off) <= max(TOLERANCE, float(r)) for *_, off, r in found))
+    return (
+        f"{text} of the largest value; uninterrupted runs on other ranks: {max(float(r) for *_, r in found):.2g}",
+        len(found) == 4 and all(float(off) <= max(TOLERANCE, float(r)) for *_, off, r in found),
+    )

@@ -12,9 +12,17 @@ def beam(job, across, along, law, load, length=2.0, steps=1, more=()):
     """Results of case E, and its deflection over the length."""
     pull = load * 15.293e6 * (0.2**4 / 12) / (0.04 * length**2) / math.sqrt(2)
     edge = ", ".join("%s: {point: [%g, %g, %g], fields: [stress]}" % (name, *x) for name, x in EDGE.items())
-    run = job.case("bent-beam", (".mesh-parameters={n: %d, m: %d, L: %g}" % (across, along, length), f".material.law={law}",
-                                 f".boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", f".probes={{tip: {{point: [0, 0, {length}]}}, {edge}}}",
-                                 f"simulation.time-step={1 / steps!r}", *more))
+    run = job.case(
+        "bent-beam",
+        (
+            ".mesh-parameters={n: %d, m: %d, L: %g}" % (across, along, length),
+            f".material.law={law}",
+            f".boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]",
+            f".probes={{tip: {{point: [0, 0, {length}]}}, {edge}}}",
+            f"simulation.time-step={1 / steps!r}",
+            *more,
+        ),
+    )
     tip = run.last("solid", "probes.csv")
     return run, math.hypot(tip["tip x [m]"], tip["tip y [m]"]) / length
 
@@ -29,7 +37,10 @@ def slender(job, across):
     words, close, maps = [], True, job.beside("configs/bent-beam/maps.py")
     for sides, wanted in {10: 0.82253, 20: 0.81280, 40: 0.81050}.items():
         run, u = beam(job, across, sides * across, "neo-hookean", 10, 0.2 * sides, more=(".output={strain: true}",))
-        words.append(f"L {sides}: {u:.5f} ({100 * (u / wanted - 1):+.2f} %, elastica {100 * (u / 0.81061 - 1):+.2f} %), {maps.text(maps.Section(run.folder, across))}")
+        words.append(
+            f"L {sides}: {u:.5f} ({100 * (u / wanted - 1):+.2f} %, elastica {100 * (u / 0.81061 - 1):+.2f} %),"
+            f" {maps.text(maps.Section(run.folder, across))}"
+        )
         close = close and abs(u / wanted - 1) <= 0.002
     return "; ".join(words), close
 
@@ -49,7 +60,9 @@ def swing(job, across, along, limit, shape=0):
     run, whole = column(job, across, along, shape)
     x = run.probes("solid")["A x [m]"]
     errors = [100 * (x.max() / MAXIMUM - 1), 100 * (x.min() / MINIMUM - 1)]
-    text = f"{x.max():.3f}, {x.min():.3f} m: {errors[0]:+.2f}, {errors[1]:+.2f} %; energy {whole[-1] / whole[0] - 1:+.1e}"
+    text = (
+        f"{x.max():.3f}, {x.min():.3f} m: {errors[0]:+.2f}, {errors[1]:+.2f} %; energy {whole[-1] / whole[0] - 1:+.1e}"
+    )
     return text, max(map(abs, errors)) <= limit
 
 
@@ -63,15 +76,29 @@ def race(job, across, along, times, most):
     mine, u = found.pop("ours")
     words = [f"ours {mine:.2f} s ({100 * (u / SVK[1.6] - 1):+.2f} %)"]
     words += [f"{who} {s:.2f} s ({100 * (v / SVK[1.6] - 1):+.2f} %): {s / mine:.1f}x" for who, (s, v) in found.items()]
-    return "; ".join(words) + ("" if found else "; CalculiX is not installed"), bool(found) and min(s for s, _ in found.values()) / mine >= most
+    return (
+        "; ".join(words) + ("" if found else "; CalculiX is not installed"),
+        bool(found) and min(s for s, _ in found.values()) / mine >= most,
+    )
 
 
 def best(job):
     """The cheapest of each one's meshes that errs by at most 0.1 %, each run three times in turns."""
-    meshes = {"ours": [(2, 20), (4, 40)], "C3D8I": [(2, 20), (4, 40), (4, 80), (8, 40), (8, 80)], "C3D20": [(2, 5), (2, 10), (2, 20), (4, 20), (4, 40)]}
+    meshes = {
+        "ours": [(2, 20), (4, 40)],
+        "C3D8I": [(2, 20), (4, 40), (4, 80), (8, 40), (8, 80)],
+        "C3D20": [(2, 5), (2, 10), (2, 20), (4, 20), (4, 40)],
+    }
     chosen = {}
     for who, mesh in ((who, mesh) for who, some in meshes.items() for mesh in some):
-        runs = [peers(job).our_beam(job, *mesh, 1.6)[:2] if who == "ours" else peers(job).calculix_bent(job, *mesh, 1.6, who) for _ in range(3)]
+        runs = [
+            (
+                peers(job).our_beam(job, *mesh, 1.6)[:2]
+                if who == "ours"
+                else peers(job).calculix_bent(job, *mesh, 1.6, who)
+            )
+            for _ in range(3)
+        ]
         if runs[0] is None:
             return "CalculiX is not installed", False
         seconds, error = sorted(r[0] for r in runs)[1], runs[0][1] / SVK[1.6] - 1
@@ -85,25 +112,36 @@ def growth(job):
     """Processor seconds per cell and Newton iteration, large over small."""
     each = {}
     for across in (8, 16):
-        seconds, _, newton = min(peers(job).our_beam(job, across, 10 * across, 1.6) for _ in range(3 if across == 8 else 1))
+        seconds, _, newton = min(
+            peers(job).our_beam(job, across, 10 * across, 1.6) for _ in range(3 if across == 8 else 1)
+        )
         each[across] = seconds / (10 * across**3) / sum(newton)
     return f"{1e6 * each[8]:.2f} and {1e6 * each[16]:.2f} us: {each[16] / each[8]:.2f} times", each[16] / each[8] < 2
 
 
 def segregated(job):
-    """Compares the segregated method in one load step (total Lagrangian) and in four (updated Lagrangian) with [thesis, table 3.6], and its time with that of
-    Newton's method on the same meshes."""
+    """Compares the segregated method in one load step (total Lagrangian) and in four (updated Lagrangian) with [thesis,
+    table 3.6], and its time with that of Newton's method on the same meshes."""
     words, agrees, factor = [], True, 0
-    aitken = (".solution-method={type: segregated, acceleration: aitken, max-iterations: 40000, relative-tolerance: 1e-6}",)
+    aitken = (
+        ".solution-method={type: segregated, acceleration: aitken, max-iterations: 40000, relative-tolerance: 1e-6}",
+    )
     for n, wanted in ((2, 0.3922), (4, 0.4206)):
         found = {}
-        for name, steps, sets in (("one", 1, aitken), ("four", 4, aitken), ("newton", 1, (".solution-method.relative-tolerance=1e-6",))):
+        for name, steps, sets in (
+            ("one", 1, aitken),
+            ("four", 4, aitken),
+            ("newton", 1, (".solution-method.relative-tolerance=1e-6",)),
+        ):
             run, u = beam(job, n, 10 * n, "saint-venant-kirchhoff", 1.6, steps=steps, more=sets)
             found[name] = u, run.report("solid")["phases"]["solid: linear solver"]
         agrees = agrees and all(abs(found[k][0] / wanted - 1) <= 1e-3 for k in ("one", "four"))
         factor = found["one"][1] / found["newton"][1]
-        words.append(f"{n}x{n}x{10 * n}: {found['one'][0]:.5f} in one load step, {found['four'][0]:.5f} in four (thesis {wanted}), Newton "
-                     f"{found['newton'][0]:.5f}; solve {found['one'][1]:.2f} s for Newton's {found['newton'][1]:.2f} s: {factor:.0f}x")
+        words.append(
+            f"{n}x{n}x{10 * n}: {found['one'][0]:.5f} in one load step, {found['four'][0]:.5f} in four (thesis"
+            f" {wanted}), Newton {found['newton'][0]:.5f}; solve {found['one'][1]:.2f} s for Newton's"
+            f" {found['newton'][1]:.2f} s: {factor:.0f}x"
+        )
     return "; ".join(words), agrees and factor >= 20
 
 
@@ -111,7 +149,9 @@ def pairs(job):
     """The estimate of a linear static run and what `kinematics: finite-strain` changes, 7 bodies."""
     tests, _ = job.gtest("verification_solid_large_strain_estimate")
     found = {t.rsplit("/", 1)[-1]: (float(v["told"]), float(v["found"])) for t, v in tests.items() if "told" in v}
-    text = "; ".join(f"{name.replace('_', ' ')}: {100 * told:.1f} of {100 * true:.1f} %" for name, (told, true) in found.items())
+    text = "; ".join(
+        f"{name.replace('_', ' ')}: {100 * told:.1f} of {100 * true:.1f} %" for name, (told, true) in found.items()
+    )
     return text, len(found) >= 6 and all(1 / 1.5 <= told / true <= 1.5 for told, true in found.values())
 
 
@@ -123,5 +163,10 @@ def flap(job, keys, large, implicit):
         found[name] = tip["tip x [m]"], tip["tip y [m]"]
     (along, _), most = found["linear"], found["implicit"][0]
     apart = max(abs(a - b) for a, b in zip(found["semi-implicit"], found["implicit"])) / abs(most)
-    return (f"tip {'; '.join(f'{x:.4f}, {y:+.4f} m {name}' for name, (x, y) in found.items())}; linear {100 * (along / most - 1):+.1f} % along the flow, "
-            f"schemes {100 * apart:.2f} % apart"), apart <= 0.01
+    return (
+        (
+            f"tip {'; '.join(f'{x:.4f}, {y:+.4f} m {name}' for name, (x, y) in found.items())}; linear"
+            f" {100 * (along / most - 1):+.1f} % along the flow, schemes {100 * apart:.2f} % apart"
+        ),
+        apart <= 0.01,
+    )

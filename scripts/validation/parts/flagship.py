@@ -11,7 +11,10 @@ def fresh_clone(job, script, sign):
         job.done(["git", "clone", "-q", job.root, clone])
     result = job.run([clone / "scripts" / script], timeout=7200)
     found = re.findall(sign, result.stdout)
-    return f"exit code {result.returncode}; {found[-1] if found else 'nothing found of its result'}", result.returncode == 0 and bool(found)
+    return (
+        f"exit code {result.returncode}; {found[-1] if found else 'nothing found of its result'}",
+        result.returncode == 0 and bool(found),
+    )
 
 
 def demo_time(job):
@@ -23,8 +26,20 @@ def demo_time(job):
 
 
 def ranks_agree(job):
-    keys = ("simulation.end-time=0.2", "simulation.output.interval=0.2", "coupling.convergence.relative=1e-9", "coupling.convergence.max-iterations=100",
-            "participants.fluid.pressure-tolerance=1e-12")
+    keys = (
+        "simulation.end-time=0.2",
+        "simulation.output.interval=0.2",
+        "coupling.convergence.relative=1e-9",
+        "coupling.convergence.max-iterations=100",
+        "participants.fluid.pressure-tolerance=1e-12",
+    )
     one, other = (arrays(job.case("perpendicular-flap", keys, ranks).folder) for ranks in ((1, 1, 1, 1), (1, 3, 2, 2)))
-    gaps = {name: apart(values, other[name])[1] for name, values in one.items() if name.endswith(("/displacement", "/velocity", "/pressure", "tip x [m]"))}
-    return ", ".join(f"{name.split(': ')[1]} {gap:.1e}" for name, gap in gaps.items()), len(gaps) > 3 and max(gaps.values()) <= 1e-7
+    gaps = {
+        name: apart(values, other[name])[1]
+        for name, values in one.items()
+        if name.endswith(("/displacement", "/velocity", "/pressure", "tip x [m]"))
+    }
+    return (
+        ", ".join(f"{name.split(': ')[1]} {gap:.1e}" for name, gap in gaps.items()),
+        len(gaps) > 3 and max(gaps.values()) <= 1e-7,
+    )

@@ -1,35 +1,48 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reed valve in three dimensions and its slice: motion of the mesh, lift, frequency, flow area, contact, other structures in the reed's place."""
+"""The reed valve in three dimensions and its slice: motion of the mesh, lift, frequency, flow area, contact, other
+structures in the reed's place."""
 import re
 
 import numpy as np
 
 import couplet
 
+
 # -- motion of the mesh -----------------------------------------------------------------------------------------------
 def moved(job, scene, method, mesh, dimension, parameters, end, steps, still, moving):
     """(least scaled Jacobian of the mesh, where it was refused and why; None where it came to the end)"""
-    sides = [f"{name}: {{type: {kind}}}" for kind, names in re.findall(r"(\w+):([^,]*)", still) for name in names.split()]
+    sides = [
+        f"{name}: {{type: {kind}}}" for kind, names in re.findall(r"(\w+):([^,]*)", still) for name in names.split()
+    ]
     sides += [f"{name}: {{type: moving, motion: {{{motion}}}}}" for name, motion in moving.items()]
     folder = job.scratch / re.sub(r"\W+", "-", f"reed {scene} {method}")
     folder.mkdir(exist_ok=True)
-    (folder / "case.yaml").write_text(f"""simulation: {{end-time: {end}, time-step: {end / steps}, max-step-halvings: 0, output: {{folder: out, interval: {end}}}, checkpoint: {{interval: 0}}}}
+    (folder / "case.yaml").write_text(
+        f"""simulation: {{end-time: {end}, time-step: {end / steps}, max-step-halvings: 0, output: {{folder: out, interval: {end}}}, checkpoint: {{interval: 0}}}}
 participants:
   mover: {{program: mesh_mover, mesh: {job.root / mesh}, mesh-parameters: {parameters}, dimension: {dimension}, method: {method}, boundaries: {{{', '.join(sides)}}}}}
-""")
+"""
+    )
     done = job.run([job.build / "bin/mesh_mover", folder / "case.yaml"], 1200)
     file = folder / "out/mover/quality.csv"
     if not file.exists():
         raise RuntimeError((done.stderr or done.stdout)[-400:])
-    rows, said = couplet.read_csv(file), re.search(r"(inverts cell|makes cell|no valid mesh)", done.stderr + done.stdout)
+    rows, said = couplet.read_csv(file), re.search(
+        r"(inverts cell|makes cell|no valid mesh)", done.stderr + done.stdout
+    )
     refused = f"refused at {100 * rows['time [s]'][-1] / end:.2g} % of the way ({said[1] if said else ''})"
     return min(rows["least scaled Jacobian [1]"]), refused if done.returncode else None
 
 
 def reaches(job, *scene):
-    """`scene`: its name, mesh, dimension and mesh-parameters, end [s], steps, still boundaries, {moving one: its motion}."""
-    (least, refused), *others = (moved(job, scene[0], method, *scene[1:]) for method in ("barrier", "laplacian", "pseudo-solid"))
-    beside = ", ".join(f"{method} {where or 'comes through too'}" for method, (_, where) in zip(("laplacian", "pseudo-solid"), others))
+    """`scene`: its name, mesh, dimension and mesh-parameters, end [s], steps, still boundaries, {moving one: its
+    motion}."""
+    (least, refused), *others = (
+        moved(job, scene[0], method, *scene[1:]) for method in ("barrier", "laplacian", "pseudo-solid")
+    )
+    beside = ", ".join(
+        f"{method} {where or 'comes through too'}" for method, (_, where) in zip(("laplacian", "pseudo-solid"), others)
+    )
     return f"{refused or f'all cells valid, least scaled Jacobian {least:.4f}'}; {beside}", not refused and least > 0
 
 
@@ -46,7 +59,10 @@ def meshed(words):
 def started(gap):
     """Keys of the reed at another lift at rest [m]; the mesh takes the parameter `lift`."""
     points = (f"point-{i}.point=[{x}, 0, {gap + 0.2e-3}]" for i, x in ((1, 0.030655), (2, 0.05334), (3, 0.076025)))
-    return (f"participants.reed.placement.origin=[0, 0, {gap + 0.2e-3}]", *(f"participants.reed.probes.{p}" for p in points))
+    return (
+        f"participants.reed.placement.origin=[0, 0, {gap + 0.2e-3}]",
+        *(f"participants.reed.probes.{p}" for p in points),
+    )
 
 
 def valve(job, keys=()):
@@ -62,7 +78,10 @@ def lift(run, point=1, start=START):
 
 def crests(t, z):
     """Where the lift is the largest within 8 ms, which is not yet half a cycle."""
-    return np.array([i for i in range(1, len(t) - 1) if t[i] + 8e-3 <= t[-1] and z[i] >= z[np.abs(t - t[i]) <= 8e-3].max()], dtype=int)
+    return np.array(
+        [i for i in range(1, len(t) - 1) if t[i] + 8e-3 <= t[-1] and z[i] >= z[np.abs(t - t[i]) <= 8e-3].max()],
+        dtype=int,
+    )
 
 
 def off(value, right):
@@ -99,20 +118,35 @@ def landing(job, mesh=COARSE, gap=START):
     if periods.size < 1:
         return f"lands at {times} ms; {highest:.2f} mm at point 1", False
     f = 1 / periods[-3:].mean()
-    met = len(lands) >= 5 and np.ptp(periods[-3:]) <= 0.02 * periods[-3:].mean() and abs(f / 57.9 - 1) <= 0.05 and abs(highest / 3.07 - 1) <= 0.1
-    return (f"lands at {times} ms, {', '.join(f'{1 / p:.1f}' for p in periods)} Hz from landing to landing (last three {off(f, 57.9)}, {100 * np.ptp(periods[-3:]) / periods[-3:].mean():.1f} % "
-            f"apart); {highest:.2f} mm at point 1 ({off(highest, 3.07)})", met)
+    met = (
+        len(lands) >= 5
+        and np.ptp(periods[-3:]) <= 0.02 * periods[-3:].mean()
+        and abs(f / 57.9 - 1) <= 0.05
+        and abs(highest / 3.07 - 1) <= 0.1
+    )
+    return (
+        (
+            f"lands at {times} ms, {', '.join(f'{1 / p:.1f}' for p in periods)} Hz from landing to landing (last three"
+            f" {off(f, 57.9)}, {100 * np.ptp(periods[-3:]) / periods[-3:].mean():.1f} % apart); {highest:.2f} mm at"
+            f" point 1 ({off(highest, 3.07)})"
+        ),
+        met,
+    )
 
 
 def survey(job, key, values):
-    """In air, 4.0 k cells, 45 ms, for each value of a key: largest lift at point 1, frequency between the last two crests of point 2, landings."""
+    """In air, 4.0 k cells, 45 ms, for each value of a key: largest lift at point 1, frequency between the last two
+    crests of point 2, landings."""
     texts = []
     for name, value in values.items():
         run = valve(job, (*meshed(SMALL), key.replace("{}", value), "simulation.end-time=45 ms"))
         t, z = lift(run, 2)
         periods, lands = np.diff(t[crests(t, z)]), ", ".join(f"{1e3 * at:.1f}" for at in landings_of(run))
         frequency = f"{1 / periods[-1]:.1f} Hz" if periods.size else "no two crests"
-        texts.append(f"{name}: {1e3 * lift(run, 1)[1].max():.2f} mm, {frequency}, " + (f"lands at {lands} ms" if lands else "does not land"))
+        texts.append(
+            f"{name}: {1e3 * lift(run, 1)[1].max():.2f} mm, {frequency}, "
+            + (f"lands at {lands} ms" if lands else "does not land")
+        )
     return "; ".join(texts), None
 
 
@@ -127,17 +161,25 @@ HALF, END, WHOLE = 0.3e-3, 0.6e-3, 8e-3  # checkpoint, end of this run, what was
 
 
 def swapped(job):
-    """The slice with the plate, with the modes of a solid, with the solid at large strain: first peak, trough, second peak, frequency."""
+    """The slice with the plate, with the modes of a solid, with the solid at large strain: first peak, trough, second
+    peak, frequency."""
     modes = job.case("reed-slice/shapes", timeout=600).folder / "reed/modes.h5"
-    runs = {"plate": job.case("reed-slice"), "modes of the solid": job.case("reed-slice/modes", (f"participants.reed.modes.file={modes}",)),
-            "solid at large strain": job.case("reed-slice/solid", timeout=7200)}
+    runs = {
+        "plate": job.case("reed-slice"),
+        "modes of the solid": job.case("reed-slice/modes", (f"participants.reed.modes.file={modes}",)),
+        "solid at large strain": job.case("reed-slice/solid", timeout=7200),
+    }
     found = {}
     for name, run in runs.items():
         probes = run.probes("reed")
         t, gap = probes["time [s]"], 1000 * (probes["tip z [m]"] + 0.3e-3)
         first = int(np.argmax(gap[t < 0.01]))
-        low = first + int(np.argmin(gap[first:(t < 0.0135).sum()]))
+        low = first + int(np.argmin(gap[first : (t < 0.0135).sum()]))
         second = low + int(np.argmax(gap[low:]))
         found[name] = gap[first], gap[low], gap[second], 1 / (t[second] - t[first])
     worst = max(abs(v[i] / found["plate"][i] - 1) for v in found.values() for i in range(4))
-    return "; ".join(f"{name}: {v[0]:.3f}, {v[1]:.3f}, {v[2]:.3f} mm, {v[3]:.0f} Hz" for name, v in found.items()) + f" (first peak, trough, second peak): {100 * worst:.1f} % apart", worst <= 0.05
+    return (
+        "; ".join(f"{name}: {v[0]:.3f}, {v[1]:.3f}, {v[2]:.3f} mm, {v[3]:.0f} Hz" for name, v in found.items())
+        + f" (first peak, trough, second peak): {100 * worst:.1f} % apart",
+        worst <= 0.05,
+    )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The linear solid: motion, ranks, speed."""
 
+
 # -- parallel ---------------------------------------------------------------------------------------------------------
 def body(job, n, ranks=1, method="newton-krylov"):
     """A compression of the porous body."""
@@ -32,8 +33,14 @@ def weak(job, small, large):
     efficiency = one["seconds"] / one["cells"] * two["cells"] / 2 / two["seconds"]
     # The iterations depend more on the mesh than on the ranks: one may be lucky.
     an_iteration = efficiency * two["iterations"] / one["iterations"]
-    return (f"{one['cells']} cells {one['seconds']:.1f} s ({one['iterations']} iterations), {two['cells']} cells on 2 ranks {two['seconds']:.1f} s "
-            f"({two['iterations']}): efficiency {100 * efficiency:.0f} %, of an iteration {100 * an_iteration:.0f} %"), min(efficiency, an_iteration) > 0.5
+    return (
+        (
+            f"{one['cells']} cells {one['seconds']:.1f} s ({one['iterations']} iterations), {two['cells']} cells on 2"
+            f" ranks {two['seconds']:.1f} s ({two['iterations']}): efficiency {100 * efficiency:.0f} %, of an iteration"
+            f" {100 * an_iteration:.0f} %"
+        ),
+        min(efficiency, an_iteration) > 0.5,
+    )
 
 
 # -- speed ------------------------------------------------------------------------------------------------------------
@@ -61,19 +68,42 @@ def memory(job, method):
 
 def reproduced(found):
     """Checks {what: {name: (ratio, the published one or None)}}: each within a factor of 1.5 of the thesis."""
-    text = "; ".join(f"{what}: " + ", ".join(f"{name} {ratio:.2f}" + (f" ({wanted})" if wanted else "") for name, (ratio, wanted) in ratios.items())
-                     for what, ratios in found.items())
-    return text, all(wanted is None or 1 / 1.5 <= ratio / wanted <= 1.5 for ratios in found.values() for ratio, wanted in ratios.values())
+    text = "; ".join(
+        f"{what}: "
+        + ", ".join(
+            f"{name} {ratio:.2f}" + (f" ({wanted})" if wanted else "") for name, (ratio, wanted) in ratios.items()
+        )
+        for what, ratios in found.items()
+    )
+    return text, all(
+        wanted is None or 1 / 1.5 <= ratio / wanted <= 1.5
+        for ratios in found.values()
+        for ratio, wanted in ratios.values()
+    )
 
 
 def table_3_1_a(job):
     """Case A, meshes 2 to 4: processor seconds of the whole program, and iterations."""
     found, words = {}, []
     for refine, (s, sa) in {2: (1.9, 2.0), 4: (1.9, 2.4), 8: (1.5, 2.4)}.items():
-        runs = {m: race(job).ours(job, "le11", ["participants.solid.mesh-parameters={refine: %d}" % refine, "participants.solid.solution-method="
-                                                "{%s, relative-tolerance: 1e-7, max-iterations: 20000}" % race(job).METHODS[m]]) for m in ("S", "SA", "C", "newton-krylov")}
+        runs = {
+            m: race(job).ours(
+                job,
+                "le11",
+                [
+                    "participants.solid.mesh-parameters={refine: %d}" % refine,
+                    "participants.solid.solution-method={%s, relative-tolerance: 1e-7, max-iterations: 20000}"
+                    % race(job).METHODS[m],
+                ],
+            )
+            for m in ("S", "SA", "C", "newton-krylov")
+        }
         t = {m: run.cpu for m, (run, _, _) in runs.items()}
-        found[f"refine {refine}"] = {"S/SA": (t["S"] / t["SA"], s), "SA/C": (t["SA"] / t["C"], sa), "C/newton-krylov": (t["C"] / t["newton-krylov"], None)}
+        found[f"refine {refine}"] = {
+            "S/SA": (t["S"] / t["SA"], s),
+            "SA/C": (t["SA"] / t["C"], sa),
+            "C/newton-krylov": (t["C"] / t["newton-krylov"], None),
+        }
         words.append(", ".join(f"{m} {int(n[-1])}" for m, (_, _, n) in runs.items()))
     text, met = reproduced(found)
     return f"{text}; iterations {'; '.join(words)}", met
@@ -84,5 +114,9 @@ def table_3_1(job):
     found = {}
     for n, (s, sa) in {(8, 12, 6): (2.1, 5.7), (16, 24, 12): (3.8, 4.3), FINE: (4.3, 3.4)}.items():
         t = {m: race(job).our_plate(job, n, m, 1e-7)["solution"] for m in ("S", "SA", "C", "newton-krylov")}
-        found["x".join(map(str, n))] = {"S/SA": (t["S"] / t["SA"], s), "SA/C": (t["SA"] / t["C"], sa), "C/newton-krylov": (t["C"] / t["newton-krylov"], None)}
+        found["x".join(map(str, n))] = {
+            "S/SA": (t["S"] / t["SA"], s),
+            "SA/C": (t["SA"] / t["C"], sa),
+            "C/newton-krylov": (t["C"] / t["newton-krylov"], None),
+        }
     return reproduced(found)

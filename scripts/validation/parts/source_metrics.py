@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Metrics of the sources, counted with regular expressions rather than a compiler: good to a few per cent, and the same from one commit to the next.
-Every measure returns (what it found, whether the limit is met)."""
+"""Metrics of the sources, counted with regular expressions rather than a compiler: good to a few per cent, and the same
+from one commit to the next. Every measure returns (what it found, whether the limit is met)."""
 import importlib
 import json
 import os
@@ -19,18 +19,30 @@ BAD_BEGINNING = re.compile(r"(?:Of|What|Whether|By|The same|That|Those)\b")
 
 # -- files ------------------------------------------------------------------------------------------------------------
 def tracked(job, *folders):
-    return job.once(("tracked", folders), lambda: job.run(["git", "-C", job.root, "ls-files", *folders]).stdout.split("\n")[:-1])
+    return job.once(
+        ("tracked", folders), lambda: job.run(["git", "-C", job.root, "ls-files", *folders]).stdout.split("\n")[:-1]
+    )
 
 
 def texts(job):
     """Returns {path: text} of the C++ of programs and common."""
+
     def make():
-        return {f: (job.root / f).read_text() for f in tracked(job, *HOUSE) if f.endswith((".cpp", ".hpp")) and (job.root / f).is_file()}
+        return {
+            f: (job.root / f).read_text()
+            for f in tracked(job, *HOUSE)
+            if f.endswith((".cpp", ".hpp")) and (job.root / f).is_file()
+        }
+
     return job.once("texts of the sources", make)
 
 
 def lines_of(job, endings, *folders):
-    return sum(len((job.root / f).read_bytes().splitlines()) for f in tracked(job, *folders) if f.endswith(endings) and (job.root / f).is_file())
+    return sum(
+        len((job.root / f).read_bytes().splitlines())
+        for f in tracked(job, *folders)
+        if f.endswith(endings) and (job.root / f).is_file()
+    )
 
 
 def worst(found, count=3):
@@ -45,14 +57,21 @@ def lines(job, endings, folders, most):
 
 def tokens(job, most):
     """Comments and blanks do not count."""
-    one = re.compile(r'(//[^\n]*|/\*.*?\*/)|R"(\w*)\(.*?\)\2"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)|\d(?:[\w.\']|(?<=[eE])[+-])*|\w+|\S', re.S)
+    one = re.compile(
+        r'(//[^\n]*|/\*.*?\*/)|R"(\w*)\(.*?\)\2"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)|'
+        r'\d(?:[\w.\']|(?<=[eE])[+-])*|\w+|\S',
+        re.S,
+    )
     n = sum(not token[1] for text in texts(job).values() for token in one.finditer(text))
     return f"{n}", n <= most
 
 
 def size(job, folder, megabytes, most):
     """Files of the last commit, in a folder or '.'."""
-    sizes = [int(line.split()[3]) for line in job.run(["git", "-C", job.root, "ls-tree", "-r", "-l", "HEAD", folder]).stdout.splitlines()]
+    sizes = [
+        int(line.split()[3])
+        for line in job.run(["git", "-C", job.root, "ls-tree", "-r", "-l", "HEAD", folder]).stdout.splitlines()
+    ]
     return f"{len(sizes)} files, {sum(sizes) / 1e6:.2f} MB", sum(sizes) <= megabytes * 1e6 and len(sizes) <= most
 
 
@@ -75,15 +94,24 @@ def files(job, most):
 
 
 # Ten cases of different kinds as runs of seconds: (case, keys, whether it is a single static solve).
-TEN = (("cook", (".mesh-parameters={n: 64, shape: 0}",), True), ("elliptic-plate", (), True), ("filleted-bracket", (), True), ("bent-beam", (), True),
-       ("vibrating-cantilever", ("simulation.end-time=10 s",), False), ("cavity", ("simulation.end-time=4 s",), False),
-       ("cylinder", (".mesh-parameters={n: 24}", "simulation.end-time=0.4 s"), False), ("perpendicular-flap", ("simulation.end-time=0.3 s",), False),
-       ("plate-drop", ("simulation.end-time=0.04 s",), False), ("thermocline-andasol", ("simulation.end-time=10 day", ".report.run-in=2 day"), False))
+TEN = (
+    ("cook", (".mesh-parameters={n: 64, shape: 0}",), True),
+    ("elliptic-plate", (), True),
+    ("filleted-bracket", (), True),
+    ("bent-beam", (), True),
+    ("vibrating-cantilever", ("simulation.end-time=10 s",), False),
+    ("cavity", ("simulation.end-time=4 s",), False),
+    ("cylinder", (".mesh-parameters={n: 24}", "simulation.end-time=0.4 s"), False),
+    ("perpendicular-flap", ("simulation.end-time=0.3 s",), False),
+    ("plate-drop", ("simulation.end-time=0.04 s",), False),
+    ("thermocline-andasol", ("simulation.end-time=10 day", ".report.run-in=2 day"), False),
+)
 
 
 def share_of_diagnostics(job, most, most_of_static):
-    """Returns the time of the timer that every run has, over the processor time of its process. In a coupled job the participant with the largest share counts. The timer also
-    counts while other processes run, hence the least of three runs, and over the time on the clock if that is longer."""
+    """Returns the time of the timer that every run has, over the processor time of its process. In a coupled job the
+    participant with the largest share counts. The timer also counts while other processes run, hence the least of three
+    runs, and over the time on the clock if that is longer. """
     found = {}
     for case, keys, is_static in TEN:
         runs = [job.case(case, (*keys, f"simulation.name={case}-{i}")) for i in range(3)]
@@ -95,7 +123,8 @@ def share_of_diagnostics(job, most, most_of_static):
     return text, all(share <= limit for share, limit in found.values())
 
 
-# -- classes ------------------------------------------------------------------------------------------------------------
+# -- classes
+# ------------------------------------------------------------------------------------------------------------
 def plain(text):
     """Comments, literals and preprocessor lines are blank."""
     blank = lambda match: re.sub(r"[^\n]", " ", match.group())
@@ -117,19 +146,33 @@ def data_members(body):
     count, at = 0, 0
     while match := CLASS.search(body, at):
         end = closing(body, match.end())
-        if not re.search(r"\benum\s+$", body[:match.start()]):
-            count += data_members(body[match.end():end])
-        body = body[:match.start()] + "struct X " + body[end + 1:]
+        if not re.search(r"\benum\s+$", body[: match.start()]):
+            count += data_members(body[match.end() : end])
+        body = body[: match.start()] + "struct X " + body[end + 1 :]
         at = match.start() + 9
     while True:  # bodies of functions, initializers, arguments of templates
-        shorter = re.sub(r"<[^<>;{}()]*>", "", re.sub(r"\{(?:[^{}]|\{\})*\}", "{}", body.replace("->", "").replace("operator<", "operator")))
+        shorter = re.sub(
+            r"<[^<>;{}()]*>",
+            "",
+            re.sub(r"\{(?:[^{}]|\{\})*\}", "{}", body.replace("->", "").replace("operator<", "operator")),
+        )
         shorter = re.sub(r"\{\}(?=\s*[,;])", "", re.sub(r"=[^,;{}()]*(?=[,;])", "", shorter))
         if shorter == body:
             break
         body = shorter
     for statement in re.split(r";|\{\}|\b(?:public|protected|private)\s*:", body):
         head = statement.strip()
-        if not head or "(" in head or re.match(r"(?:using|typedef|friend|static_assert|enum|template|static|constexpr|struct X$|class \w+$|struct \w+$)\b", head):
+        if (
+            not head
+            or "(" in head
+            or re.match(
+                (
+                    r"(?:using|typedef|friend|static_assert|enum|template|static|constexpr|struct X$|class \w+$|struct"
+                    r" \w+$)\b"
+                ),
+                head,
+            )
+        ):
             continue
         if re.search(r"[\w>*&]\s+[&*]?\w+", head):
             count += 1 + head.count(",")
@@ -143,8 +186,8 @@ def largest_class(job, most):
         at = 0
         while match := CLASS.search(text, at):
             at = closing(text, match.end())
-            if not re.search(r"\benum\s+$", text[:match.start()]):
-                found[match[1]] = max(found.get(match[1], 0), data_members(text[match.end():at]))
+            if not re.search(r"\benum\s+$", text[: match.start()]):
+                found[match[1]] = max(found.get(match[1], 0), data_members(text[match.end() : at]))
     over = sum(n > most for n in found.values())
     return f"{worst(found, 5)}; {over} of {len(found)} have more than {most}", not over
 
@@ -155,7 +198,11 @@ def comment_blocks(job, share):
         before = ""
         for line in text.splitlines():
             own = re.match(r"\s*//[/!]?<?\s*(.*)", line)
-            if own and not re.match(r"\s*//", before) and not own[1].startswith(("SPDX", "clang-format", "NOLINT", "namespace")):
+            if (
+                own
+                and not re.match(r"\s*//", before)
+                and not own[1].startswith(("SPDX", "clang-format", "NOLINT", "namespace"))
+            ):
                 found += 1
                 bad += bool(BAD_BEGINNING.match(own[1]))
             before = line
@@ -163,7 +210,8 @@ def comment_blocks(job, share):
 
 
 def mirrored(job, share):
-    """tests/unit/mesh/order_test.cpp is the test of common/mesh/order.hpp, tests/unit/coupler/links_test.cpp that of coupler/links.hpp."""
+    """tests/unit/mesh/order_test.cpp is the test of common/mesh/order.hpp, tests/unit/coupler/links_test.cpp that of
+    coupler/links.hpp."""
     tests = {f for f in tracked(job, "tests/unit") if f.endswith("_test.cpp")}
     headers = [f for f in texts(job) if f.endswith(".hpp")]
     there = [h for h in headers if f"tests/unit/{h.removeprefix('common/').removesuffix('.hpp')}_test.cpp" in tests]
@@ -180,7 +228,13 @@ def comparison(job):
     gains = {n: tables.best(rows, n) for n in there}
     lacking = tables.problems(rows, job.root / "common/linalg")
     text = ", ".join(f"{n} {min(g[:2]):.2f} of PETSc's best ({g[2]['system']})" for n, g in gains.items() if g)
-    return f"{len({r['system'] for r in rows})} systems, {len(rows)} rows; {text}{'; ' + '; '.join(lacking) if lacking else ''}", not lacking
+    return (
+        (
+            f"{len({r['system'] for r in rows})} systems, {len(rows)} rows;"
+            f" {text}{'; ' + '; '.join(lacking) if lacking else ''}"
+        ),
+        not lacking,
+    )
 
 
 def minutes(job, limit, *targets):
@@ -190,7 +244,9 @@ def minutes(job, limit, *targets):
     result = job.run(["cmake", "-G", "Ninja", "-S", job.root, "-B", folder], 600)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     if result.returncode == 0:
-        result = job.run(["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600)
+        result = job.run(
+            ["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600
+        )
     if result.returncode != 0:
         raise RuntimeError((result.stderr or result.stdout)[-300:])
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `couplet`: one module for each of its subcommands, with `declare(parser)` and `run(arguments)` -> exit code; what
-they declare is help, man page and completion alike."""
+"""The command `couplet`: one module for each of its subcommands, with `declare(parser)` and `run(arguments)` -> exit
+code; what they declare is help, man page and completion alike."""
 import argparse
 import importlib
 import os
@@ -30,7 +30,10 @@ SUBCOMMANDS = {
     "validate": ("command.validate", "measures the acceptance tests of the project (in a checkout)"),
     "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
 }
-GUIDE = "couplet COMMAND --help describes each command. Exit codes, the same as those of the programs: 0 finished, 1 failed, 2 invalid case or command, 3 stopped with a checkpoint, 4 finished, but the result is not usable."
+GUIDE = (
+    "couplet COMMAND --help describes each command. Exit codes, the same as those of the programs: 0 finished, 1"
+    " failed, 2 invalid case or command, 3 stopped with a checkpoint, 4 finished, but the result is not usable."
+)
 
 
 def module_of(name):
@@ -39,8 +42,12 @@ def module_of(name):
 
 def parser_of(name):
     module = module_of(name)
-    parser = argparse.ArgumentParser(prog=f"couplet {name}", description=module.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     allow_abbrev=False)
+    parser = argparse.ArgumentParser(
+        prog=f"couplet {name}",
+        description=module.__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
     module.declare(parser)
     return parser
 
@@ -48,8 +55,10 @@ def parser_of(name):
 def version():
     from couplet.places import BY_PIP, IN_CHECKOUT, PACKAGE, ROOT
     import re
+
     if BY_PIP:
         from importlib import metadata
+
         return metadata.version("couplet")
     if IN_CHECKOUT:
         return re.search(r"project\(couplet VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
@@ -67,6 +76,7 @@ def dispatch(name, words):
     raw = name == "validate" and words[:1] not in (["-h"], ["--help"])  # its arguments are those of scripts/validate
     arguments = argparse.Namespace(words=words) if raw else parser_of(name).parse_args(words)
     from couplet.runs.case import Wrong, yaml
+
     try:
         return module_of(name).run(arguments)
     except (Wrong, yaml.YAMLError, UnicodeDecodeError) as error:
@@ -76,7 +86,10 @@ def dispatch(name, words):
         if isinstance(error, BrokenPipeError):  # e.g. `| head` has read enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
             return 0
-        print(f"{prog}: " + ": ".join(str(part) for part in (error.filename, error.strerror or error) if part), file=sys.stderr)
+        print(
+            f"{prog}: " + ": ".join(str(part) for part in (error.filename, error.strerror or error) if part),
+            file=sys.stderr,
+        )
         return 1
     except KeyboardInterrupt:
         print(f"{prog}: interrupted" + ("; start it again to continue" if name == "study" else ""), file=sys.stderr)
@@ -94,7 +107,12 @@ def main(argv=None):
         return 0
     if words[0] not in SUBCOMMANDS:
         import difflib
+
         near = difflib.get_close_matches(words[0], SUBCOMMANDS, 1)
-        print(f"couplet: there is no command '{words[0]}'" + (f"; did you mean '{near[0]}'?" if near else f"; there is: {', '.join(SUBCOMMANDS)}"), file=sys.stderr)
+        print(
+            f"couplet: there is no command '{words[0]}'"
+            + (f"; did you mean '{near[0]}'?" if near else f"; there is: {', '.join(SUBCOMMANDS)}"),
+            file=sys.stderr,
+        )
         return 2
     return dispatch(words[0], words[1:])

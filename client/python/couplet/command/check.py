@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports every error in the keys and files of a case with file and line, without running it. All programs of the case check their part. What only the mesh
-shows (patches without an entry, places of probes, selections of faces) is checked at the start of the run. The exit code is 0 if there are no errors, and
-2 otherwise."""
+"""Reports every error in the keys and files of a case with file and line, without running it. All programs of the case
+check their part. What only the mesh shows (patches without an entry, places of probes, selections of faces) is checked
+at the start of the run. The exit code is 0 if there are no errors, and 2 otherwise."""
 import pathlib
 import subprocess
 import sys
@@ -26,9 +26,18 @@ def ask(arguments, question):
     for name in [*([COUPLER] if case.coupled else []), *case.participants]:
         program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
         if name == COUPLER or program.name in OURS:  # anything else in that folder, such as a shell, might run the case
-            expect(program.exists(), f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}")
+            expect(
+                program.exists(), f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}"
+            )
             line = [program, case.file, question, *(["--participant", name] if name != COUPLER else []), *sets]
-            asked[name] = subprocess.Popen(list(map(str, line)), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings())
+            asked[name] = subprocess.Popen(
+                list(map(str, line)),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                env=surroundings(),
+            )
     for name, process in asked.items():
         answer, complaint = process.communicate()
         yield name, process.returncode, answer, complaint
@@ -38,6 +47,7 @@ def problem_of_plot(case):
     """Error in the section `plot`, which the programs ignore. Empty if there is none."""
     from couplet.plots.section import check
     from couplet.runs.case import Wrong
+
     try:
         if "plot" in case.data:
             check(case)
@@ -49,11 +59,17 @@ def problem_of_plot(case):
 def problem_of_programs(case):
     """Error in what runs the participants that only the whole case shows. Empty if there is none."""
     if len(case.participants) > 1 and not case.data.get("coupling"):
-        return f"{case.file}: {len(case.participants)} participants, but no section 'coupling': add it, or run one of them: couplet run --participant NAME"
+        return (
+            f"{case.file}: {len(case.participants)} participants, but no section 'coupling': add it, or run one of"
+            " them: couplet run --participant NAME"
+        )
     for name in case.participants:
         program = case.program(name)
         if not program.exists() and case.guest(name) is None and not case.coupled:
-            return f"{case.file}: participants.{name}.program: there is no program '{program.name}'; Couplet has {', '.join(OURS[1:])}."
+            return (
+                f"{case.file}: participants.{name}.program: there is no program '{program.name}'; Couplet has"
+                f" {', '.join(OURS[1:])}."
+            )
     return ""
 
 
@@ -68,5 +84,8 @@ def run(arguments):
         worst, told = max(worst, 2), [*told, problem]
     print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     if worst == 0:
-        print(f"{arguments.case}: keys and files are valid; patches, probes and selections are checked on the mesh when the run starts")
+        print(
+            f"{arguments.case}: keys and files are valid; patches, probes and selections are checked on the mesh when"
+            " the run starts"
+        )
     return worst

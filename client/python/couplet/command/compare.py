@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the differences between two runs: effective values, columns of tables, fields at each output, and findings. Their cost (seconds, iterations,
-logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within --tolerance, and 1 otherwise."""
+"""Lists the differences between two runs: effective values, columns of tables, fields at each output, and findings.
+Their cost (seconds, iterations, logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within
+--tolerance, and 1 otherwise."""
 import argparse
 import math
 import pathlib
@@ -22,7 +23,13 @@ def share(text):
 def declare(parser):
     parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
     parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another run")
-    parser.add_argument("--tolerance", type=share, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (default: 0)")
+    parser.add_argument(
+        "--tolerance",
+        type=share,
+        default=0.0,
+        metavar="SHARE",
+        help="ignores differences up to this share of the largest value (default: 0)",
+    )
     parser.add_argument("--all", action="store_true", help="also lists values that are equal or within the tolerance")
 
 
@@ -37,6 +44,7 @@ def flat(node, name=""):
 def apart(a, b, largest=0.0):
     """Returns (largest difference, relative to `largest` or the largest value here), or None if the shapes differ."""
     import numpy as np
+
     if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
         return None
     if a.dtype.kind not in "fiu":
@@ -55,6 +63,7 @@ def arrays(folder):
     """Returns {name: array} of all tables and field series of a run, without times."""
     import h5py
     import numpy as np
+
     found = {}
     for file in sorted(folder.glob("*/*.csv")):
         if file.stat().st_size:
@@ -67,10 +76,20 @@ def arrays(folder):
         raw = {}
         try:
             with h5py.File(file, "r") as series:
-                times = {f"steps/{number}": f"t = {step.attrs['time']:.9g} s" for number, step in series.get("steps", {}).items() if "time" in step.attrs}
+                times = {
+                    f"steps/{number}": f"t = {step.attrs['time']:.9g} s"
+                    for number, step in series.get("steps", {}).items()
+                    if "time" in step.attrs
+                }
                 if len(set(times.values())) < len(times):  # such as modes of equal frequency
                     times = {}
-                series.visititems(lambda name, item: raw.update({named(name, times): np.asarray(item[...])}) if isinstance(item, h5py.Dataset) else None)
+                series.visititems(
+                    lambda name, item: (
+                        raw.update({named(name, times): np.asarray(item[...])})
+                        if isinstance(item, h5py.Dataset)
+                        else None
+                    )
+                )
         except (OSError, RuntimeError) as error:
             raise Wrong(f"{file}: cannot be read, and may be truncated ({error})") from None
         found.update({f"{file.relative_to(folder)}: {name}": values for name, values in by_number(raw).items()})
@@ -78,14 +97,16 @@ def arrays(folder):
 
 
 def named(name, times):
-    """Name of a dataset with the time of its output in place of the number, which differs between a whole run and a resumed one."""
+    """Name of a dataset with the time of its output in place of the number, which differs between a whole run and a
+    resumed one."""
     step = "/".join(name.split("/")[:2])
-    return times[step] + name[len(step):] if step in times else name
+    return times[step] + name[len(step) :] if step in times else name
 
 
 def by_number(series):
     """Datasets of one file in the order of cell and point numbers, since files store them rank by rank."""
     import numpy as np
+
     cells, points = series.get("mesh/cell-id"), series.get("mesh/point-id")
     if cells is None or points is None:
         return series
@@ -93,7 +114,9 @@ def by_number(series):
     place = {"mesh/cell-id": "cells", "mesh/point-id": "points", "mesh/coordinates": "points"}
     sorted_ones = {}
     for name, values in series.items():
-        of = place.get(name) or ("points" if name.endswith("/coordinates") else name.split("/")[-2] if name.count("/") > 1 else None)
+        of = place.get(name) or (
+            "points" if name.endswith("/coordinates") else name.split("/")[-2] if name.count("/") > 1 else None
+        )
         if name == "mesh/cells" and values.ndim == 2:
             values, of = points[values], "cells"
         sorted_ones[name] = values[order[of]] if of in order and len(values) == len(order[of]) else values
@@ -101,16 +124,26 @@ def by_number(series):
 
 
 def values_in_force(folder):
-    return {f"{file.parent.name}.{key}": value for file in folder.glob("*/effective.yaml") for key, value in flat(load(file.read_text()))}
+    return {
+        f"{file.parent.name}.{key}": value
+        for file in folder.glob("*/effective.yaml")
+        for key, value in flat(load(file.read_text()))
+    }
 
 
 def of_mappings(first, second):
-    return [f"{key}: {first.get(key, 'absent')} | {second.get(key, 'absent')}" for key in sorted({*first, *second}) if first.get(key, 'absent') != second.get(key, 'absent')]
+    return [
+        f"{key}: {first.get(key, 'absent')} | {second.get(key, 'absent')}"
+        for key in sorted({*first, *second})
+        if first.get(key, 'absent') != second.get(key, 'absent')
+    ]
 
 
 def scales(*runs):
-    """Returns {(table, unit): largest value}: a column that is zero up to round-off is compared with the others of its table and unit."""
+    """Returns {(table, unit): largest value}: a column that is zero up to round-off is compared with the others of its
+    table and unit."""
     import numpy as np
+
     found = {}
     for name, values in (item for run in runs for item in run.items()):
         if group := group_of(name):
@@ -147,7 +180,12 @@ def run(arguments):
     for folder in runs:
         expect(folder.is_dir() and Results(folder).participants(), f"{folder}: is no output folder of a run")
     changed = of_mappings(*map(values_in_force, runs))
-    findings = of_mappings(*({f"finding {f['participant']} {f['id']}": f.get("severity") for f in Results(folder).findings()} for folder in runs))
+    findings = of_mappings(
+        *(
+            {f"finding {f['participant']} {f['id']}": f.get("severity") for f in Results(folder).findings()}
+            for folder in runs
+        )
+    )
     print(*changed, *findings, sep="\n", end="\n" if changed or findings else "")
     found = list(differences(*runs, arguments.tolerance))
     expect(found, f"{runs[0]} and {runs[1]}: have no tables and fields to compare; did the runs fail?")
@@ -155,6 +193,11 @@ def run(arguments):
     for name, words in [(n, w) for n, w, far in found if far or arguments.all]:
         print(f"{name}: {words}")
     beyond = sum(far for _, _, far in found)
-    told = "equal bit for bit" if not apart_ones else f"{len(apart_ones)} differ" + (f", {beyond} by more than {arguments.tolerance:g}" if arguments.tolerance else "")
+    told = (
+        "equal bit for bit"
+        if not apart_ones
+        else f"{len(apart_ones)} differ"
+        + (f", {beyond} by more than {arguments.tolerance:g}" if arguments.tolerance else "")
+    )
     print(f"{len(found)} columns and fields: {told}")
     return 1 if beyond else 0

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the documentation as a site with search and a gallery of all cases. Builds it once, then serves it on localhost."""
+"""Shows the documentation as a site with search and a gallery of all cases. Builds it once, then serves it on
+localhost."""
 import functools
 import http.server
 import os
@@ -11,17 +12,30 @@ from couplet.documents import site
 
 
 def declare(parser):
-    parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="builds the site into this folder and exits")
+    parser.add_argument(
+        "--build", type=pathlib.Path, metavar="FOLDER", help="builds the site into this folder and exits"
+    )
     parser.add_argument("--port", type=int, default=0, metavar="N", help="port on localhost (default: any free one)")
     parser.add_argument("--again", action="store_true", help="builds it again even if it exists")
-    parser.add_argument("--plots", action="store_true", help="builds it again with the plots of the validation studies and of the maps of stability, which takes minutes")
+    parser.add_argument(
+        "--plots",
+        action="store_true",
+        help=(
+            "builds it again with the plots of the validation studies and of the maps of stability, which takes minutes"
+        ),
+    )
 
 
 def built(arguments):
     """Folder with the site of this version."""
     from couplet.command import version
     from couplet.places import ROOT
-    cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "couplet" / f"site-{version()}-{ROOT.name}"
+
+    cache = (
+        pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
+        / "couplet"
+        / f"site-{version()}-{ROOT.name}"
+    )
     newest = max(((ROOT / page).stat().st_mtime for page in site.pages() if (ROOT / page).exists()), default=0)
     mark = cache / "index.html"
     if arguments.again or arguments.plots or not mark.exists() or mark.stat().st_mtime < newest:

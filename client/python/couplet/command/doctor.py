@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks whether this machine can run coupled cases: programs and their versions, MPI, Python packages, gmsh, cores, memory, and a coupled self-test of
-two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line that fails names the fix."""
+"""Checks whether this machine can run coupled cases: programs and their versions, MPI, Python packages, gmsh, cores,
+memory, and a coupled self-test of two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line that
+fails names the fix."""
 import importlib.util
 import os
 import pathlib
@@ -14,8 +15,14 @@ import time
 from couplet import places
 from couplet.runs.case import OURS
 
-PACKAGES = {"yaml": ("python3-yaml", True), "numpy": ("python3-numpy", True), "h5py": ("python3-h5py", False), "matplotlib": ("python3-matplotlib", False),
-            "scipy": ("python3-scipy", False), "mpi4py": ("python3-mpi4py", False)}
+PACKAGES = {
+    "yaml": ("python3-yaml", True),
+    "numpy": ("python3-numpy", True),
+    "h5py": ("python3-h5py", False),
+    "matplotlib": ("python3-matplotlib", False),
+    "scipy": ("python3-scipy", False),
+    "mpi4py": ("python3-mpi4py", False),
+}
 
 
 def declare(parser):
@@ -33,30 +40,41 @@ def first_line(*command):
 def programs(bin_):
     for name in OURS:
         said = first_line(bin_ / name, "--version")
-        yield name, said or f"not in {bin_}" + ("" if (bin_ / name).exists() else ": scripts/build, or COUPLET_BIN=FOLDER/bin"), said is not None
+        yield name, said or f"not in {bin_}" + (
+            "" if (bin_ / name).exists() else ": scripts/build, or COUPLET_BIN=FOLDER/bin"
+        ), said is not None
 
 
 def surroundings():
     said = first_line("mpirun", "--version")
     yield "MPI", said or "there is no mpirun: apt install openmpi-bin", said is not None
     yield "Python", platform.python_version(), True
-    missing = [(package, needed) for module, (package, needed) in PACKAGES.items() if importlib.util.find_spec(module) is None]
-    yield "packages", f"missing: apt install {' '.join(p for p, _ in missing)}" if missing else "all there", not any(needed for _, needed in missing)
+    missing = [
+        (package, needed) for module, (package, needed) in PACKAGES.items() if importlib.util.find_spec(module) is None
+    ]
+    yield "packages", f"missing: apt install {' '.join(p for p, _ in missing)}" if missing else "all there", not any(
+        needed for _, needed in missing
+    )
     said = first_line("gmsh", "--version")
     yield "gmsh", said or "not there: meshes from .geo need it (apt install gmsh)", True
     cores = len(os.sched_getaffinity(0))
     yield "cores", f"{cores}, load {os.getloadavg()[0]:.1f}", True
     memory = re.findall(r"^(MemTotal|MemAvailable):\s+(\d+)", pathlib.Path("/proc/meminfo").read_text(), flags=re.M)
-    yield "memory", ", ".join(f"{int(kb) / 2**20:.1f} GB {'in all' if name == 'MemTotal' else 'free'}" for name, kb in memory), True
+    yield "memory", ", ".join(
+        f"{int(kb) / 2**20:.1f} GB {'in all' if name == 'MemTotal' else 'free'}" for name, kb in memory
+    ), True
     free = shutil.disk_usage(os.getcwd()).free / 2**30
     yield "disk", f"{free:.1f} GB free here", free > 0.5
-    yield "shared memory", f"{shutil.disk_usage('/dev/shm').free / 2**20:.0f} MB free in /dev/shm", shutil.disk_usage("/dev/shm").free > 32 * 2**20
+    yield "shared memory", f"{shutil.disk_usage('/dev/shm').free / 2**20:.0f} MB free in /dev/shm", shutil.disk_usage(
+        "/dev/shm"
+    ).free > 32 * 2**20
 
 
 def self_test():
     """Runs two steps of the coupled flap on a coarse mesh in a temporary folder."""
     from couplet.runs.gallery import copy, find
     from couplet.runs.job import run
+
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="couplet-doctor-") as scratch:
         try:
@@ -66,7 +84,10 @@ def self_test():
             moved = next(values[-1] for head, values in tip.items() if "x [m]" in head)
         except Exception as error:  # any exception is reported as the result
             return f"failed: {error}", False
-    return f"fluid, solid, mover and coupler: the flap's tip moved by {moved:.3g} m in {time.monotonic() - start:.1f} s", moved > 0
+    return (
+        f"fluid, solid, mover and coupler: the flap's tip moved by {moved:.3g} m in {time.monotonic() - start:.1f} s",
+        moved > 0,
+    )
 
 
 def run(arguments):
@@ -77,5 +98,9 @@ def run(arguments):
     if not arguments.quick and good:
         text, good = self_test()
         print(f"{'ok ' if good else 'NO '} {'self-test':14} {text}")
-    print("This machine can run coupled cases." if good else "This machine cannot run coupled cases yet: see the lines with NO.")
+    print(
+        "This machine can run coupled cases."
+        if good
+        else "This machine cannot run coupled cases yet: see the lines with NO."
+    )
     return 0 if good else 1

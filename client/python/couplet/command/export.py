@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the fields of a run for other programs (--to vtk: .vtu files with a .pvd in each participant's folder vtk/, of an output folder instead of a
-case), or a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM (incompressible, laminar flow for
-icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key without a counterpart there is an error that names it.
-`couplet study --peers` runs both and compares them."""
+"""Writes the fields of a run for other programs (--to vtk: .vtu files with a .pvd in each participant's folder vtk/, of
+an output folder instead of a case), or a case as input of another program into a folder: CalculiX (static, linear
+elastic solids) or OpenFOAM (incompressible, laminar flow for icoFoam and pimpleFoam; static solids for
+solidDisplacementFoam). A key without a counterpart there is an error that names it. `couplet study --peers` runs both
+and compares them."""
 import pathlib
 import shutil
 import tempfile
@@ -14,19 +15,40 @@ TO = ("calculix", "openfoam", "vtk")
 
 
 def declare(parser):
-    parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml; for vtk the output folder of a run")
+    parser.add_argument(
+        "case",
+        type=pathlib.Path,
+        metavar="CASE",
+        help="a YAML file, or a folder with case.yaml; for vtk the output folder of a run",
+    )
     parser.add_argument("--to", required=True, choices=TO, help="the target program")
-    parser.add_argument("--folder", type=pathlib.Path, metavar="FOLDER", help="output folder (default: PROGRAM next to the case)")
+    parser.add_argument(
+        "--folder", type=pathlib.Path, metavar="FOLDER", help="output folder (default: PROGRAM next to the case)"
+    )
     parser.add_argument("--participant", metavar="NAME", help="participant to export, if the case has several")
-    parser.add_argument("--element", metavar="KIND", help="element of CalculiX, such as C3D20R (default: the second-order one for the cells of the mesh)")
-    parser.add_argument("--solver", choices=("icoFoam", "pimpleFoam"), default="icoFoam", help="solver of OpenFOAM for a flow (default: icoFoam)")
+    parser.add_argument(
+        "--element",
+        metavar="KIND",
+        help="element of CalculiX, such as C3D20R (default: the second-order one for the cells of the mesh)",
+    )
+    parser.add_argument(
+        "--solver",
+        choices=("icoFoam", "pimpleFoam"),
+        default="icoFoam",
+        help="solver of OpenFOAM for a flow (default: icoFoam)",
+    )
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets a value; repeatable")
-    parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, with your permissions")
+    parser.add_argument(
+        "--allow-commands",
+        action="store_true",
+        help="allows a .geo to run commands and write files, with your permissions",
+    )
 
 
 def made(case, arguments, work):
     """Writer of the case."""
     from couplet.peers.values import refuse
+
     names = [arguments.participant] if arguments.participant else list(case.participants)
     expect(len(names) == 1, f"{case.file}: --participant: which one of {', '.join(names)}?")
     expect(names[0] in case.participants, f"{case.file}: there is no participant '{names[0]}'")
@@ -34,14 +56,18 @@ def made(case, arguments, work):
     program, common = str(data["participants"][names[0]].get("program")), (data, names[0], case.file.parent, work)
     if program == "fluid_solver" and arguments.to == "openfoam":
         from couplet.peers.flow import Flow, FlowCase
+
         return FlowCase(Flow(*common, arguments.allow_commands), arguments.solver)
     if program != "solid_solver":
         refuse(f"participants.{names[0]}.program", f"'{program}' has no counterpart in {arguments.to}")
     from couplet.peers.solid import Solid
+
     if arguments.to == "openfoam":
         from couplet.peers.solid_foam import SolidFoam
+
         return SolidFoam(Solid(*common, "solidDisplacementFoam", arguments.allow_commands))
     from couplet.peers.calculix import Input, kinds
+
     solid = Solid(*common, "CalculiX", arguments.allow_commands)
     return Input(solid, arguments.element or kinds(solid)[-1][0])
 
@@ -51,6 +77,7 @@ def run(arguments):
     expect(arguments.element is None or arguments.to == "calculix", "--element: is of --to calculix")
     if arguments.to == "vtk":
         from couplet.vtk import write
+
         expect(arguments.case.is_dir(), f"{arguments.case}: there is no such output folder")
         lists = write(arguments.case)
         expect(lists, f"{arguments.case}: there are no field series (*/*.h5) in it")
@@ -59,7 +86,10 @@ def run(arguments):
     case = Case(arguments.case)
     folder = arguments.folder or case.file.parent / arguments.to
     folder = files.below(folder.parent, folder.name)
-    expect(not folder.exists() or folder.is_dir() and not any(folder.iterdir()), f"--folder {folder}: exists and is not empty; choose a new name")
+    expect(
+        not folder.exists() or folder.is_dir() and not any(folder.iterdir()),
+        f"--folder {folder}: exists and is not empty; choose a new name",
+    )
     with tempfile.TemporaryDirectory(prefix="couplet-export-") as work:
         try:
             command = made(case, arguments, pathlib.Path(work)).write(folder)

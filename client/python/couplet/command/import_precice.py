@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates a case from a configuration of preCICE, for a job of programs that use preCICE's interface (docs/precice.md). The programs still read the XML
-themselves. Differences are listed. If an element is not supported, it is named with its line, and no case is written (exit code 2)."""
+"""Creates a case from a configuration of preCICE, for a job of programs that use preCICE's interface (docs/precice.md).
+The programs still read the XML themselves. Differences are listed. If an element is not supported, it is named with its
+line, and no case is written (exit code 2)."""
 import os
 import pathlib
 import subprocess
@@ -16,20 +17,47 @@ from couplet.runs.job import surroundings
 
 
 def declare(parser):
-    parser.add_argument("configuration", type=pathlib.Path, metavar="XML", help="configuration file, such as precice-config.xml")
-    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="YAML", help="case to write (default: beside the XML, with its name and .yaml)")
-    parser.add_argument("--check", action="store_true", help="lists differences and unsupported elements without writing a case")
+    parser.add_argument(
+        "configuration", type=pathlib.Path, metavar="XML", help="configuration file, such as precice-config.xml"
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=pathlib.Path,
+        metavar="YAML",
+        help="case to write (default: beside the XML, with its name and .yaml)",
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="lists differences and unsupported elements without writing a case"
+    )
     parser.add_argument("--force", action="store_true", help="overwrites an existing case")
 
 
 def text_of(found, file, output):
-    case = {"simulation": {"name": file.resolve().parent.name or "precice", **found.case["simulation"], "output": {"folder": f"{output.stem}-run", "interval": 0}, "checkpoint": {"interval": 0}},
-            "participants": found.case["participants"], "coupling": found.case["coupling"]}
+    case = {
+        "simulation": {
+            "name": file.resolve().parent.name or "precice",
+            **found.case["simulation"],
+            "output": {"folder": f"{output.stem}-run", "interval": 0},
+            "checkpoint": {"interval": 0},
+        },
+        "participants": found.case["participants"],
+        "coupling": found.case["coupling"],
+    }
     source = os.path.relpath(file, output.parent)
     expect(not CONTROL.search(source), f"{source!r}: the name contains a control character; rename it.")
-    lines = [f"# precice-config: {source}", "# A job of programs on preCICE's interface, made by couplet import. Each program is given that file, or this one:",
-             f"#   couplet run {output.name} --with NAME='./program {source}' ...", *(f"# Line {line}: {note}." for line, note in sorted(found.notes))]
-    return "\n".join([*lines, ""]) + yaml.dump(case, sort_keys=False, default_flow_style=None, width=160, allow_unicode=True)
+    lines = [
+        f"# precice-config: {source}",
+        (
+            "# A job of programs on preCICE's interface, made by couplet import. Each program is given that file, or"
+            " this one:"
+        ),
+        f"#   couplet run {output.name} --with NAME='./program {source}' ...",
+        *(f"# Line {line}: {note}." for line, note in sorted(found.notes)),
+    ]
+    return "\n".join([*lines, ""]) + yaml.dump(
+        case, sort_keys=False, default_flow_style=None, width=160, allow_unicode=True
+    )
 
 
 def refusal(text):
@@ -40,7 +68,9 @@ def refusal(text):
     with tempfile.TemporaryDirectory() as folder:
         case = pathlib.Path(folder) / "case.yaml"
         files.write(folder, case.name, text)
-        done = subprocess.run([coupler, case, "--check"], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=surroundings())
+        done = subprocess.run(
+            [coupler, case, "--check"], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=surroundings()
+        )
     return done.stderr.replace(str(case), "case.yaml").strip() if done.returncode else ""
 
 
@@ -57,7 +87,12 @@ def run(arguments):
     output = arguments.output or file.with_suffix(".yaml")
     expect(arguments.force or not output.exists(), f"{output}: the file exists; --force overwrites it.")
     text = text_of(found, file, output)
-    expect(not (problem := refusal(text)), f"{file}: the coupler would refuse the case of this configuration:\n{problem}")
+    expect(
+        not (problem := refusal(text)), f"{file}: the coupler would refuse the case of this configuration:\n{problem}"
+    )
     files.write(output.parent, output.name, text)
-    print(f"{output}: a case of {', '.join(found.case['participants'])}. couplet run {output} --with NAME='./program {file.name}' ... starts it")
+    print(
+        f"{output}: a case of {', '.join(found.case['participants'])}. couplet run {output} --with NAME='./program"
+        f" {file.name}' ... starts it"
+    )
     return 0

@@ -21,8 +21,19 @@ def handler_of(progress, token):
         def answer(self, code, kind, text):
             data = text.encode()
             self.send_response(code)
-            for head, value in (("Content-Type", f"{kind}; charset=utf-8"), ("Content-Length", str(len(data))), ("Cache-Control", "no-store"), ("Referrer-Policy", "no-referrer"),
-                                ("Content-Security-Policy", "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self'; img-src data:")):
+            for head, value in (
+                ("Content-Type", f"{kind}; charset=utf-8"),
+                ("Content-Length", str(len(data))),
+                ("Cache-Control", "no-store"),
+                ("Referrer-Policy", "no-referrer"),
+                (
+                    "Content-Security-Policy",
+                    (
+                        "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self';"
+                        " img-src data:"
+                    ),
+                ),
+            ):
                 self.send_header(head, value)
             self.end_headers()
             self.wfile.write(data)
@@ -36,7 +47,9 @@ def handler_of(progress, token):
             # A request with another host name comes from a foreign page that tries to read this one.
             mine = self.headers.get("Host", "") == f"127.0.0.1:{self.server.server_port}"
             if not mine or not secrets.compare_digest(given.encode(), token.encode()):
-                self.answer(403, "text/plain", "The token is missing or wrong: use the address printed by couplet watch.\n")
+                self.answer(
+                    403, "text/plain", "The token is missing or wrong: use the address printed by couplet watch.\n"
+                )
             elif address.path == "/":
                 self.answer(200, "text/html", PAGE)
             elif address.path == "/state":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and settings. A continued run equals
-the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of the solvers."""
+"""Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and settings. A
+continued run equals the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of the solvers."""
 import os
 import pathlib
 import shlex
@@ -17,12 +17,39 @@ SHAPE = {"case": str, "ranks": dict, "sets": list, "flags": list, "with": dict} 
 
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
-    parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}")
-    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="changes a value, such as simulation.end-time='10 s'")
-    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="command that starts an external participant; give it again, because a resumed run starts only programs of Couplet")
+    parser.add_argument(
+        "-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}"
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="a.b=v",
+        help="changes a value, such as simulation.end-time='10 s'",
+    )
+    parser.add_argument(
+        "--with",
+        dest="played_by",
+        action="append",
+        default=[],
+        metavar="NAME=COMMAND",
+        help=(
+            "command that starts an external participant; give it again, because a resumed run starts only programs of"
+            " Couplet"
+        ),
+    )
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
-    parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, as the run was allowed to; give it again, because the folder may be another's")
-    parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
+    parser.add_argument(
+        "--allow-commands",
+        action="store_true",
+        help=(
+            "allows a .geo to run commands and write files, as the run was allowed to; give it again, because the"
+            " folder may be another's"
+        ),
+    )
+    parser.add_argument(
+        "--restart-with-changes", action="store_true", help="continues although keys that change the solution differ"
+    )
     parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
 
 
@@ -30,7 +57,9 @@ def problem_of(job, checkpoint):
     """Error in the files of a checkpoint, whose digests the driver compares. Empty if there is none."""
     if pathlib.Path(job.parts[0][1][0]).name not in OURS:
         return ""
-    asked = subprocess.run([*job.parts[0][1], "--check"], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=surroundings())
+    asked = subprocess.run(
+        [*job.parts[0][1], "--check"], stdin=subprocess.DEVNULL, capture_output=True, text=True, env=surroundings()
+    )
     return next((line for line in asked.stderr.splitlines() if str(checkpoint) in line), "")
 
 
@@ -38,21 +67,73 @@ def run(arguments):
     folder = arguments.folder.absolute()
     expect(folder.is_dir(), f"{arguments.folder}: there is no such folder")
     record = folders.read_record(folder)
-    expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
-    expect(all(isinstance(record.get(key), kind) for key, kind in SHAPE.items()) and all(isinstance(n, int) for n in record["ranks"].values()), f"{folder / folders.RECORD}: is damaged. Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
+    expect(
+        record,
+        (
+            f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE"
+            f" --restart {arguments.folder / 'checkpoints'}"
+        ),
+    )
+    expect(
+        all(isinstance(record.get(key), kind) for key, kind in SHAPE.items())
+        and all(isinstance(n, int) for n in record["ranks"].values()),
+        (
+            f"{folder / folders.RECORD}: is damaged. Continue with: couplet run CASE --restart"
+            f" {arguments.folder / 'checkpoints'}"
+        ),
+    )
     file, found = pathlib.Path(os.path.normpath(folder / record["case"])), folders.checkpoints(folder)
-    expect(file.is_file(), f"{arguments.folder}: its case is not at {file}. Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'} --set simulation.output.folder={shlex.quote(str(folder))}")
-    expect(found, f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {shlex.quote(str(file))}")
+    expect(
+        file.is_file(),
+        (
+            f"{arguments.folder}: its case is not at {file}. Continue with: couplet run CASE --restart"
+            f" {arguments.folder / 'checkpoints'} --set simulation.output.folder={shlex.quote(str(folder))}"
+        ),
+    )
+    expect(
+        found,
+        (
+            f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes"
+            f" them. Start again: couplet run {shlex.quote(str(file))}"
+        ),
+    )
     sets = [*record["sets"], f"simulation.output.folder={folder}", *arguments.set]
-    case, played_by = Case(file, build_of(arguments.bin)).changed(sets), {name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}
-    for name in [record["alone"]] if record["alone"] else case.participants:  # the folder may be another's: nothing is started that only it names
+    case, played_by = Case(file, build_of(arguments.bin)).changed(sets), {
+        name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()
+    }
+    for name in (
+        [record["alone"]] if record["alone"] else case.participants
+    ):  # the folder may be another's: nothing is started that only it names
         command = record["with"].get(name) or case.guest(name)
-        expect(not command or name in played_by, f"'{name}' is run by a program that is not Couplet's. If you trust it, give its command again: --with {name}={shlex.quote(shlex.join(map(str, command or [])))}")
-    expect(arguments.allow_commands or "--allow-commands" not in record["flags"], f"{arguments.folder}: its run let the .geo run commands. If you trust the case, give --allow-commands again")
-    flags = [*record["flags"], *(["--restart-with-changes"] if arguments.restart_with_changes and "--restart-with-changes" not in record["flags"] else [])]
+        expect(
+            not command or name in played_by,
+            (
+                f"'{name}' is run by a program that is not Couplet's. If you trust it, give its command again: --with"
+                f" {name}={shlex.quote(shlex.join(map(str, command or [])))}"
+            ),
+        )
+    expect(
+        arguments.allow_commands or "--allow-commands" not in record["flags"],
+        f"{arguments.folder}: its run let the .geo run commands. If you trust the case, give --allow-commands again",
+    )
+    flags = [
+        *record["flags"],
+        *(
+            ["--restart-with-changes"]
+            if arguments.restart_with_changes and "--restart-with-changes" not in record["flags"]
+            else []
+        ),
+    ]
 
     def job_from(name):
-        return Job(case, {**record["ranks"], **ranks_of(arguments.ranks, case)}, sets, [*flags, "--restart", str(folder / "checkpoints" / name)], record["alone"], played_by)
+        return Job(
+            case,
+            {**record["ranks"], **ranks_of(arguments.ranks, case)},
+            sets,
+            [*flags, "--restart", str(folder / "checkpoints" / name)],
+            record["alone"],
+            played_by,
+        )
 
     problems = []
     for name in found:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stops the running job of an output folder after its current step, with a checkpoint to continue from. The job must run on this machine; it
-does not matter how it was started."""
+"""Stops the running job of an output folder after its current step, with a checkpoint to continue from. The job must
+run on this machine; it does not matter how it was started."""
 import pathlib
 import shlex
 import sys
@@ -11,14 +11,32 @@ from couplet.runs.case import expect
 
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
-    parser.add_argument("--within", type=float, default=600, metavar="SECONDS", help="how long to wait for the run to end (default: 600)")
+    parser.add_argument(
+        "--within",
+        type=float,
+        default=600,
+        metavar="SECONDS",
+        help="how long to wait for the run to end (default: 600)",
+    )
 
 
 def run(arguments):
     expect(arguments.folder.is_dir(), f"{arguments.folder}: there is no such folder")
-    expect(folders.stop(arguments.folder), f"{arguments.folder}: no running job found for this folder on this machine (for a Slurm job, use scancel --signal=TERM --full JOB)")
+    expect(
+        folders.stop(arguments.folder),
+        (
+            f"{arguments.folder}: no running job found for this folder on this machine (for a Slurm job, use scancel"
+            " --signal=TERM --full JOB)"
+        ),
+    )
     if not folders.wait_for_end(arguments.folder, arguments.within):
-        print(f"couplet stop: still running after {arguments.within:g} s; it stops after the current step", file=sys.stderr)
+        print(
+            f"couplet stop: still running after {arguments.within:g} s; it stops after the current step",
+            file=sys.stderr,
+        )
         return 1
-    print(f"stopped, saved as {folders.checkpoint(arguments.folder)}; continue: couplet resume {shlex.quote(str(arguments.folder))}")
+    print(
+        f"stopped, saved as {folders.checkpoint(arguments.folder)}; continue: couplet resume"
+        f" {shlex.quote(str(arguments.folder))}"
+    )
     return 0

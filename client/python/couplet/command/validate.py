@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the acceptance tests of the project with the programs and tests of a checkout. Takes the options of scripts/validate."""
+"""Measures the acceptance tests of the project with the programs and tests of a checkout. Takes the options of
+scripts/validate."""
 import argparse
 import os
 
@@ -8,10 +9,17 @@ from couplet.runs.case import expect
 
 
 def declare(parser):
-    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME ...", help="arguments of scripts/validate; without any, lists what can be measured")
+    parser.add_argument(
+        "words",
+        nargs=argparse.REMAINDER,
+        metavar="NAME ...",
+        help="arguments of scripts/validate; without any, lists what can be measured",
+    )
 
 
 def run(arguments):
     script = places.ROOT / "scripts/validate"
-    expect(places.IN_CHECKOUT and script.exists(), "bars are measured in a checkout of the project, where its tests are")
+    expect(
+        places.IN_CHECKOUT and script.exists(), "bars are measured in a checkout of the project, where its tests are"
+    )
     os.execv(script, [str(script), *(arguments.words or ["--help"])])

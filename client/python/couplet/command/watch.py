@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the progress of a run from its output files: time, step, iterations, residual, remaining time, and findings as they appear. With --web, a
-page for a browser on this machine also draws residuals, probes and step size. Exits when the run ends. Ctrl-C stops watching, not the run."""
+"""Shows the progress of a run from its output files: time, step, iterations, residual, remaining time, and findings as
+they appear. With --web, a page for a browser on this machine also draws residuals, probes and step size. Exits when the
+run ends. Ctrl-C stops watching, not the run."""
 import pathlib
 import threading
 import time
@@ -16,7 +17,9 @@ def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
     parser.add_argument("--every", type=float, default=0.5, metavar="SECONDS", help="refresh interval (default: 0.5)")
     parser.add_argument("--once", action="store_true", help="prints the current state and exits")
-    parser.add_argument("--web", action="store_true", help="serves a page on localhost; the URL contains an access token")
+    parser.add_argument(
+        "--web", action="store_true", help="serves a page on localhost; the URL contains an access token"
+    )
     parser.add_argument("--port", type=int, default=0, metavar="N", help="port of the page (default: any free one)")
 
 
@@ -28,7 +31,9 @@ def ending(folder):
     if not driver:
         return "no run is active here, and none has finished"
     findings = results.findings()
-    at = f"t = {driver['time']:g} s" if driver.get("steps") else by_tables(folder) or "t = 0 s"  # a resumed run that was complete has made no step
+    at = (
+        f"t = {driver['time']:g} s" if driver.get("steps") else by_tables(folder) or "t = 0 s"
+    )  # a resumed run that was complete has made no step
     text = f"{driver.get('state', 'ended')} at {at} after {driver.get('steps', 0)} steps, {driver.get('wall', 0):.1f} s"
     text += f": {driver['reason']}" if driver.get("reason") else ""
     return text + (f"; findings: {', '.join(sorted({f['id'] for f in findings}))}" if findings else "")
@@ -39,6 +44,7 @@ def run(arguments):
     expect(folder.is_dir(), f"{folder}: there is no such folder")
     if arguments.web:
         from couplet.command import page
+
         server, address = page.server(Progress(folder), arguments.port)
         print(f"{address} (press Ctrl-C to stop)", flush=True)
         threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -36,17 +36,27 @@ def text(node):
 def entries(node):
     """Lines of the functions of a class that have a docstring, or of a function."""
     for function in node.body if isinstance(node, ast.ClassDef) else [node]:
-        if isinstance(function, ast.FunctionDef) and text(function) and (function.name == "__init__" or function.name[0] != "_"):
+        if (
+            isinstance(function, ast.FunctionDef)
+            and text(function)
+            and (function.name == "__init__" or function.name[0] != "_")
+        ):
             yield f"- `{signature(function, node.name)}`  \n  {text(function)}"
 
 
 def page():
     """Text of the page."""
     package = ast.parse((PACKAGE / "__init__.py").read_text())
-    example = "\n".join(line.removeprefix("    ") for line in ast.get_docstring(package).splitlines() if line.startswith("    "))
+    example = "\n".join(
+        line.removeprefix("    ") for line in ast.get_docstring(package).splitlines() if line.startswith("    ")
+    )
     lines = [HEAD + example + "\n```\n"]
     for file, names in PUBLIC.items():
-        there = {node.name: node for node in ast.parse((PACKAGE / file).read_text()).body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+        there = {
+            node.name: node
+            for node in ast.parse((PACKAGE / file).read_text()).body
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef))
+        }
         lines.append(f"\n## `couplet.{file.removesuffix('.py').replace('/', '.')}`\n")
         for name in names:
             node = there[name]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plots that the site draws from committed tables: those of the published studies and, in a checkout, the maps of stability."""
+"""Plots that the site draws from committed tables: those of the published studies and, in a checkout, the maps of
+stability."""
 import pathlib
 import re
 import sys
@@ -16,10 +17,14 @@ def of_study(page, text, folder):
     """Draws the tables of a published study below `folder`. Returns the text of its page with the plots at its end."""
     from couplet.study import table
     from couplet.study.study import Study
+
     with tempfile.TemporaryDirectory(prefix="couplet-plots-") as scratch:
         try:
             study = Study(Case(ROOT / re.search(r"`couplet study ([\w./-]+)`", text)[1]), scratch)
-            runs, peers = (table.read(file, study.axes, study.quantities) if file.exists() else [] for file in (ROOT / page.parent / "runs.csv", ROOT / page.parent / "peers.csv"))
+            runs, peers = (
+                table.read(file, study.axes, study.quantities) if file.exists() else []
+                for file in (ROOT / page.parent / "runs.csv", ROOT / page.parent / "peers.csv")
+            )
             for row in peers:
                 row.series = row.record.version  # the column holds the name of the program
             drawn = study.report(runs, peers).with_name("report.md").read_text()
@@ -35,11 +40,17 @@ def of_atlas(text, folder):
     sys.path.insert(0, str(ROOT / "scripts"))
     import atlas
     from atlas import draw
+
     maps = atlas.maps()
     for m in maps.values():
         with files.part(folder, ATLAS.with_name("stability") / f"{m.name}.png") as made:
             draw.picture(m, atlas.read(ROOT / "docs/stability" / f"{m.name}.csv"), made)
-    return re.sub(r"^\*.*\[table\]\(stability/([\w-]+)\.csv\)", lambda found: f"![{maps[found[1]].title}](stability/{found[1]}.png)\n\n{found[0]}", text, flags=re.M)
+    return re.sub(
+        r"^\*.*\[table\]\(stability/([\w-]+)\.csv\)",
+        lambda found: f"![{maps[found[1]].title}](stability/{found[1]}.png)\n\n{found[0]}",
+        text,
+        flags=re.M,
+    )
 
 
 def added(page, text, folder):

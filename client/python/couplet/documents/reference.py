@@ -50,13 +50,15 @@ def plain(heading):
     line, before = heading.group(), None
     while line != before:
         before = line
-        line = re.sub(r"`([^`]*)`((?: with `[^.`]*`)*) with `([^:`]+): ([^.`]+)\.([^`]+)`", r"`\1.\5`\2 with `\3: \4`", line)
+        line = re.sub(
+            r"`([^`]*)`((?: with `[^.`]*`)*) with `([^:`]+): ([^.`]+)\.([^`]+)`", r"`\1.\5`\2 with `\3: \4`", line
+        )
     return line.replace("`this.", "`").replace("`this` with", "with")
 
 
 def pages(folder):
-    """Returns {file: text} of docs/config.md, which has the keys of `simulation`, of one page for the keys of each program in `folder`, and of the page
-    of the Python interface. It is empty unless all programs are there."""
+    """Returns {file: text} of docs/config.md, which has the keys of `simulation`, of one page for the keys of each
+    program in `folder`, and of the page of the Python interface. It is empty unless all programs are there."""
     if not all((folder / program).is_file() for program in PROGRAMS):
         return {}
     found, rows, simulation = {"docs/python.md": api.page()}, "", ""
@@ -66,9 +68,17 @@ def pages(folder):
         if mark:
             simulation = re.sub(r"^(#+)", r"#\1", f"# simulation\n{common}", flags=re.M)
         place = "`coupling`" if program == "coupler" else "`participants.<name>`"
-        about = f"These are the keys of {place}{'' if program == 'coupler' else f' with `program: {program}`'}. [All keys](../config.md) explains the tables. {GENERATED}"
-        found[f"docs/keys/{program}.md"] = own.replace(f"# {program}\n", f"# Keys of {program}\n\n{about}\n", 1).rstrip() + "\n"
-        rows += f"| {place}{'' if program == 'coupler' else f', `program: {program}`'} | [`{program} --docs`](keys/{program}.md) |\n"
+        about = (
+            f"These are the keys of {place}{'' if program == 'coupler' else f' with `program: {program}`'}. [All"
+            f" keys](../config.md) explains the tables. {GENERATED}"
+        )
+        found[f"docs/keys/{program}.md"] = (
+            own.replace(f"# {program}\n", f"# Keys of {program}\n\n{about}\n", 1).rstrip() + "\n"
+        )
+        rows += (
+            f"| {place}{'' if program == 'coupler' else f', `program: {program}`'} |"
+            f" [`{program} --docs`](keys/{program}.md) |\n"
+        )
     return {"docs/config.md": HEAD + rows + HEAD_END + simulation.rstrip() + "\n"} | found
 
 
@@ -78,6 +88,11 @@ def without_keys(text):
 
 
 def files(folder):
-    """Returns {file: text} of everything that the programs in `folder` tell: the pages and the schemas. Needs a checkout."""
+    """Returns {file: text} of everything that the programs in `folder` tell: the pages and the schemas. Needs a
+    checkout."""
     found = pages(folder)
-    return found | schema.files(lambda program, question: ask(folder, program, question), PROGRAMS, UNITS.read_text()) if found else {}
+    return (
+        found | schema.files(lambda program, question: ask(folder, program, question), PROGRAMS, UNITS.read_text())
+        if found
+        else {}
+    )

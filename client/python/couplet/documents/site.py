@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Site with all documents, the READMEs of cases and folders, and a gallery of all cases, built by MkDocs with its Material theme. The sidebar sorts pages
-by kind. The search leaves out pages for developers. The site loads nothing from other servers."""
+"""Site with all documents, the READMEs of cases and folders, and a gallery of all cases, built by MkDocs with its
+Material theme. The sidebar sorts pages by kind. The search leaves out pages for developers. The site loads nothing from
+other servers."""
 import functools
 import json
 import math
@@ -19,17 +20,76 @@ from couplet.runs.case import expect
 from couplet.runs.gallery import entries
 
 # Pages by kind (https://diataxis.fr). All others, except cases, are for developers.
-TUTORIALS = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
-             "docs/tutorials/own-coupled.md", "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
-REFERENCE = ("docs/command.md", "docs/python.md", "docs/config.md", *(f"docs/keys/{program}.md" for program in reference.PROGRAMS),
-             "docs/effects.md", "docs/findings.md", "docs/limitations.md", "docs/formats.md", "docs/meshes.md", "docs/input-data.md", "docs/expressions.md", "docs/quantities.md",
-             "docs/plots.md", "docs/checkpoints.md", "docs/precice.md", "docs/protocol.md", "docs/glossary.md", "CHANGELOG.md")
-THEORY = tuple(f"docs/theory/{name}.md" for name in ("README", "solid", "solid-gradients", "solid-motion", "solid-solution", "heat-contact", "fluid", "fluid-models", "mesh-motion", "coupling"))
-EXPLANATION = ("docs/coupling.md", "docs/mapping.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/plant.md", "docs/stability.md", "docs/error-estimates.md", "docs/studies.md", "docs/benchmarks.md")
+TUTORIALS = (
+    "docs/quickstart.md",
+    "docs/tutorials/first-solid.md",
+    "docs/tutorials/first-fluid.md",
+    "docs/tutorials/first-coupled.md",
+    "docs/tutorials/own-mesh.md",
+    "docs/tutorials/own-coupled.md",
+    "docs/tutorials/own-participant.md",
+    "docs/tutorials/accuracy.md",
+    "docs/tutorials/tank-year.md",
+    "docs/tutorial-solid.md",
+)
+REFERENCE = (
+    "docs/command.md",
+    "docs/python.md",
+    "docs/config.md",
+    *(f"docs/keys/{program}.md" for program in reference.PROGRAMS),
+    "docs/effects.md",
+    "docs/findings.md",
+    "docs/limitations.md",
+    "docs/formats.md",
+    "docs/meshes.md",
+    "docs/input-data.md",
+    "docs/expressions.md",
+    "docs/quantities.md",
+    "docs/plots.md",
+    "docs/checkpoints.md",
+    "docs/precice.md",
+    "docs/protocol.md",
+    "docs/glossary.md",
+    "CHANGELOG.md",
+)
+THEORY = tuple(
+    f"docs/theory/{name}.md"
+    for name in (
+        "README",
+        "solid",
+        "solid-gradients",
+        "solid-motion",
+        "solid-solution",
+        "heat-contact",
+        "fluid",
+        "fluid-models",
+        "mesh-motion",
+        "coupling",
+    )
+)
+EXPLANATION = (
+    "docs/coupling.md",
+    "docs/mapping.md",
+    "docs/large-strain.md",
+    "docs/plate.md",
+    "docs/thermocline.md",
+    "docs/plant.md",
+    "docs/stability.md",
+    "docs/error-estimates.md",
+    "docs/studies.md",
+    "docs/benchmarks.md",
+)
 GENERATED = ("docs/command.md", "docs/python.md", "docs/config.md", "docs/effects.md", "docs/stability.md")
 # MathJax as Debian packages it, with the parts that the configuration below loads.
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
-MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_CHTML-full.js", "jax/output/CommonHTML", "jax/element/mml/optable", "fonts/HTML-CSS/TeX/woff", "extensions")
+MATHJAX_PARTS = (
+    "MathJax.js",
+    "config/TeX-AMS_CHTML-full.js",
+    "jax/output/CommonHTML",
+    "jax/element/mml/optable",
+    "fonts/HTML-CSS/TeX/woff",
+    "extensions",
+)
 LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
 HERE = pathlib.Path(__file__).parent
 
@@ -66,7 +126,11 @@ def target_of(page, link, there):
     if (ROOT / target).is_dir():
         target /= "README.md"
         if target not in there:
-            return ("../" * (len(page.parts) - 1) + "gallery.md", None) if target == pathlib.Path("configs/README.md") else (None, None)
+            return (
+                ("../" * (len(page.parts) - 1) + "gallery.md", None)
+                if target == pathlib.Path("configs/README.md")
+                else (None, None)
+            )
     if target.parts[0] == ".." or target not in there and not (ROOT / target).is_file():
         return None, None
     site_link = os.path.relpath(target, page.parent) + (f"#{anchor}" if anchor else "")
@@ -75,6 +139,7 @@ def target_of(page, link, there):
 
 def with_links(page, text, there, needed):
     """Text with links that work in the site; others are removed. Collects linked files in `needed`."""
+
     def link(match):
         mark, words, place = match.groups()
         if "://" in place or place.startswith("mailto:"):
@@ -87,8 +152,12 @@ def with_links(page, text, there, needed):
             # Text files are displayed as text, regardless of their extension.
             found = found if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else found + ".txt"
         return f"{mark}[{words}]({found})"
+
     parts = re.split(r"(^```.*?^```|`[^`\n]+`(?!\]))", text, flags=re.M | re.S)
-    return "".join(part if i % 2 else re.sub(r"(!?)\[((?:[^][]|\[[^]]*\])*)\]\(([^)\s]+)\)", link, part) for i, part in enumerate(parts))
+    return "".join(
+        part if i % 2 else re.sub(r"(!?)\[((?:[^][]|\[[^]]*\])*)\]\(([^)\s]+)\)", link, part)
+        for i, part in enumerate(parts)
+    )
 
 
 def duration(seconds):
@@ -106,13 +175,23 @@ def card(entry, there, needed):
         shown = f"[![{entry.title}]({picture})]({readme})\n\n"
     title = f"[{entry.title}]({readme})" if readme in there else entry.title
     first = re.split(r"(?<=[.!?]) ", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", entry.about))[0]
-    return (f'<div markdown="1">\n{shown}**{title}**\n\n{first}\n\n{", ".join(f"`{p}`" for p in dict.fromkeys(entry.programs))}'
-            f"{f'; {entry.cells} cells' if entry.cells else ''}{f'; about {duration(float(entry.seconds))} of one core' if entry.seconds else ''}\n\n`couplet run configs/{entry.name}`\n\n</div>\n")
+    programs = ", ".join(f"`{p}`" for p in dict.fromkeys(entry.programs))
+    cells = f"; {entry.cells} cells" if entry.cells else ""
+    time = f"; about {duration(float(entry.seconds))} of one core" if entry.seconds else ""
+    return (
+        f'<div markdown="1">\n{shown}**{title}**\n\n{first}\n\n{programs}{cells}{time}\n\n'
+        f'`couplet run configs/{entry.name}`\n\n</div>\n'
+    )
 
 
 def gallery(there, needed):
     text = "# Gallery\n\nExample cases. Copy one with `couplet new mine --from NAME`.\n\n"
-    return text + '<div class="gallery" markdown="1">\n\n' + "\n".join(card(e, there, needed) for e in entries()) + "\n</div>\n"
+    return (
+        text
+        + '<div class="gallery" markdown="1">\n\n'
+        + "\n".join(card(e, there, needed) for e in entries())
+        + "\n</div>\n"
+    )
 
 
 def label(page):
@@ -123,7 +202,9 @@ def label(page):
 
 def is_for_users(page):
     """True for the pages that users read, except the READMEs of cases."""
-    return str(page) in (*TUTORIALS, *REFERENCE, *EXPLANATION, *THEORY, "README.md", "docs/README.md") or page.parts[:2] == ("docs", "how-to")
+    return str(page) in (*TUTORIALS, *REFERENCE, *EXPLANATION, *THEORY, "README.md", "docs/README.md") or page.parts[
+        :2
+    ] == ("docs", "how-to")
 
 
 def is_generated(page):
@@ -137,23 +218,42 @@ def for_developers(there):
     groups = {"The project": [], "Validation": [], "Source folders": []}
     for page in rest:
         validation = page.parts[:2] == ("docs", "validation")
-        groups["Validation" if validation else "Source folders" if page.name == "README.md" else "The project"].append(page)
+        groups["Validation" if validation else "Source folders" if page.name == "README.md" else "The project"].append(
+            page
+        )
     return groups
 
 
 def nav_of(there):
     """Lines of the nav section."""
+
     def rows(names, indent, title=label):
         return [f'{" " * indent}- "{title(p)}": {p}' for p in map(pathlib.Path, names) if p in there]
 
     guides = sorted(p for p in there if p.parts[:2] == ("docs", "how-to"))
     guides.sort(key=lambda p: p.name != "README.md")
     lines = ["  - Couplet: index.md", "  - All pages: docs/README.md"]
-    for title, names in (("Tutorials", TUTORIALS), ("How-to", guides), ("Reference", REFERENCE), ("Explanation", EXPLANATION)):
+    for title, names in (
+        ("Tutorials", TUTORIALS),
+        ("How-to", guides),
+        ("Reference", REFERENCE),
+        ("Explanation", EXPLANATION),
+    ):
         lines += [f"  - {title}:", *rows(names, 4)]
-    lines += ["    - Theory:", *rows(THEORY, 6), "  - Gallery:", "    - gallery.md", *rows([p for p in there if p.parts[0] == "configs"], 4), "  - For developers:"]
+    lines += [
+        "    - Theory:",
+        *rows(THEORY, 6),
+        "  - Gallery:",
+        "    - gallery.md",
+        *rows([p for p in there if p.parts[0] == "configs"], 4),
+        "  - For developers:",
+    ]
     for title, names in for_developers(there).items():
-        lines += [f"    - {title}:", *rows(names, 6, (lambda p: str(p.parent)) if title == "Source folders" else label)] if names else []
+        lines += (
+            [f"    - {title}:", *rows(names, 6, (lambda p: str(p.parent)) if title == "Source folders" else label)]
+            if names
+            else []
+        )
     return "\n".join(lines)
 
 
@@ -169,7 +269,11 @@ def leave_out(site, names):
 def with_formulas(page, text):
     """Text that loads MathJax if it has a formula."""
     up = "../" * (len(page.parts) - 1)
-    return text + f'\n\n<script async src="{up}mathjax/MathJax.js?config=TeX-AMS_CHTML-full"></script>\n' if re.search(r"\$[^$`\n]*[\\^_][^$`\n]*\$|^ *\$\$$", text, flags=re.M) else text
+    return (
+        text + f'\n\n<script async src="{up}mathjax/MathJax.js?config=TeX-AMS_CHTML-full"></script>\n'
+        if re.search(r"\$[^$`\n]*[\\^_][^$`\n]*\$|^ *\$\$$", text, flags=re.M)
+        else text
+    )
 
 
 def copy_mathjax(folder):
@@ -186,19 +290,45 @@ def stage(folder, with_plots):
     for page in there:
         text = with_links(page, with_formulas(page, text_of(page)), known, needed)
         text = plots.added(page, text, folder) if with_plots else text
-        files.write(folder, "index.md" if str(page) == "README.md" else page, text.replace("](README.md", "](index.md") if str(page) == "README.md" else
-                    re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})", text))
+        files.write(
+            folder,
+            "index.md" if str(page) == "README.md" else page,
+            (
+                text.replace("](README.md", "](index.md")
+                if str(page) == "README.md"
+                else re.sub(
+                    r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)",
+                    lambda m: (
+                        f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}"
+                        f"{m[2] or ''})"
+                    ),
+                    text,
+                )
+            ),
+        )
     files.write(folder, "gallery.md", gallery(known, needed))
     for file in needed:
-        files.copy(ROOT / file, folder, file if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else file.with_name(file.name + ".txt"))
+        files.copy(
+            ROOT / file,
+            folder,
+            (
+                file
+                if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html")
+                else file.with_name(file.name + ".txt")
+            ),
+        )
     files.copy(HERE / "site.css", folder)
     copy_mathjax(folder)
     return nav_of(there)
 
 
 def build(site, with_plots=False):
-    """Builds the site into a folder, with the plots of studies and of the maps of stability, which take minutes, if asked."""
-    expect(shutil.which("mkdocs") and MATHJAX.is_dir(), "the site is built by MkDocs and MathJax: apt install mkdocs mkdocs-material libjs-mathjax")
+    """Builds the site into a folder, with the plots of studies and of the maps of stability, which take minutes, if
+    asked."""
+    expect(
+        shutil.which("mkdocs") and MATHJAX.is_dir(),
+        "the site is built by MkDocs and MathJax: apt install mkdocs mkdocs-material libjs-mathjax",
+    )
     site = pathlib.Path(site)
     with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
         docs, built = files.folder(scratch, "docs"), pathlib.Path(scratch) / "site"

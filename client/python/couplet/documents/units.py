@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Patterns of units: texts that are a number with a unit convertible to a given one. Exact for units of one or two symbols (12 kg is not a density).
-Longer products, brackets and negative powers are accepted if all symbols are known."""
+"""Patterns of units: texts that are a number with a unit convertible to a given one. Exact for units of one or two
+symbols (12 kg is not a density). Longer products, brackets and negative powers are accepted if all symbols are
+known."""
 import itertools
 import re
 
@@ -73,4 +74,7 @@ def name_of(unit):
 def definitions(units, source):
     """Returns {name: schema of a text} for units.json."""
     table = symbols(source)
-    return {name_of(unit): {"title": unit, "type": "string", "pattern": f"^ *{NUMBER} *{pattern_of(unit, table)} *$"} for unit in sorted(units)}
+    return {
+        name_of(unit): {"title": unit, "type": "string", "pattern": f"^ *{NUMBER} *{pattern_of(unit, table)} *$"}
+        for unit in sorted(units)
+    }

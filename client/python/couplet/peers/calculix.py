@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Static solids as CalculiX input, and its results. Tractions and pressures become work-equivalent nodal forces (integrated over the faces with their
-shape functions). CalculiX reads at most 20 characters per field, so numbers have 13 digits."""
+"""Static solids as CalculiX input, and its results. Tractions and pressures become work-equivalent nodal forces
+(integrated over the faces with their shape functions). CalculiX reads at most 20 characters per field, so numbers have
+13 digits."""
 import pathlib
 import re
 
@@ -12,12 +13,20 @@ from couplet.peers.results import at_middles, of_points, write_solid
 from couplet.peers.values import refuse
 
 # Elements by the shape of cells: (kind, order of the mesh). {p} is S in plane stress, E in plane strain.
-ELEMENTS = {"quadrilateral": (("CP{p}4", 1), ("C3D8I", 1), ("CP{p}8R", 2)), "triangle": (("CP{p}3", 1), ("CP{p}6", 2)),
-            "hexahedron": (("C3D8I", 1), ("C3D20R", 2)), "tetrahedron": (("C3D4", 1), ("C3D10", 2)), "prism": (("C3D6", 1), ("C3D15", 2))}
-MIDDLES = {"tetrahedron": ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
-           "hexahedron": ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)),
-           "prism": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5))}
-THIN = 0.1  # relative thickness of a plane body: CalculiX expands plane elements to bricks, whose faces tilt if they thin unevenly
+ELEMENTS = {
+    "quadrilateral": (("CP{p}4", 1), ("C3D8I", 1), ("CP{p}8R", 2)),
+    "triangle": (("CP{p}3", 1), ("CP{p}6", 2)),
+    "hexahedron": (("C3D8I", 1), ("C3D20R", 2)),
+    "tetrahedron": (("C3D4", 1), ("C3D10", 2)),
+    "prism": (("C3D6", 1), ("C3D15", 2)),
+}
+MIDDLES = {
+    "tetrahedron": ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
+    "hexahedron": ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)),
+    "prism": ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)),
+}
+# relative thickness of a plane body: CalculiX expands plane elements to bricks, whose faces tilt if they thin unevenly
+THIN = 0.1
 
 
 def kinds(solid):
@@ -35,7 +44,10 @@ class Input:
         self.solid, self.element = solid, element
         order = dict(kinds(solid)).get(element)
         if order is None:
-            refuse("--element", f"'{element}' does not fit the cells of the mesh; {', '.join(k for k, _ in kinds(solid))} do")
+            refuse(
+                "--element",
+                f"'{element}' does not fit the cells of the mesh; {', '.join(k for k, _ in kinds(solid))} do",
+            )
         self.flat = solid.mesh(order)
         self.layer = solid.dimension == 2 and element.startswith("C3D")
         self.depth = THIN * self.flat.size() if solid.dimension == 2 else 1.0
@@ -43,7 +55,7 @@ class Input:
 
     def connections(self):
         """Returns (m, points) in CalculiX's order, numbered from 1."""
-        (shape, cells), = self.body.cells.items()
+        ((shape, cells),) = self.body.cells.items()
         n = CORNERS[shape]
         if self.body.order == 2 and shape in MIDDLES:
             ours = {frozenset(e): k for k, e in enumerate(EDGES[shape])}
@@ -63,14 +75,31 @@ class Input:
 
     def text(self):
         points, cells, solid = self.body.points, self.connections(), self.solid
-        lines = ["** written by couplet export", "*NODE, NSET=ALL", *("%d, %.13g, %.13g, %.13g" % (i + 1, *p) for i, p in enumerate(points)),
-                 f"*ELEMENT, TYPE={self.element}, ELSET=ALL"]
+        lines = [
+            "** written by couplet export",
+            "*NODE, NSET=ALL",
+            *("%d, %.13g, %.13g, %.13g" % (i + 1, *p) for i, p in enumerate(points)),
+            f"*ELEMENT, TYPE={self.element}, ELSET=ALL",
+        ]
         for i, row in enumerate(cells.tolist()):
             words = [str(i + 1), *map(str, row)]
-            lines += [", ".join(words[:12]) + ("," if len(words) > 12 else ""), *([", ".join(words[12:])] if len(words) > 12 else [])]
-        lines += ["*MATERIAL, NAME=M", "*ELASTIC", f"{solid.young:.13g}, {solid.poisson:.13g}", "*DENSITY", f"{solid.density:.13g}",
-                  "*SOLID SECTION, ELSET=ALL, MATERIAL=M", *([f"{self.depth:.13g}"] if not self.layer and solid.dimension == 2 else []), "*BOUNDARY",
-                  *(f"{n + 1}, {a + 1}, {a + 1}, {v:.13g}" for (n, a), v in sorted(self.held().items())), "*STEP", f"*STATIC, SOLVER={self.solver()}"]
+            lines += [
+                ", ".join(words[:12]) + ("," if len(words) > 12 else ""),
+                *([", ".join(words[12:])] if len(words) > 12 else []),
+            ]
+        lines += [
+            "*MATERIAL, NAME=M",
+            "*ELASTIC",
+            f"{solid.young:.13g}, {solid.poisson:.13g}",
+            "*DENSITY",
+            f"{solid.density:.13g}",
+            "*SOLID SECTION, ELSET=ALL, MATERIAL=M",
+            *([f"{self.depth:.13g}"] if not self.layer and solid.dimension == 2 else []),
+            "*BOUNDARY",
+            *(f"{n + 1}, {a + 1}, {a + 1}, {v:.13g}" for (n, a), v in sorted(self.held().items())),
+            "*STEP",
+            f"*STATIC, SOLVER={self.solver()}",
+        ]
         forces = solid.forces(self.body) * (1 if self.layer else self.depth)
         loads = [f"{n + 1}, {a + 1}, {forces[n, a]:.13g}" for n, a in zip(*np.nonzero(forces))]
         lines += ["*CLOAD", *loads] if loads else []
@@ -96,7 +125,14 @@ class Input:
         if not np.isfinite(u).all() or not np.isfinite(s).all():
             raise ValueError("the results of CalculiX are not complete")
         both = np.hstack([u, s])
-        write_solid(out, self.flat, self.solid, at_middles(self.flat, both), of_points(self.flat, both), {"displacement": u} if self.flat.order == 1 else None)
+        write_solid(
+            out,
+            self.flat,
+            self.solid,
+            at_middles(self.flat, both),
+            of_points(self.flat, both),
+            {"displacement": u} if self.flat.order == 1 else None,
+        )
 
 
 def read_frd(file, count):
@@ -109,5 +145,5 @@ def read_frd(file, count):
                 node = int(line[3:13])
                 if node <= count:
                     width = found[name].shape[1]
-                    found[name][node - 1] = [float(line[13 + 12 * k:25 + 12 * k]) for k in range(width)]
+                    found[name][node - 1] = [float(line[13 + 12 * k : 25 + 12 * k]) for k in range(width)]
     return found["DISP"], found["STRESS"]

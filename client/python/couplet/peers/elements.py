@@ -1,27 +1,45 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finite elements by their number of points: shape functions, edges, faces, and positions within them.
 
-Points are corners, then middles of edges in gmsh's order. Shape functions span MONOMIALS; each is 1 at one point and 0 at the others."""
+Points are corners, then middles of edges in gmsh's order. Shape functions span MONOMIALS; each is 1 at one point and 0
+at the others."""
 import functools
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 CORNERS = {"line": 2, "triangle": 3, "quadrilateral": 4, "tetrahedron": 4, "hexahedron": 8, "prism": 6}
-EDGES = {"line": ((0, 1),), "triangle": ((0, 1), (1, 2), (2, 0)), "quadrilateral": ((0, 1), (1, 2), (2, 3), (3, 0)),
-         "tetrahedron": ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3)),
-         "hexahedron": ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7)),
-         "prism": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5))}
-FACES = {"triangle": ((0, 1), (1, 2), (2, 0)), "quadrilateral": ((0, 1), (1, 2), (2, 3), (3, 0)),
-         "tetrahedron": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
-         "hexahedron": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
-         "prism": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))}
-NODES = {"line": ((-1,), (1,)), "triangle": ((0, 0), (1, 0), (0, 1)), "quadrilateral": ((-1, -1), (1, -1), (1, 1), (-1, 1)),
-         "tetrahedron": ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)),
-         "hexahedron": ((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)),
-         "prism": ((0, 0, -1), (1, 0, -1), (0, 1, -1), (0, 0, 1), (1, 0, 1), (0, 1, 1))}
-CENTRES = {"line": (0,), "triangle": (1 / 3, 1 / 3), "quadrilateral": (0, 0), "tetrahedron": (0.25, 0.25, 0.25), "hexahedron": (0, 0, 0),
-           "prism": (1 / 3, 1 / 3, 0)}
+EDGES = {
+    "line": ((0, 1),),
+    "triangle": ((0, 1), (1, 2), (2, 0)),
+    "quadrilateral": ((0, 1), (1, 2), (2, 3), (3, 0)),
+    "tetrahedron": ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3)),
+    "hexahedron": ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7)),
+    "prism": ((0, 1), (0, 2), (0, 3), (1, 2), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5)),
+}
+FACES = {
+    "triangle": ((0, 1), (1, 2), (2, 0)),
+    "quadrilateral": ((0, 1), (1, 2), (2, 3), (3, 0)),
+    "tetrahedron": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
+    "hexahedron": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+    "prism": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+}
+NODES = {
+    "line": ((-1,), (1,)),
+    "triangle": ((0, 0), (1, 0), (0, 1)),
+    "quadrilateral": ((-1, -1), (1, -1), (1, 1), (-1, 1)),
+    "tetrahedron": ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "hexahedron": ((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)),
+    "prism": ((0, 0, -1), (1, 0, -1), (0, 1, -1), (0, 0, 1), (1, 0, 1), (0, 1, 1)),
+}
+CENTRES = {
+    "line": (0,),
+    "triangle": (1 / 3, 1 / 3),
+    "quadrilateral": (0, 0),
+    "tetrahedron": (0.25, 0.25, 0.25),
+    "hexahedron": (0, 0, 0),
+    "prism": (1 / 3, 1 / 3, 0),
+}
 
 
 def exponents(shape, order):
@@ -31,8 +49,11 @@ def exponents(shape, order):
     if shape in ("triangle", "tetrahedron", "line"):
         return every[every.sum(axis=1) <= order]
     if shape == "prism":
-        return every[(every[:, :2].sum(axis=1) <= order) & (every[:, :2].sum(axis=1) + every[:, 2] <= order + 1)] if order == 2 else \
-            every[every[:, :2].sum(axis=1) <= 1]
+        return (
+            every[(every[:, :2].sum(axis=1) <= order) & (every[:, :2].sum(axis=1) + every[:, 2] <= order + 1)]
+            if order == 2
+            else every[every[:, :2].sum(axis=1) <= 1]
+        )
     return every[(every == 2).sum(axis=1) <= 1]
 
 
@@ -91,7 +112,9 @@ def inverse(shape, order, points, place):
     """Reference coordinates of a position in the element with these points (n, d), by Newton's method."""
     at = np.array([CENTRES[shape]], float)
     for _ in range(25):
-        step = np.linalg.solve((derivatives(shape, order, at)[0] @ points).T, place - shape_functions(shape, order, at)[0] @ points)
+        step = np.linalg.solve(
+            (derivatives(shape, order, at)[0] @ points).T, place - shape_functions(shape, order, at)[0] @ points
+        )
         at = np.clip(at + step, -3, 3)
         if np.abs(step).max() < 1e-12:
             break
@@ -100,12 +123,12 @@ def inverse(shape, order, points, place):
 
 def weights_at(mesh, place):
     """Returns (points, weights) that interpolate at a position, in the element that contains it or is closest to it."""
-    best, place = None, np.asarray(place, float)[:mesh.dimension]
+    best, place = None, np.asarray(place, float)[: mesh.dimension]
     for shape, cells in mesh.cells.items():
-        corners = mesh.points[cells[:, :CORNERS[shape]], :mesh.dimension]
+        corners = mesh.points[cells[:, : CORNERS[shape]], : mesh.dimension]
         _, near = cKDTree(corners.mean(axis=1)).query(place, k=min(24, len(cells)))
         for cell in np.atleast_1d(near):
-            at = inverse(shape, mesh.order, mesh.points[cells[cell], :mesh.dimension], place)
+            at = inverse(shape, mesh.order, mesh.points[cells[cell], : mesh.dimension], place)
             out = excess(shape, at)[0]
             if best is None or out < best[0] - 1e-9:
                 best = out, cells[cell], shape_functions(shape, mesh.order, at)[0]

@@ -22,7 +22,11 @@ def foam_environment():
 
 def put(folder, path, kind, text, note=""):
     """Writes a file of a case and creates its folder if necessary."""
-    files.write(folder, path, f"FoamFile {{version 2.0; format ascii; class {kind}; {note} object {pathlib.PurePath(path).name};}}\n{text}\n")
+    files.write(
+        folder,
+        path,
+        f"FoamFile {{version 2.0; format ascii; class {kind}; {note} object {pathlib.PurePath(path).name};}}\n{text}\n",
+    )
 
 
 def one(row):
@@ -38,14 +42,21 @@ def values(rows):
 
 
 class PolyMesh:
-    """Faces of a first-order 3-D mesh in the order of constant/polyMesh: those between two cells sorted by cells, then patch by patch."""
+    """Faces of a first-order 3-D mesh in the order of constant/polyMesh: those between two cells sorted by cells, then
+    patch by patch."""
 
     def __init__(self, mesh, kinds):
         """`kinds` is {patch: its OpenFOAM type}. `front` and `back` of a plane mesh become the patch frontAndBack."""
         self.mesh, self.kinds = mesh, dict(kinds)
         for patch in self.kinds:
             if not WORD.fullmatch(patch):
-                refuse(f"boundaries.{patch}", "this name is no word of OpenFOAM's dictionaries; rename the patch with letters, digits, '_', '-' and '.'")
+                refuse(
+                    f"boundaries.{patch}",
+                    (
+                        "this name is no word of OpenFOAM's dictionaries; rename the patch with letters, digits, '_',"
+                        " '-' and '.'"
+                    ),
+                )
         faces, cells, centres = self.all_faces()
         keys = np.sort(faces, axis=1)
         _, first, inverse, counts = np.unique(keys, axis=0, return_index=True, return_inverse=True, return_counts=True)
@@ -66,14 +77,18 @@ class PolyMesh:
         self.faces, self.owner = np.vstack(self.faces), np.concatenate(self.owner)
 
     def all_faces(self):
-        """Returns (faces padded with -1, their cells, centers of all cells). Every face normal points out of its cell."""
+        """Returns (faces padded with -1, their cells, centers of all cells). Every face normal points out of its
+        cell."""
         faces, cells, centres, count = [], [], [], 0
         for shape, nodes in self.mesh.cells.items():
             middles = self.mesh.points[nodes].mean(axis=1)
             for corners in elements.FACES[shape]:
                 face, points = nodes[:, corners], self.mesh.points[nodes[:, corners]]
-                normal = np.cross(points[:, 2] - points[:, 0], points[:, -1] - points[:, 1]) if len(corners) == 4 else np.cross(
-                    points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+                normal = (
+                    np.cross(points[:, 2] - points[:, 0], points[:, -1] - points[:, 1])
+                    if len(corners) == 4
+                    else np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+                )
                 inward = ((points.mean(axis=1) - middles) * normal).sum(axis=1) < 0
                 face = np.where(inward[:, None], face[:, ::-1], face)
                 faces.append(np.pad(face, ((0, 0), (0, 4 - len(corners))), constant_values=-1))
@@ -97,7 +112,7 @@ class PolyMesh:
     def corners_of(self, patch):
         """Corners (faces, 4), padded with -1."""
         _, count, start = self.patches[patch]
-        return self.faces[start:start + count]
+        return self.faces[start : start + count]
 
     def middles_of(self, patch):
         """Face centers (faces, 3): means of their corners."""
@@ -111,17 +126,40 @@ class PolyMesh:
 
     def write(self, folder):
         points = list(map(one, self.mesh.points))
-        faces = [f"{len(f)}({' '.join(map(str, f))})" for f in ([v for v in row if v >= 0] for row in self.faces.tolist())]
-        note = f'note "nPoints:{len(points)} nCells:{len(self.centres)} nFaces:{len(faces)} nInternalFaces:{len(self.neighbour)}";'
-        patches = [f"{name} {{type {kind}; nFaces {count}; startFace {start};}}" for name, (kind, count, start) in self.patches.items()]
-        for name, kind, entries in (("points", "vectorField", points), ("faces", "faceList", faces), ("owner", "labelList", self.owner.tolist()),
-                                    ("neighbour", "labelList", self.neighbour.tolist()), ("boundary", "polyBoundaryMesh", patches)):
-            put(folder, f"constant/polyMesh/{name}", kind, f"{len(entries)}\n(\n" + "\n".join(map(str, entries)) + "\n)", note)
+        faces = [
+            f"{len(f)}({' '.join(map(str, f))})" for f in ([v for v in row if v >= 0] for row in self.faces.tolist())
+        ]
+        note = (
+            f'note "nPoints:{len(points)} nCells:{len(self.centres)} nFaces:{len(faces)}'
+            f' nInternalFaces:{len(self.neighbour)}";'
+        )
+        patches = [
+            f"{name} {{type {kind}; nFaces {count}; startFace {start};}}"
+            for name, (kind, count, start) in self.patches.items()
+        ]
+        for name, kind, entries in (
+            ("points", "vectorField", points),
+            ("faces", "faceList", faces),
+            ("owner", "labelList", self.owner.tolist()),
+            ("neighbour", "labelList", self.neighbour.tolist()),
+            ("boundary", "polyBoundaryMesh", patches),
+        ):
+            put(
+                folder,
+                f"constant/polyMesh/{name}",
+                kind,
+                f"{len(entries)}\n(\n" + "\n".join(map(str, entries)) + "\n)",
+                note,
+            )
 
 
 def last_time(folder):
     """Folder of the last written time."""
-    times = [f for f in pathlib.Path(folder).iterdir() if f.is_dir() and re.fullmatch(r"\d+(\.\d+)?(e[+-]?\d+)?", f.name) and float(f.name) > 0]
+    times = [
+        f
+        for f in pathlib.Path(folder).iterdir()
+        if f.is_dir() and re.fullmatch(r"\d+(\.\d+)?(e[+-]?\d+)?", f.name) and float(f.name) > 0
+    ]
     if not times:
         raise ValueError("OpenFOAM wrote no result")
     return max(times, key=lambda f: float(f.name))
@@ -132,9 +170,9 @@ def read_field(file, count):
     text = pathlib.Path(file).read_text()
     match = re.search(r"internalField\s+(uniform|nonuniform)\s+(?:List<(\w+)>\s*\d+\s*\(\n?)?", text)
     if match[1] == "uniform":
-        row = np.array(re.split(r"[()\s;]+", text[match.end():text.index(";", match.end())].strip("() ")), float)
+        row = np.array(re.split(r"[()\s;]+", text[match.end() : text.index(";", match.end())].strip("() ")), float)
         return np.broadcast_to(row if len(row) > 1 else row[0], (count, len(row)) if len(row) > 1 else count)
-    body = text[match.end():text.index(";", match.end())]
+    body = text[match.end() : text.index(";", match.end())]
     found = np.array(body.replace("(", " ").replace(")", " ").split(), float).reshape(count, RANK[match[2]])
     return found[:, 0] if match[2] == "scalar" else found
 
@@ -142,4 +180,6 @@ def read_field(file, count):
 def read_rows(file):
     """Numbers of a function object's table without brackets: (rows, columns)."""
     lines = pathlib.Path(file).read_text().splitlines()
-    return np.array([re.sub(r"[()]", " ", line).split() for line in lines if line.strip() and not line.startswith("#")], float)
+    return np.array(
+        [re.sub(r"[()]", " ", line).split() for line in lines if line.strip() and not line.startswith("#")], float
+    )

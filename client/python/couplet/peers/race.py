@@ -23,12 +23,12 @@ from couplet.study.axes import Point
 from couplet.study.table import Row, value_row
 
 LONGEST = 3.0  # a series of a peer ends before a run that would take this many times our longest
-SHORT = 0.6    # [s]; shorter runs are measured three times
+SHORT = 0.6  # [s]; shorter runs are measured three times
 
 
 @dataclasses.dataclass
 class Contender:
-    name: str     # of the series: "CalculiX C3D20R"
+    name: str  # of the series: "CalculiX C3D20R"
     program: str  # ccx
     make: object  # () -> object with write(folder) -> command, and read(folder, out)
 
@@ -45,7 +45,10 @@ def contenders(data, participant, folder, work, trusted=False):
     elif program == "solid_solver":
         try:
             solid = Solid(data, participant, folder, work, "CalculiX", trusted)
-            found = [Contender(f"CalculiX {e}", "ccx", lambda e=e: calculix.Input(solid, e)) for e, _ in calculix.kinds(solid)]
+            found = [
+                Contender(f"CalculiX {e}", "ccx", lambda e=e: calculix.Input(solid, e))
+                for e, _ in calculix.kinds(solid)
+            ]
         except Refused as error:
             refused.append(("CalculiX", str(error)))
         try:
@@ -54,7 +57,9 @@ def contenders(data, participant, folder, work, trusted=False):
         except Refused as error:
             refused.append(("solidDisplacementFoam", str(error)))
     else:
-        refused.append(("CalculiX, OpenFOAM", f"participants.{participant}.program: '{program}' has no counterpart in them"))
+        refused.append(
+            ("CalculiX, OpenFOAM", f"participants.{participant}.program: '{program}' has no counterpart in them")
+        )
     return found, refused
 
 
@@ -66,14 +71,36 @@ class Race:
         self.folder = files.below(study.out, "peers")
 
     def settings(self, points):
-        """Returns [(point, data)] of points with different input for a peer, by size. Our solver settings do not affect it."""
+        """Returns [(point, data)] of points with different input for a peer, by size. Our solver settings do not affect
+        it."""
         seen, found = set(), []
         for point in sorted(points, key=lambda p: p.size):
             data = with_changes(self.study.case.data, point.changes)
             own = data["participants"][self.study.participant]
-            key = json.dumps([data["simulation"].get("end-time"), {k: v for k, v in own.items() if k in (
-                "mesh", "mesh-parameters", "mesh-scale", "boundaries", "material", "density", "viscosity", "plane", "gravity", "initial-velocity")}],
-                sort_keys=True, default=str)
+            key = json.dumps(
+                [
+                    data["simulation"].get("end-time"),
+                    {
+                        k: v
+                        for k, v in own.items()
+                        if k
+                        in (
+                            "mesh",
+                            "mesh-parameters",
+                            "mesh-scale",
+                            "boundaries",
+                            "material",
+                            "density",
+                            "viscosity",
+                            "plane",
+                            "gravity",
+                            "initial-velocity",
+                        )
+                    },
+                ],
+                sort_keys=True,
+                default=str,
+            )
             if key not in seen:
                 seen.add(key)
                 found.append((point, data))
@@ -85,7 +112,9 @@ class Race:
         found = {}
         for point, _ in settings:
             same = [p for p, _ in settings if p.size == point.size]
-            found[point.name] = [v for a, v in point.labels.items() if a != size_axis and len({p.labels[a] for p in same}) > 1]
+            found[point.name] = [
+                v for a, v in point.labels.items() if a != size_axis and len({p.labels[a] for p in same}) > 1
+            ]
         return found
 
     def rows(self, ours):
@@ -97,7 +126,13 @@ class Race:
         labels, longest = self.labels(settings), max([r.record.cpu for r in ours if r.good], default=60)
         for point, data in settings:
             try:
-                able, refused = contenders(data, self.study.participant, self.study.case.file.parent, files.below(self.folder, f"meshes/{point.name}"), self.trusted)
+                able, refused = contenders(
+                    data,
+                    self.study.participant,
+                    self.study.case.file.parent,
+                    files.below(self.folder, f"meshes/{point.name}"),
+                    self.trusted,
+                )
             except Wrong as error:
                 able, refused = [], [("CalculiX, OpenFOAM", str(error))]
             self.why.update(dict(refused))
@@ -120,7 +155,8 @@ class Race:
         return found
 
     def too_long(self, earlier, size, longest):
-        """Extrapolates the growth of the last two runs, at least linearly in the size. A series has two runs unless the first took too long."""
+        """Extrapolates the growth of the last two runs, at least linearly in the size. A series has two runs unless the
+        first took too long."""
         if not earlier:
             return False
         (n, cost), limit = earlier[-1], LONGEST * max(longest, 1.0)
@@ -128,12 +164,18 @@ class Race:
             return cost > limit
         (coarse, first), grown = earlier[-2], 1.0
         if first > 0:
-            grown = max(grown, math.log(cost / first) / math.log(n / coarse)) if math.isfinite(cost) and n > coarse else grown
-        return cost * (size / n)**grown > limit
+            grown = (
+                max(grown, math.log(cost / first) / math.log(n / coarse))
+                if math.isfinite(cost) and n > coarse
+                else grown
+            )
+        return cost * (size / n) ** grown > limit
 
     def row(self, contender, name, point):
         """Makes a run, once per input, as a row like ours."""
-        place = files.folder(self.folder, "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name}-{point.name}"))
+        place = files.folder(
+            self.folder, "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name}-{point.name}")
+        )
         folder = files.below(place, "case")
         shutil.rmtree(folder, ignore_errors=True)
         made = contender.make()
@@ -160,8 +202,15 @@ class Race:
             costs = []
             while not costs or len(costs) < 3 and sum(c.cpu for c in costs) < SHORT:
                 shutil.rmtree(folder / "postProcessing", ignore_errors=True)
-                costs.append(launch(command, place / "run.log", folder, float(self.study.section.get("timeout", 3600)),
-                                    getattr(made, "environment", environment)()))
+                costs.append(
+                    launch(
+                        command,
+                        place / "run.log",
+                        folder,
+                        float(self.study.section.get("timeout", 3600)),
+                        getattr(made, "environment", environment)(),
+                    )
+                )
             record.cpu, record.wall = statistics.median(c.cpu for c in costs), statistics.median(c.wall for c in costs)
             record.work, record.memory = record.cpu, max(c.memory for c in costs)
             made.read(folder, place / "results" / self.study.participant)

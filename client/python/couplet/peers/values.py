@@ -11,9 +11,34 @@ BASE = {"g": 1e-3, "m": 1, "l": 1e-3, "s": 1, "N": 1, "Pa": 1, "bar": 1e5, "J": 
 WHOLE = {"kg": 1, "t": 1e3, "min": 60, "h": 3600, "day": 86400, "rad": 1, "deg": np.pi / 180, "%": 0.01, "1": 1}
 PREFIX = {"G": 1e9, "M": 1e6, "k": 1e3, "h": 1e2, "d": 1e-1, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "n": 1e-9}
 QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\D.*)?")
-FUNCTIONS = {name: getattr(np, name) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log10", "log2", "sqrt", "abs", "sign", "rint")}
-FUNCTIONS |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "ln": np.log,
-              "min": lambda *a: np.minimum.reduce(np.broadcast_arrays(*a)), "max": lambda *a: np.maximum.reduce(np.broadcast_arrays(*a))}
+FUNCTIONS = {
+    name: getattr(np, name)
+    for name in (
+        "sin",
+        "cos",
+        "tan",
+        "sinh",
+        "cosh",
+        "tanh",
+        "exp",
+        "log",
+        "log10",
+        "log2",
+        "sqrt",
+        "abs",
+        "sign",
+        "rint",
+    )
+}
+FUNCTIONS |= {
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "ln": np.log,
+    "min": lambda *a: np.minimum.reduce(np.broadcast_arrays(*a)),
+    "max": lambda *a: np.maximum.reduce(np.broadcast_arrays(*a)),
+}
 
 
 class Refused(Wrong):
@@ -27,7 +52,9 @@ def refuse(where, why):
 def unit_factor(text):
     """Factor of this unit to SI ("kg/m^3", "1/(m K)"), or None if it is unknown."""
     factor, sign, group = 1.0, 1, None
-    for mark, word, power in re.findall(r"([()/])|([A-Za-zµ%]+|1)(?:\^?(-?\d+))?", text.replace("²", "2").replace("³", "3")):
+    for mark, word, power in re.findall(
+        r"([()/])|([A-Za-zµ%]+|1)(?:\^?(-?\d+))?", text.replace("²", "2").replace("³", "3")
+    ):
         if mark:
             sign, group = {"/": (-1, group), "(": (sign, sign), ")": (1, None)}[mark]
             continue
@@ -75,7 +102,11 @@ def vector(value, where, points, time, dimension):
 
 def depends_on_time(value):
     """Returns true if an expression, or one of a list, contains t."""
-    return any(map(depends_on_time, value)) if isinstance(value, list) else isinstance(value, str) and re.search(r"(?<![\w.])t(?!\w)", value) is not None
+    return (
+        any(map(depends_on_time, value))
+        if isinstance(value, list)
+        else isinstance(value, str) and re.search(r"(?<![\w.])t(?!\w)", value) is not None
+    )
 
 
 def only(section, where, known, program):
@@ -88,4 +119,10 @@ def only(section, where, known, program):
 def settled(data):
     """Rejects a case whose effects the program chooses."""
     if data["simulation"].get("effects", "as-given") != "as-given":
-        refuse("simulation.effects", f"'{data['simulation']['effects']}' leaves to the program what is solved; export it with the effects that it chose")
+        refuse(
+            "simulation.effects",
+            (
+                f"'{data['simulation']['effects']}' leaves to the program what is solved; export it with the effects"
+                " that it chose"
+            ),
+        )

@@ -17,14 +17,26 @@ from couplet.runs.case import Wrong, expect
 from couplet.runs.results import Results
 from couplet.series import extrema
 
-LOOK = {"line": {"ls": "-", "lw": 1.2}, "points": {"ls": "", "marker": "o", "fillstyle": "none", "color": "black", "markersize": 4}, "dots": {"ls": "", "marker": "."},
-        "crosses": {"ls": "", "marker": "x", "color": "black", "markersize": 5}, "pluses": {"ls": "", "marker": "+", "color": "black", "markersize": 6}, "squares": {"ls": "", "marker": "s", "color": "black", "markersize": 6}, "dashed": {"ls": "--", "lw": 1.2}, "dotted": {"ls": ":"}}
+LOOK = {
+    "line": {"ls": "-", "lw": 1.2},
+    "points": {"ls": "", "marker": "o", "fillstyle": "none", "color": "black", "markersize": 4},
+    "dots": {"ls": "", "marker": "."},
+    "crosses": {"ls": "", "marker": "x", "color": "black", "markersize": 5},
+    "pluses": {"ls": "", "marker": "+", "color": "black", "markersize": 6},
+    "squares": {"ls": "", "marker": "s", "color": "black", "markersize": 6},
+    "dashed": {"ls": "--", "lw": 1.2},
+    "dotted": {"ls": ":"},
+}
 LABELS = 12  # per legend
 
 
 def look_of(curve):
     style = dict(LOOK[curve.get("style", "line" if "levels" not in curve else "dotted")])
-    return {**style, **({"color": curve["colour"]} if "colour" in curve else {}), **({"markevery": curve["every"]} if "every" in curve else {})}
+    return {
+        **style,
+        **({"color": curve["colour"]} if "colour" in curve else {}),
+        **({"markevery": curve["every"]} if "every" in curve else {}),
+    }
 
 
 def draw_curve(axes, curve, case, out, where):
@@ -40,7 +52,14 @@ def draw_curve(axes, curve, case, out, where):
         axes.plot(x[order], y[order], **{**look_of(curve), **shade}, label=label)
         for t, top, kind in extrema(x, y) if curve.get("extrema") else ():
             if kind == "max":
-                axes.annotate(f"{top:.3f}\nat {t:.2f}", (t, top), textcoords="offset points", xytext=(0, 16), ha="center", fontsize=7)
+                axes.annotate(
+                    f"{top:.3f}\nat {t:.2f}",
+                    (t, top),
+                    textcoords="offset points",
+                    xytext=(0, 16),
+                    ha="center",
+                    fontsize=7,
+                )
 
 
 def draw_curves(axes, panel, case, out, where):
@@ -58,18 +77,24 @@ def time_of(panel, out, where):
     if not isinstance(at, dict):
         return seconds(at, where)
     table = columns_of(out / at["monitor"])
-    expect(at["first-maximum"] in table, f"{where}: {out / at['monitor']} has no column '{at['first-maximum']}'; it has: {', '.join(table)}.")
+    expect(
+        at["first-maximum"] in table,
+        f"{where}: {out / at['monitor']} has no column '{at['first-maximum']}'; it has: {', '.join(table)}.",
+    )
     time, values = next(iter(table.values())), table[at["first-maximum"]]
     return next((t for t, _, kind in extrema(time, values) if kind == "max"), time[-1])
 
 
 def polygons_of(series, points, plane, where):
-    """Returns (corners, cells) of 2-D cells, or of cells above a plane such as y = 0 with a face in it (below it if there are none), in its two other
-    axes."""
+    """Returns (corners, cells) of 2-D cells, or of cells above a plane such as y = 0 with a face in it (below it if
+    there are none), in its two other axes."""
     if series.is_flat():
         return [points[cell][:, :2] for cell in series.cells], np.arange(len(series.cells)), "xy"
     axis, _, level = plane.replace(" ", "").partition("=")
-    expect(axis in ("x", "y", "z") and np.isfinite(number(level or "x")), f"{where}.plane: '{plane}'; expected such as y = 0.")
+    expect(
+        axis in ("x", "y", "z") and np.isfinite(number(level or "x")),
+        f"{where}.plane: '{plane}'; expected such as y = 0.",
+    )
     k, still, size = "xyz".index(axis), series.reference(), np.ptp(series.reference(), axis=0).max()
     others, sides = [i for i in range(3) if i != k], {1: [], -1: []}
     for number_, cell in enumerate(series.cells):
@@ -81,7 +106,11 @@ def polygons_of(series, points, plane, where):
             sides[1 if height.mean() > 0 else -1].append((face[np.argsort(np.arctan2(way[:, 1], way[:, 0]))], number_))
     faces = sides[1] or sides[-1]
     expect(faces, f"{where}.plane: no face of a cell lies in {plane}.")
-    return [points[face][:, others] for face, _ in faces], np.array([cell for _, cell in faces]), "xyz".replace(axis, "")
+    return (
+        [points[face][:, others] for face, _ in faces],
+        np.array([cell for _, cell in faces]),
+        "xyz".replace(axis, ""),
+    )
 
 
 def draw_bodies(axes, panel, out, series, i, ways):
@@ -93,20 +122,32 @@ def draw_bodies(axes, panel, out, series, i, ways):
     for name in panel["bodies"]:
         body = series_in(out, name)
         corners = fields.places_of(body, body.nearest(series.times[i]), panel.get("warp", 1), "")
-        faces = [face for face, _ in fields.outer_faces(body)] if max(map(len, body.cells)) > 4 else body.cells  # plates consist only of their surface
-        axes.add_collection(PolyCollection([corners[face][:, ways] for face in faces], facecolors="tab:red", edgecolors="none"))
+        faces = (
+            [face for face, _ in fields.outer_faces(body)] if max(map(len, body.cells)) > 4 else body.cells
+        )  # plates consist only of their surface
+        axes.add_collection(
+            PolyCollection([corners[face][:, ways] for face in faces], facecolors="tab:red", edgecolors="none")
+        )
 
 
 def draw_map(axes, panel, polygons, values):
     finite = values[np.isfinite(values)]
     least, most = (finite.min(), finite.max()) if finite.size else (0, 0)
     is_signed = min(-least, most) > 0.1 * max(-least, most)  # colors that diverge from zero
-    drawn = PolyCollection(polygons, array=values, cmap=panel.get("colours", "RdBu_r" if is_signed else "viridis"), edgecolors="none", antialiaseds=False)  # smoothed edges would leave white lines
+    drawn = PolyCollection(
+        polygons,
+        array=values,
+        cmap=panel.get("colours", "RdBu_r" if is_signed else "viridis"),
+        edgecolors="none",
+        antialiaseds=False,
+    )  # smoothed edges would leave white lines
     if is_signed:
         drawn.set_clim(-max(-least, most), max(-least, most))
     axes.add_collection(drawn)
     if "mesh" in panel:
-        axes.add_collection(PolyCollection(polygons, facecolors="none", edgecolors=panel["mesh"], linewidths=0.07, alpha=0.4))
+        axes.add_collection(
+            PolyCollection(polygons, facecolors="none", edgecolors=panel["mesh"], linewidths=0.07, alpha=0.4)
+        )
     axes.autoscale()
     axes.set_aspect("equal")
     return drawn
@@ -128,14 +169,21 @@ def draw_field(figure, axes, panel, case, out, where):
     else:
         place = axes.get_subplotspec()
         axes.remove()
-        drawn = fields.in_space(figure, points, series, np.clip(values, *panel.get("range", (None, None))), place=(place,))
+        drawn = fields.in_space(
+            figure, points, series, np.clip(values, *panel.get("range", (None, None))), place=(place,)
+        )
         axes = figure.axes[-1]
     if "range" in panel:
         drawn.set_clim(*panel["range"])
     axes.set_title(f"{panel['field']} at t = {series.times[i]:.4g} s")
     if not panel.get("axes", True):
         axes.set_axis_off()
-    figure.colorbar(drawn, ax=axes, label=panel.get("label", fields.label_of(series, i, panel["field"], panel.get("component"))), shrink=0.85)
+    figure.colorbar(
+        drawn,
+        ax=axes,
+        label=panel.get("label", fields.label_of(series, i, panel["field"], panel.get("component"))),
+        shrink=0.85,
+    )
     return axes
 
 
@@ -165,13 +213,18 @@ def finish(axes, panel):
 
 def print_quantities(section, case, out):
     from couplet.study.quantities import quantities_of
+
     for quantity in quantities_of(case, section, next(iter(case.participants)), "plot"):
         try:
             value = quantity.value(Results(out))
         except (LookupError, OSError) as problem:
             raise Wrong(f"{case.file}: plot.quantities.{quantity.name}: {problem}") from None
         wanted = quantity.reference
-        beside = f", reference {wanted:.5g} ({100 * (value / wanted - 1):+.2f} %)" if isinstance(wanted, (int, float)) and wanted else ""
+        beside = (
+            f", reference {wanted:.5g} ({100 * (value / wanted - 1):+.2f} %)"
+            if isinstance(wanted, (int, float)) and wanted
+            else ""
+        )
         print(f"{quantity.name}: {value:.5g}{' ' + quantity.given['unit'] if 'unit' in quantity.given else ''}{beside}")
 
 
@@ -182,17 +235,30 @@ def across_of(section):
 
 def size_of(section):
     """Width and height of the picture [inch]."""
-    return section.get("size", (min(14, 5.5 * across_of(section)), 4.2 * -(-len(section["panels"]) // across_of(section))))
+    return section.get(
+        "size", (min(14, 5.5 * across_of(section)), 4.2 * -(-len(section["panels"]) // across_of(section)))
+    )
 
 
 def draw(case, out, picture=None, section=None):
-    """Draws the picture of the run in the folder `out`, optionally with another section (a frame of a film). Returns its path."""
+    """Draws the picture of the run in the folder `out`, optionally with another section (a frame of a film). Returns
+    its path."""
     section, out = section or check(case), pathlib.Path(out)
-    expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(case.file))}")
+    expect(
+        out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(case.file))}"
+    )
     panels, across = section["panels"], across_of(section)
     down = -(-len(panels) // across)
-    figure, grid = plt.subplots(down, across, figsize=size_of(section), dpi=130, squeeze=False, constrained_layout=True, sharex=section.get("share-x", False))
-    for axes in grid.flat[len(panels):]:
+    figure, grid = plt.subplots(
+        down,
+        across,
+        figsize=size_of(section),
+        dpi=130,
+        squeeze=False,
+        constrained_layout=True,
+        sharex=section.get("share-x", False),
+    )
+    for axes in grid.flat[len(panels) :]:
         axes.axis("off")
     where = f"{case.file}: plot"
     try:

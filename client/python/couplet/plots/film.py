@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Film of a run: the maps of a section `plot` at each output as PNG frames, and as an animated file if ffmpeg is installed."""
+"""Film of a run: the maps of a section `plot` at each output as PNG frames, and as an animated file if ffmpeg is
+installed."""
 import pathlib
 import shutil
 import subprocess
@@ -14,7 +15,8 @@ RATE = 10  # frames per second
 
 
 def frame_of(section, case, out):
-    """Section of one frame, with only its maps. A missing scale covers the whole run; titles state the time of the frame."""
+    """Section of one frame, with only its maps. A missing scale covers the whole run; titles state the time of the
+    frame."""
     panels, across = section["panels"], across_of(section)
     maps = [dict(panel) for panel in panels if "field" in panel]
     for panel in maps:
@@ -36,12 +38,20 @@ def frame_of(section, case, out):
 
 
 def film(case, out, low=None, high=None):
-    """Draws the frames of the run in the folder `out` between two times. Returns their folder, and the animated file or None."""
+    """Draws the frames of the run in the folder `out` between two times. Returns their folder, and the animated file or
+    None."""
     section, out = check(case), pathlib.Path(out)
-    expect(any("field" in panel for panel in section["panels"]), f"{case.file}: plot: there is no map (a panel with `field`) to film.")
+    expect(
+        any("field" in panel for panel in section["panels"]),
+        f"{case.file}: plot: there is no map (a panel with `field`) to film.",
+    )
     expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {case.file}")
     frame = frame_of(section, case, out)
-    times = [t for t in series_in(out, frame["panels"][0]["participant"]).times if (low is None or t >= low) and (high is None or t <= high)]
+    times = [
+        t
+        for t in series_in(out, frame["panels"][0]["participant"]).times
+        if (low is None or t >= low) and (high is None or t <= high)
+    ]
     expect(times, f"{out}: '{frame['panels'][0]['participant']}' has no output between these times.")
     shutil.rmtree(files.below(out, "film"), ignore_errors=True)  # frames of an earlier film
     folder = files.folder(out, "film")
@@ -59,7 +69,24 @@ def animate(folder, out):
         return None
     # The usual color format needs even numbers of pixels.
     with files.part(out, "film.mp4") as made:
-        done = subprocess.run([program, "-loglevel", "error", "-y", "-framerate", str(RATE), "-i", folder / "frame-%04d.png",
-                               "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", made], capture_output=True, text=True)
+        done = subprocess.run(
+            [
+                program,
+                "-loglevel",
+                "error",
+                "-y",
+                "-framerate",
+                str(RATE),
+                "-i",
+                folder / "frame-%04d.png",
+                "-vf",
+                "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+                "-pix_fmt",
+                "yuv420p",
+                made,
+            ],
+            capture_output=True,
+            text=True,
+        )
         expect(done.returncode == 0, f"ffmpeg made no film.mp4 of the frames in {folder}: {done.stderr.strip()[-200:]}")
     return out / "film.mp4"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of the curves in a section `plot`: from monitors, tables beside the case, fields of the last output, and functions."""
+"""Values of the curves in a section `plot`: from monitors, tables beside the case, fields of the last output, and
+functions."""
 import re
 
 import numpy as np
@@ -24,7 +25,8 @@ def number(text):
 
 
 def columns_of(file):
-    """Returns {head: numbers} with NaN for other values. The head is the first line without #, or the last comment if that is a row of numbers."""
+    """Returns {head: numbers} with NaN for other values. The head is the first line without #, or the last comment if
+    that is a row of numbers."""
     warn_if_older(file)
     try:
         lines = [line for line in file.read_text().splitlines() if line.strip()]
@@ -32,12 +34,19 @@ def columns_of(file):
         raise Wrong(f"{file}: {problem.strerror}.") from None
     except UnicodeDecodeError:
         raise Wrong(f"{file}: is not a text file; fields: couplet plot FOLDER --field NAME") from None
-    comments, rows = [line for line in lines if line.startswith("#")], [line for line in lines if not line.startswith("#")]
+    comments, rows = [line for line in lines if line.startswith("#")], [
+        line for line in lines if not line.startswith("#")
+    ]
     expect(rows, f"{file}: there is no row in it.")
     is_bare = comments and all(np.isfinite(number(cell)) for cell in rows[0].split(","))
     columns = read_csv(file, [cell.strip() for cell in comments[-1].lstrip("# ").split(",")] if is_bare else None)
-    expect(len(next(iter(columns.values()))), f"{file}: no row has the {len(columns)} values that its first line names.")
-    return {name: values if values.dtype == float else np.array([number(v) for v in values]) for name, values in columns.items()}
+    expect(
+        len(next(iter(columns.values()))), f"{file}: no row has the {len(columns)} values that its first line names."
+    )
+    return {
+        name: values if values.dtype == float else np.array([number(v) for v in values])
+        for name, values in columns.items()
+    }
 
 
 class Source:
@@ -84,7 +93,9 @@ def of_fields(curve, out, where):
     i = len(series.times) - 1 if at is None else series.nearest(at)
     centres = series.centres()
     names = {n: centres[:, k] if k < centres.shape[1] else 0 * centres[:, 0] for k, n in enumerate("xyz")}
-    names |= {short: component_of(series, i, name, f"{where}.with.{short}") for short, name in curve.get("with", {}).items()}
+    names |= {
+        short: component_of(series, i, name, f"{where}.with.{short}") for short, name in curve.get("with", {}).items()
+    }
     return Source(dict(names), {**names, "t": series.times[i]}, f"{curve['fields']}'s fields")
 
 
@@ -95,21 +106,42 @@ def source_of(curve, case, out, where):
         x = np.linspace(curve["from"], curve["to"], POINTS_OF_A_FUNCTION)
         return Source({"x": x}, {"x": x}, "a function")
     if "points" in curve:
-        return Source({"x": np.array(curve["points"], float)[:, 0], "y": np.array(curve["points"], float)[:, 1]}, {}, "a list of points")
+        return Source(
+            {"x": np.array(curve["points"], float)[:, 0], "y": np.array(curve["points"], float)[:, 1]},
+            {},
+            "a list of points",
+        )
     if "python" in curve:
-        expect(case.trusted, f"{where}.python: a function beside the case draws this curve. If you trust it, add --allow-commands")
+        expect(
+            case.trusted,
+            f"{where}.python: a function beside the case draws this curve. If you trust it, add --allow-commands",
+        )
         file, function = (part.strip() for part in curve["python"].split(":"))
         found = getattr(module(str(case.file.parent / file)), function, None)
         expect(found, f"{where}.python: {file} has no function '{function}'.")
-        columns = {name: np.asarray(values, float) for name, values in found(out / next(iter(case.participants))).items()}
-        return Source(columns, {"t": next(iter(columns.values())), **{short: columns[name] for short, name in curve.get("with", {}).items()}}, curve["python"])
+        columns = {
+            name: np.asarray(values, float) for name, values in found(out / next(iter(case.participants))).items()
+        }
+        return Source(
+            columns,
+            {
+                "t": next(iter(columns.values())),
+                **{short: columns[name] for short, name in curve.get("with", {}).items()},
+            },
+            curve["python"],
+        )
     kind = "monitor" if "monitor" in curve else "table"
     file = (out if kind == "monitor" else case.file.parent) / curve[kind]
-    expect(file.is_file(), f"{where}.{kind}: there is no {file}." + (" Run the case first." if kind == "monitor" else ""))
+    expect(
+        file.is_file(), f"{where}.{kind}: there is no {file}." + (" Run the case first." if kind == "monitor" else "")
+    )
     columns = columns_of(file)
     if "at" in curve:
         time, at = next(iter(columns.values())), seconds(curve["at"], f"{where}.at")
-        columns = {name: values[time == (time[-1] if at is None else time[np.abs(time - at).argmin()])] for name, values in columns.items()}
+        columns = {
+            name: values[time == (time[-1] if at is None else time[np.abs(time - at).argmin()])]
+            for name, values in columns.items()
+        }
     found = Source(columns, {}, str(file))
     found.names |= {short: found.column(name, f"{where}.with.{short}") for short, name in curve.get("with", {}).items()}
     first = next(iter(columns.values()))
@@ -118,7 +150,8 @@ def source_of(curve, case, out, where):
 
 
 def points_of(curve, case, out, where):
-    """Returns [(x, y, value of `each` or None)]: one curve, or one per value of `each`. Empty for an optional run that does not exist."""
+    """Returns [(x, y, value of `each` or None)]: one curve, or one per value of `each`. Empty for an optional run that
+    does not exist."""
     if curve.get("optional") and not (out / curve["monitor"]).is_file():
         return []
     source = source_of(curve, case, out, where)
@@ -131,7 +164,11 @@ def points_of(curve, case, out, where):
         group[order] = np.concatenate([[0], np.cumsum(np.diff(x[order]) > 1e-6 * np.ptp(x))])
         return (np.bincount(group, values) / np.bincount(group))[group]
 
-    y = source.value(curve.get("y", curve.get("function", "y")), f"{where}.{'function' if 'function' in curve else 'y'}", {"mean": mean})
+    y = source.value(
+        curve.get("y", curve.get("function", "y")),
+        f"{where}.{'function' if 'function' in curve else 'y'}",
+        {"mean": mean},
+    )
     keep = np.isfinite(x) & np.isfinite(y)
     if "where" in curve:
         keep &= source.value(curve["where"], f"{where}.where", {"min": np.min, "max": np.max}) != 0

@@ -39,7 +39,8 @@ DEEPEST, MOST_VALUES = 50, 1_000_000  # as Inspection of common/config/document.
 
 
 def expect_bounded(text):
-    """Rejects nested levels and anchors that would take all time or memory, as the programs do, before anything is built."""
+    """Rejects nested levels and anchors that would take all time or memory, as the programs do, before anything is
+    built."""
     around, sizes = [(None, 0)], {}  # anchors and numbers of values
     for event in yaml.parse(text, Loader=LOADER):
         size = 1 if isinstance(event, yaml.ScalarEvent) else 0
@@ -57,7 +58,8 @@ def expect_bounded(text):
 
 
 def expect_plain(node):
-    """Rejects control characters, as the programs do. Keys are names of files and of columns, and have no line breaks and tabs either."""
+    """Rejects control characters, as the programs do. Keys are names of files and of columns, and have no line breaks
+    and tabs either."""
     if isinstance(node, dict):
         for key, value in node.items():
             expect(not CONTROL.search(str(key)), f"the key {str(key)!r} contains a control character; remove it.")
@@ -66,7 +68,10 @@ def expect_plain(node):
         for value in node:
             expect_plain(value)
     elif isinstance(node, str):
-        expect(not CONTROL.search(node.replace("\n", "").replace("\t", "")), f"the value {node!r} contains a control character; remove it.")
+        expect(
+            not CONTROL.search(node.replace("\n", "").replace("\t", "")),
+            f"the value {node!r} contains a control character; remove it.",
+        )
 
 
 def load(text, file=None):
@@ -80,7 +85,10 @@ def load(text, file=None):
         raise Wrong(f"{file or 'YAML'}:1:1: {problem}") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        raise Wrong(f"{file or 'YAML'}{f':{mark.line + 1}:{mark.column + 1}' if mark else ''}: {getattr(error, 'problem', None) or error}") from None
+        raise Wrong(
+            f"{file or 'YAML'}{f':{mark.line + 1}:{mark.column + 1}' if mark else ''}:"
+            f" {getattr(error, 'problem', None) or error}"
+        ) from None
 
 
 def words_of(file):
@@ -89,8 +97,11 @@ def words_of(file):
     try:
         return content.decode()
     except UnicodeDecodeError as error:
-        before = content[:error.start]
-        raise Wrong(f"{file}:{before.count(10) + 1}:{error.start - before.rfind(10)}: the byte 0x{content[error.start]:02x} is not text in UTF-8; save the file in this encoding.") from None
+        before = content[: error.start]
+        raise Wrong(
+            f"{file}:{before.count(10) + 1}:{error.start - before.rfind(10)}: the byte 0x{content[error.start]:02x} is"
+            " not text in UTF-8; save the file in this encoding."
+        ) from None
 
 
 def text_of(value):
@@ -125,8 +136,9 @@ def content_of(file, time, size):
 
 
 class Case:
-    """One case. `file` is the YAML, its folder, or a YAML with another study of a case beside it ({case: case.yaml, study: ...}). `build` is the
-    folder with bin/. `data` has the sections, and `participants` those of the participants. Raises Wrong with file and line for what cannot be read."""
+    """One case. `file` is the YAML, its folder, or a YAML with another study of a case beside it ({case: case.yaml,
+    study: ...}). `build` is the folder with bin/. `data` has the sections, and `participants` those of the
+    participants. Raises Wrong with file and line for what cannot be read. """
 
     def __init__(self, file: str | pathlib.Path, build: str | pathlib.Path | None = None):
         self.file, self.build = pathlib.Path(file), pathlib.Path(build or places.build())
@@ -138,7 +150,10 @@ class Case:
         self.asked, study = self.file, self.data.get("study")
         if "case" in self.data:
             unknown = set(self.data) - {"case", "study"}
-            expect(not unknown, f"{self.file}: unknown key '{next(iter(unknown), '')}'; beside 'case' there is only 'study'.")
+            expect(
+                not unknown,
+                f"{self.file}: unknown key '{next(iter(unknown), '')}'; beside 'case' there is only 'study'.",
+            )
             self.file = self.file.parent / str(self.data["case"])
             expect(self.file.is_file(), f"{self.asked}: case: {self.file} does not exist.")
             self.data = {**(load(words_of(self.file), self.file) or {}), "study": study}
@@ -179,16 +194,16 @@ class Case:
         return key if re.match(r"(simulation|participants|coupling)\.", key) else f"participants.{participant}.{key}"
 
     def assignments(self, changes: Mapping[str, Any]) -> list[str]:
-        """Arguments of --set. A key below a missing mapping is set with that mapping, which an earlier change may have set as a whole. The last
-        change of a key counts."""
+        """Arguments of --set. A key below a missing mapping is set with that mapping, which an earlier change may have
+        set as a whole. The last change of a key counts."""
         added, plain, whole = {}, [], {}
         for key, value in changes.items():
             parts, node = key.split("."), self.data
             for depth, part in enumerate(parts[:-1]):
                 if isinstance(node, dict) and part not in node:
-                    above = ".".join(parts[:depth + 1])
+                    above = ".".join(parts[: depth + 1])
                     place = added.setdefault(above, copy.deepcopy(mapping_of(whole.get(above))))
-                    for inner in parts[depth + 1:-1]:
+                    for inner in parts[depth + 1 : -1]:
                         place = place.setdefault(inner, {})
                     place[parts[-1]] = value
                     break
@@ -203,14 +218,24 @@ class Case:
         """Path of the participant's program."""
         entry = self.participants.get(participant)
         expect(participant in self.participants, f"{self.file}: there is no participant '{participant}'.")
-        expect(isinstance(entry, dict), f"{self.file}: participants.{participant}: expected a mapping with at least the key 'program'.")
+        expect(
+            isinstance(entry, dict),
+            f"{self.file}: participants.{participant}: expected a mapping with at least the key 'program'.",
+        )
         name = str(entry.get("program", "?"))
-        expect(name == pathlib.PurePath(name).name, f"{self.file}: participants.{participant}.program: '{name}' is a path; give the name of a program, and start one in another folder with --with {participant}='COMMAND ...'.")
+        expect(
+            name == pathlib.PurePath(name).name,
+            (
+                f"{self.file}: participants.{participant}.program: '{name}' is a path; give the name of a program, and"
+                f" start one in another folder with --with {participant}='COMMAND ...'."
+            ),
+        )
         return self.build / "bin" / name
 
     def guest(self, participant: str, played_by: Mapping[str, Sequence] | None = None) -> Sequence | None:
-        """Command of an external program, which does not read the case: the given one, else a file of that name beside the case, with the participant's
-        name. None for our programs, and if there is none: another program beside ours, such as a shell, is never started."""
+        """Command of an external program, which does not read the case: the given one, else a file of that name beside
+        the case, with the participant's name. None for our programs, and if there is none: another program beside ours,
+        such as a shell, is never started. """
         if played_by and participant in played_by:
             return played_by[participant]
         program = self.program(participant)
@@ -222,32 +247,83 @@ class Case:
                 return [*([sys.executable] if name.endswith(".py") else []), beside, participant]
         return None
 
-    def parts(self, changes: Mapping[str, Any], alone: str | None = None, ranks: Mapping[str, int] | None = None, raw: Sequence[str] = (),
-              flags: Sequence[str] = (), played_by: Mapping[str, Sequence] | None = None) -> list[tuple[int, list[str]]]:
-        """Programs of a job in the order of their ranks: [(number of ranks, words)]. `alone` runs only this participant; `ranks` is {participant or
-        coupler: number}; `raw` are further --set arguments; `flags` are arguments of all our programs; `played_by` is {participant: command}."""
+    def parts(
+        self,
+        changes: Mapping[str, Any],
+        alone: str | None = None,
+        ranks: Mapping[str, int] | None = None,
+        raw: Sequence[str] = (),
+        flags: Sequence[str] = (),
+        played_by: Mapping[str, Sequence] | None = None,
+    ) -> list[tuple[int, list[str]]]:
+        """Programs of a job in the order of their ranks: [(number of ranks, words)]. `alone` runs only this
+        participant; `ranks` is {participant or coupler: number}; `raw` are further --set arguments; `flags` are
+        arguments of all our programs; `played_by` is {participant: command}. """
         sets = [*(word for a in (*self.assignments(changes), *raw) for word in ("--set", a)), *flags]
-        names = [alone or next(iter(self.participants))] if alone is not None or not self.coupled else [COUPLER, *self.participants]
+        names = (
+            [alone or next(iter(self.participants))]
+            if alone is not None or not self.coupled
+            else [COUPLER, *self.participants]
+        )
 
         def words(name):
             if name == COUPLER:
                 return [self.build / "bin" / COUPLER, self.file, *sets]
-            return len(names) > 1 and self.guest(name, played_by) or [self.program(name), self.file, "--participant", name, *sets]
+            return (
+                len(names) > 1
+                and self.guest(name, played_by)
+                or [self.program(name), self.file, "--participant", name, *sets]
+            )
+
         return [(int((ranks or {}).get(name, 1)), [str(word) for word in words(name)]) for name in names]
 
-    def words(self, alone: str | None = None, ranks: Mapping[str, int] | None = None, sets: Sequence[str] = (), flags: Sequence[str] = (),
-              played_by: Mapping[str, Sequence] | None = None) -> list:
+    def words(
+        self,
+        alone: str | None = None,
+        ranks: Mapping[str, int] | None = None,
+        sets: Sequence[str] = (),
+        flags: Sequence[str] = (),
+        played_by: Mapping[str, Sequence] | None = None,
+    ) -> list:
         """Arguments of couplet run and couplet-exec for this job."""
-        words = [self.file, *(["--bin", self.build / "bin"] if self.build != places.build() or "COUPLET_BIN" in os.environ else []), *(["--participant", alone] if alone else [])]
+        words = [
+            self.file,
+            *(["--bin", self.build / "bin"] if self.build != places.build() or "COUPLET_BIN" in os.environ else []),
+            *(["--participant", alone] if alone else []),
+        ]
         words += ["-n", ",".join(f"{name}={n}" for name, n in ranks.items())] if ranks else []
-        return words + [w for s in sets for w in ("--set", s)] + [*flags] + [w for name, line in (played_by or {}).items() for w in ("--with", f"{name}={shlex.join(map(str, line))}")]
+        return (
+            words
+            + [w for s in sets for w in ("--set", s)]
+            + [*flags]
+            + [
+                w
+                for name, line in (played_by or {}).items()
+                for w in ("--with", f"{name}={shlex.join(map(str, line))}")
+            ]
+        )
 
-    def command(self, changes: Mapping[str, Any], alone: str | None = None, ranks: Mapping[str, int] | None = None, raw: Sequence[str] = (),
-                flags: Sequence[str] = (), played_by: Mapping[str, Sequence] | None = None) -> list:
-        """Command line of a job, for the arguments of parts(). Several programs are one application, whose processes couplet-exec turns into them."""
+    def command(
+        self,
+        changes: Mapping[str, Any],
+        alone: str | None = None,
+        ranks: Mapping[str, int] | None = None,
+        raw: Sequence[str] = (),
+        flags: Sequence[str] = (),
+        played_by: Mapping[str, Sequence] | None = None,
+    ) -> list:
+        """Command line of a job, for the arguments of parts(). Several programs are one application, whose processes
+        couplet-exec turns into them."""
         parts = self.parts(changes, alone, ranks, raw, flags, played_by)
         total = sum(n for n, _ in parts)
-        line = parts[0][1] if len(parts) == 1 else [places.command("couplet-exec"), *self.words(None, ranks, [*self.assignments(changes), *raw], flags, played_by)]
+        line = (
+            parts[0][1]
+            if len(parts) == 1
+            else [
+                places.command("couplet-exec"),
+                *self.words(None, ranks, [*self.assignments(changes), *raw], flags, played_by),
+            ]
+        )
         return line if total == 1 else ["mpirun", "--oversubscribe", "-n", total, *line]
 
     def named(self, node: Any) -> Iterator[pathlib.Path]:
@@ -259,12 +335,18 @@ class Case:
             yield self.file.parent / node
 
     def digest(self, changes: Mapping[str, Any] | None = None) -> str:
-        """Digest of everything a result depends on besides its settings: the files of case and changes, and the programs."""
+        """Digest of everything a result depends on besides its settings: the files of case and changes, and the
+        programs."""
         mark = hashlib.sha256()
         inputs = {f.resolve() for f in self.named([self.data, list((changes or {}).values())])} | {
-            f.resolve() for f in self.file.parent.glob("*.geo")}
-        programs = {self.program(name) for name in self.participants} | ({self.build / "bin" / COUPLER} if self.coupled else set())
-        sections = {k: v for k, v in self.data.items() if k not in ("study", "plot")}  # a study may grow without repeating its runs
+            f.resolve() for f in self.file.parent.glob("*.geo")
+        }
+        programs = {self.program(name) for name in self.participants} | (
+            {self.build / "bin" / COUPLER} if self.coupled else set()
+        )
+        sections = {
+            k: v for k, v in self.data.items() if k not in ("study", "plot")
+        }  # a study may grow without repeating its runs
         mark.update(json.dumps(sections, sort_keys=True, default=str).encode())
         for file in (*sorted(inputs), *sorted(programs)):
             if file.exists():

@@ -37,7 +37,8 @@ def session(leader):
 
 
 def driver(folder):
-    """Process that drives the steps of the job in this output folder, which holds the checkpoint lock. None if there is none."""
+    """Process that drives the steps of the job in this output folder, which holds the checkpoint lock. None if there is
+    none."""
     try:
         lock = os.stat(pathlib.Path(folder) / LOCK)
     except OSError:
@@ -74,39 +75,57 @@ def wait_for_end(folder, seconds):
 
 def sets_since(folder, seconds):
     """Names of the complete checkpoints written since then."""
-    return [file.parent.name for file in (pathlib.Path(folder).absolute() / "checkpoints").glob("step-*/set.txt") if file.stat().st_mtime >= seconds]
+    return [
+        file.parent.name
+        for file in (pathlib.Path(folder).absolute() / "checkpoints").glob("step-*/set.txt")
+        if file.stat().st_mtime >= seconds
+    ]
 
 
 def is_damaged(file):
-    """Returns true if a list of the files of a checkpoint is truncated, or if one of them differs in size from the list."""
+    """Returns true if a list of the files of a checkpoint is truncated, or if one of them differs in size from the
+    list."""
     text = file.read_text(errors="replace")
     sizes = {file.parent / name: int(size) for size, name in re.findall(r"^file (\d+) \w+ (.+)$", text, re.M)}
-    return not re.search(r"^digest \w+$", text, re.M) or any(not f.is_file() or f.stat().st_size != size for f, size in sizes.items())
+    return not re.search(r"^digest \w+$", text, re.M) or any(
+        not f.is_file() or f.stat().st_size != size for f, size in sizes.items()
+    )
 
 
 def checkpoint(folder):
-    """Name of the complete checkpoint with the latest time that the recorded run wrote or started from; None if there is none."""
+    """Name of the complete checkpoint with the latest time that the recorded run wrote or started from; None if there
+    is none."""
     return next(iter(checkpoints(folder)), None)
 
 
 def checkpoints(folder):
-    """Names of the complete checkpoints that the recorded run wrote, else of the one that it started from, latest first. Those of another run in the folder may
-    belong to another case. The id of a run begins with its start, which a copy of the folder keeps. Incomplete ones are named and left out."""
+    """Names of the complete checkpoints that the recorded run wrote, else of the one that it started from, latest
+    first. Those of another run in the folder may belong to another case. The id of a run begins with its start, which a
+    copy of the folder keeps. Incomplete ones are named and left out. """
     all_sets = pathlib.Path(folder).absolute() / "checkpoints"
     damaged = sorted(filter(is_damaged, all_sets.glob("step-*/set.txt")))
     for file in damaged:
         print(f"warning: {file.parent} is damaged and is left out", file=sys.stderr)
-    found = [(re.search("^run (.*)$", file.read_text(errors="replace"), re.M), file.parent.name) for file in all_sets.glob("step-*/set.txt") if file not in damaged]
+    found = [
+        (re.search("^run (.*)$", file.read_text(errors="replace"), re.M), file.parent.name)
+        for file in all_sets.glob("step-*/set.txt")
+        if file not in damaged
+    ]
     runs = sorted((run[1], name) for run, name in found if run and re.match("[0-9a-f]{12}-", run[1]))
     record = read_record(folder)
-    begun = record["restart"] and pathlib.Path(os.path.normpath(all_sets.parent / record["restart"])) if "restart" in record else None
+    begun = (
+        record["restart"] and pathlib.Path(os.path.normpath(all_sets.parent / record["restart"]))
+        if "restart" in record
+        else None
+    )
     started = datetime.datetime.fromisoformat(record["started"]).timestamp() if "started" in record else 0
     own = [name for run, name in runs if int(run[:12], 16) / 1000 >= started or begun in (all_sets, all_sets.parent)]
     return own[::-1] if own else [name for _, name in runs if begun == all_sets / name][:1]
 
 
 def warn_if_older(file):
-    """Warns about a file in a participant's folder that the last run did not write: a monitor that its case no longer names."""
+    """Warns about a file in a participant's folder that the last run did not write: a monitor that its case no longer
+    names."""
     try:
         began, written = ((file.parent / "effective.yaml").stat().st_mtime, file.stat().st_mtime)
         steps = json.loads((file.parent / "run.json").read_text())["steps"]  # does not exist during a run
@@ -121,8 +140,8 @@ def write_record(folder, record):
 
 
 def read_record(folder):
-    """Record written by `couplet run`: case and restart (relative to the folder, so that a copy refers to its own), ranks, sets, flags, alone, with. Empty if
-    the job was started by hand."""
+    """Record written by `couplet run`: case and restart (relative to the folder, so that a copy refers to its own),
+    ranks, sets, flags, alone, with. Empty if the job was started by hand."""
     try:
         return json.loads((pathlib.Path(folder) / RECORD).read_text())
     except (OSError, ValueError):

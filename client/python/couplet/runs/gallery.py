@@ -21,10 +21,10 @@ CELLS = "cells.csv"
 @dataclasses.dataclass
 class Entry:
     name: str
-    title: str      # first words of its README
-    about: str      # first text of the README
+    title: str  # first words of its README
+    about: str  # first text of the README
     programs: list
-    picture: str    # file beside README.md or below docs/, as named in the README; may be empty
+    picture: str  # file beside README.md or below docs/, as named in the README; may be empty
     cells: str = ""  # of the largest mesh (configs/cells.csv)
     seconds: str = ""  # approximate seconds of one core for the whole run (same file)
 
@@ -40,7 +40,13 @@ def entry(folder):
     picture = re.search(r"!\[[^]]*\]\(([^)\s]+)", readme)
     case = Case(folder)
     programs = [str((p or {}).get("program", "?")) for p in case.participants.values()]
-    return Entry(folder.name, title[1] if title else folder.name, " ".join(about[0].split()) if about else "", programs, picture[1] if picture else "")
+    return Entry(
+        folder.name,
+        title[1] if title else folder.name,
+        " ".join(about[0].split()) if about else "",
+        programs,
+        picture[1] if picture else "",
+    )
 
 
 def entries():
@@ -53,14 +59,21 @@ def entries():
 
 
 def seconds_of(case, build, limit):
-    """Processor seconds of a whole run: measured, or extrapolated from its progress within `limit` seconds; "" if it made no step."""
+    """Processor seconds of a whole run: measured, or extrapolated from its progress within `limit` seconds; "" if it
+    made no step."""
     from couplet.places import command
     from couplet.runs import folder
     from couplet.runs.results import Results
+
     with tempfile.TemporaryDirectory(prefix="couplet-gallery-") as scratch:
         out = pathlib.Path(scratch) / "out"
-        job = subprocess.Popen([command(), "run", case, "--bin", build / "bin", "--set", f"simulation.output.folder={out}"], stdout=subprocess.PIPE,
-                               stderr=subprocess.DEVNULL, text=True, cwd=scratch)
+        job = subprocess.Popen(
+            [command(), "run", case, "--bin", build / "bin", "--set", f"simulation.output.folder={out}"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            cwd=scratch,
+        )
         timer = threading.Timer(limit, lambda: folder.stop(out) or job.terminate())
         timer.start()
         said = job.communicate()[0]
@@ -73,13 +86,16 @@ def seconds_of(case, build, limit):
 
 
 def cells_of_all(build, limit=0):
-    """Text of cells.csv: the largest expected cell count of each case, and the processor seconds of a run (kept if `limit` is 0)."""
+    """Text of cells.csv: the largest expected cell count of each case, and the processor seconds of a run (kept if
+    `limit` is 0)."""
     text, before = "case,cells,seconds\n", {e.name: e.seconds for e in entries()}
     for file in sorted((ROOT / "configs").glob("*/case.yaml")):
         case, most = Case(file, build), 0
         for name in case.participants:
             if case.program(name).exists():
-                said = subprocess.run([case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True).stdout
+                said = subprocess.run(
+                    [case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True
+                ).stdout
                 most = max([most, *map(int, re.findall(r"^expected: +(\d+) cells", said, flags=re.M))])
         seconds = seconds_of(file, build, limit) if limit else before[case.file.parent.name]
         text += f"{case.file.parent.name},{most or ''},{seconds}\n"
@@ -89,15 +105,23 @@ def cells_of_all(build, limit=0):
 def find(name):
     """Case file of the gallery with this name, CASE or CASE/file.yaml."""
     import difflib
+
     there = sorted(file.parent.name for file in (ROOT / "configs").glob("*/case.yaml"))
     file = ROOT / "configs" / name
     file = file / "case.yaml" if file.is_dir() else file
     near = difflib.get_close_matches(name, there, 3)
-    expect(file.is_file() and ".." not in pathlib.PurePath(name).parts, f"there is no case '{name}' in the gallery; {'near: ' + ', '.join(near) if near else 'couplet gallery lists them'}")
+    expect(
+        file.is_file() and ".." not in pathlib.PurePath(name).parts,
+        (
+            f"there is no case '{name}' in the gallery;"
+            f" {'near: ' + ', '.join(near) if near else 'couplet gallery lists them'}"
+        ),
+    )
     return file
 
 
-# -- a copy --------------------------------------------------------------------------------------------------------------
+# -- a copy
+# --------------------------------------------------------------------------------------------------------------
 def scalars(node, path=()):
     """Returns {path: node} of the scalars of a composed YAML document."""
     if isinstance(node, yaml.MappingNode):
@@ -115,7 +139,9 @@ def with_values(text, values):
     places = dict(scalars(yaml.compose(text)))
     for key in values:
         expect(key in places, f"--set {key}: the case has no such value to replace; give it in the new file")
-    spots = {(places[key].start_mark.index, places[key].end_mark.index): value for key, value in values.items()}  # an anchor has several keys
+    spots = {
+        (places[key].start_mark.index, places[key].end_mark.index): value for key, value in values.items()
+    }  # an anchor has several keys
     for (start, end), value in sorted(spots.items(), reverse=True):
         text = text[:start] + value + text[end:]
     return text
@@ -123,7 +149,11 @@ def with_values(text, values):
 
 def included(file):
     """Files included by a .geo."""
-    for name in re.findall(r'^\s*(?:Include|Merge)\s*"([^"]+)"', file.read_text(errors="replace"), flags=re.M) if file.suffix == ".geo" else ():
+    for name in (
+        re.findall(r'^\s*(?:Include|Merge)\s*"([^"]+)"', file.read_text(errors="replace"), flags=re.M)
+        if file.suffix == ".geo"
+        else ()
+    ):
         if (file.parent / name).is_file():
             yield file.parent / name
             yield from included(file.parent / name)
@@ -132,13 +162,30 @@ def included(file):
 def copy(source, target, values):
     """Copies a case with all named files to a folder, with other values. Returns the new case file."""
     target = files.below(target.parent, target.name)
-    expect(not target.exists() or target.is_dir() and not any(target.iterdir()), f"folder '{target}' exists and is not empty; choose a new name")
+    expect(
+        not target.exists() or target.is_dir() and not any(target.iterdir()),
+        f"folder '{target}' exists and is not empty; choose a new name",
+    )
     case, text = Case(source), source.read_text()
-    moved = {key: node.value for key, node in scalars(yaml.compose(text)) if isinstance(node.value, str) and len(node.value) < 200
-             and "\n" not in node.value and (source.parent / node.value).is_file()}
-    named = {(source.parent / name).resolve() for name in moved.values()} | {f.resolve() for f in case.named([case.data])}
+    moved = {
+        key: node.value
+        for key, node in scalars(yaml.compose(text))
+        if isinstance(node.value, str)
+        and len(node.value) < 200
+        and "\n" not in node.value
+        and (source.parent / node.value).is_file()
+    }
+    named = {(source.parent / name).resolve() for name in moved.values()} | {
+        f.resolve() for f in case.named([case.data])
+    }
     named |= {extra.resolve() for file in list(named) for extra in included(file)}
-    guests = {g for p in case.participants if (words := case.guest(p)) for g in map(pathlib.Path, map(str, words)) if g.parent == source.parent}
+    guests = {
+        g
+        for p in case.participants
+        if (words := case.guest(p))
+        for g in map(pathlib.Path, map(str, words))
+        if g.parent == source.parent
+    }
     named |= {extra for extra in (*source.parent.glob("*.py"), source.parent / "README.md") if extra.is_file()}
     text = with_values(text, {**{key: pathlib.Path(name).name for key, name in moved.items() if "/" in name}, **values})
     files.folder(target, ".")

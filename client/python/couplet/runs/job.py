@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One job from its launch line to its end, as if started by hand: output is forwarded as it comes, signals reach the programs, and no process is left
-behind."""
+"""One job from its launch line to its end, as if started by hand: output is forwarded as it comes, signals reach the
+programs, and no process is left behind."""
 from __future__ import annotations
 
 import collections
@@ -50,8 +50,8 @@ def output_of(case, sets):
 
 
 def surroundings(parts=()):
-    """Environment of the programs: one thread per rank, and this package for participants in Python. couplet-exec need not read the case for its
-    `parts`; where the launcher does not pass the variable on, it does."""
+    """Environment of the programs: one thread per rank, and this package for participants in Python. couplet-exec need
+    not read the case for its `parts`; where the launcher does not pass the variable on, it does."""
     env = environment()
     plan = json.dumps(parts)
     if len(parts) > 1 and len(plan) < LONGEST_PLAN:
@@ -66,8 +66,9 @@ def ends_with_us():
 
 
 class Job:
-    """`ranks` is {participant or coupler: number}; `sets` are KEY=VALUE as on the command line; `flags` are further arguments of all programs;
-    `played_by` is {participant: command of the external program}; `alone` runs only this participant."""
+    """`ranks` is {participant or coupler: number}; `sets` are KEY=VALUE as on the command line; `flags` are further
+    arguments of all programs; `played_by` is {participant: command of the external program}; `alone` runs only this
+    participant."""
 
     def __init__(self, case: Case, ranks=None, sets=(), flags=(), alone=None, played_by=None):
         case = case.changed(sets)
@@ -76,27 +77,49 @@ class Job:
         expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
         known = {*case.participants, *([COUPLER] if case.coupled else [])}
         for name in (*self.ranks, *self.played_by, *([alone] if alone else [])):
-            expect(name in known, f"there is no participant '{name}' in {case.file}; there is: {', '.join(sorted(known))}")
+            expect(
+                name in known, f"there is no participant '{name}' in {case.file}; there is: {', '.join(sorted(known))}"
+            )
         job = ({}, alone, self.ranks, self.sets, self.flags, self.played_by)
         self.parts, self.command = case.parts(*job), [str(w) for w in case.command(*job)]
         for name in [alone] if alone else known:
             program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
-            expect(program.name in OURS and program.exists() or case.guest(name, self.played_by),
-                   f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent} and not beside the case. "
-                   f"Give its command: --with {name}='COMMAND ...'")
+            expect(
+                program.name in OURS and program.exists() or case.guest(name, self.played_by),
+                (
+                    f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent} and not beside"
+                    f" the case. Give its command: --with {name}='COMMAND ...'"
+                ),
+            )
         self.output = output_of(case, self.sets)
-        self.last, self.asked, self.asked_at, self.started, self.limit = collections.deque(maxlen=60), 0, None, None, float("inf")
+        self.last, self.asked, self.asked_at, self.started, self.limit = (
+            collections.deque(maxlen=60),
+            0,
+            None,
+            None,
+            float("inf"),
+        )
 
     def line(self):
         """Launch line for a shell."""
         return shlex.join(self.command)
 
     def record(self):
-        """Command that started the job, without absolute paths, so that a copied or moved folder refers to the files in its new place."""
+        """Command that started the job, without absolute paths, so that a copied or moved folder refers to the files in
+        its new place."""
         flags, at = self.flags, self.flags.index("--restart") if "--restart" in self.flags else None
-        return {"case": os.path.relpath(self.case.file, self.output), "restart": None if at is None else os.path.relpath(flags[at + 1], self.output),
-                "ranks": self.ranks, "sets": [s for s in self.sets if not s.startswith("simulation.output.folder=")], "flags": flags if at is None else flags[:at] + flags[at + 2:],
-                "alone": self.alone, "with": self.played_by, "started": datetime.datetime.fromtimestamp(time.time() - (time.monotonic() - self.started), datetime.timezone.utc).isoformat()}
+        return {
+            "case": os.path.relpath(self.case.file, self.output),
+            "restart": None if at is None else os.path.relpath(flags[at + 1], self.output),
+            "ranks": self.ranks,
+            "sets": [s for s in self.sets if not s.startswith("simulation.output.folder=")],
+            "flags": flags if at is None else flags[:at] + flags[at + 2 :],
+            "alone": self.alone,
+            "with": self.played_by,
+            "started": datetime.datetime.fromtimestamp(
+                time.time() - (time.monotonic() - self.started), datetime.timezone.utc
+            ).isoformat(),
+        }
 
     # -- while it runs ------------------------------------------------------------------------------------------------
     def on_signal(self, number, _):
@@ -175,15 +198,37 @@ class Job:
                     break
 
     def run(self, shown=None):
-        """Runs the job and returns its exit code. `shown` receives its output (terminal.Plain forwards it unchanged)."""
-        expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {shlex.quote(str(self.output))}), or "
-               "give this one another folder: --set simulation.output.folder=...")
+        """Runs the job and returns its exit code. `shown` receives its output (terminal.Plain forwards it
+        unchanged)."""
+        expect(
+            folders.driver(self.output) is None,
+            (
+                f"{self.output} is in use by another job that is still running. End it (couplet stop"
+                f" {shlex.quote(str(self.output))}), or give this one another folder: --set"
+                " simulation.output.folder=..."
+            ),
+        )
         temporary = os.environ.get("TMPDIR") or "/tmp"
-        expect(self.command[0] != "mpirun" or not os.path.isdir(temporary) or shutil.disk_usage(temporary).free >= LEAST_TEMPORARY, f"{temporary} is full, and mpirun needs it for files of its own. Make room there, or set TMPDIR to another folder")
+        expect(
+            self.command[0] != "mpirun"
+            or not os.path.isdir(temporary)
+            or shutil.disk_usage(temporary).free >= LEAST_TEMPORARY,
+            (
+                f"{temporary} is full, and mpirun needs it for files of its own. Make room there, or set TMPDIR to"
+                " another folder"
+            ),
+        )
         self.recorded, self.started, self.pages = False, time.monotonic(), Pages()
         former, began = folders.read_record(self.output), time.time()
-        self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(self.parts),
-                                        start_new_session=True, preexec_fn=ends_with_us)
+        self.process = subprocess.Popen(
+            self.command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=surroundings(self.parts),
+            start_new_session=True,
+            preexec_fn=ends_with_us,
+        )
         before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
         try:
             self.pass_on(shown)
@@ -196,25 +241,47 @@ class Job:
         if not self.recorded and code == 0 and (self.output / folders.LOCK).exists():  # may precede the next poll
             folders.write_record(self.output, self.record())
         started = any(file.stat().st_mtime >= began for file in self.output.glob("*/effective.yaml"))
-        if self.recorded and former and code not in (0, 3, 4) and not (started if "--restart" not in self.flags else folders.sets_since(self.output, began)):
-            # Rejected, for example for a --set: the record of the results that are there remains, and the next resume does not use this one.
+        if (
+            self.recorded
+            and former
+            and code not in (0, 3, 4)
+            and not (started if "--restart" not in self.flags else folders.sets_since(self.output, began))
+        ):
+            # Rejected, for example for a --set: the record of the results that are there remains, and the next resume
+            # does not use this one.
             folders.write_record(self.output, former)
         return code if code >= 0 else 128 - code
 
     def last_words(self):
         if self.pages.killed and not self.asked:
-            return culprit(self.pages.killed, [(name, int(self.ranks.get(name, 1))) for name in ((self.alone,) if self.alone else (COUPLER, *self.case.participants))])
+            return culprit(
+                self.pages.killed,
+                [
+                    (name, int(self.ranks.get(name, 1)))
+                    for name in ((self.alone,) if self.alone else (COUPLER, *self.case.participants))
+                ],
+            )
         if self.process.returncode < 0:
-            return f"mpirun was ended by signal {-self.process.returncode} ({signal.strsignal(-self.process.returncode)})"
+            return (
+                f"mpirun was ended by signal {-self.process.returncode} ({signal.strsignal(-self.process.returncode)})"
+            )
         return last_words("\n".join(self.last))
 
 
-def run(case: Case | str | pathlib.Path, ranks: Mapping[str, int] | None = None, changes: Mapping[str, typing.Any] | None = None, show: bool = False,
-        alone: str | None = None, build: str | pathlib.Path | None = None, **more) -> Results:
-    """Runs a case to its end and returns its Results. `ranks` is {participant: number}, `changes` {key: value}. Raises RunFailed with the last output
-    of the programs. Only from the main thread, which receives the signals."""
+def run(
+    case: Case | str | pathlib.Path,
+    ranks: Mapping[str, int] | None = None,
+    changes: Mapping[str, typing.Any] | None = None,
+    show: bool = False,
+    alone: str | None = None,
+    build: str | pathlib.Path | None = None,
+    **more,
+) -> Results:
+    """Runs a case to its end and returns its Results. `ranks` is {participant: number}, `changes` {key: value}. Raises
+    RunFailed with the last output of the programs. Only from the main thread, which receives the signals."""
     from couplet.runs.results import Results
     from couplet.runs.terminal import Plain
+
     case = case if isinstance(case, Case) else Case(pathlib.Path(case), build)
     job = Job(case, ranks, case.assignments(changes or {}), alone=alone, **more)
     code = job.run(Plain() if show else None)

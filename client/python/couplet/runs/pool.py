@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs many tasks, several at a time. Skips completed ones, waits for those of other processes, and lists their warnings."""
+"""Runs many tasks, several at a time. Skips completed ones, waits for those of other processes, and lists their
+warnings."""
 import collections
 import concurrent.futures
 import re
@@ -10,7 +11,8 @@ from couplet.runs import process
 
 
 def run_all(tasks, jobs=1, again=False, say=print):
-    """Returns {task: Record} of all tasks in their order. `again` repeats existing ones. `say` receives a line per task."""
+    """Returns {task: Record} of all tasks in their order. `again` repeats existing ones. `say` receives a line per
+    task."""
     queue, records, mutex, start = collections.deque(tasks), {}, threading.Lock(), time.monotonic()
     made = set()
 
@@ -18,8 +20,15 @@ def run_all(tasks, jobs=1, again=False, say=print):
         with mutex:
             records[task] = record
             left = len(tasks) - len(records)
-            rest = (time.monotonic() - start) / max(len(made), 1) * left / max(jobs, 1) * min(len(made), jobs) if made and left else 0
-            say(f"[{len(records)}/{len(tasks)}] {task.name}: {record.reason or word}" + (f" (about {rest:.0f} s to go)" if rest > 10 else ""))
+            rest = (
+                (time.monotonic() - start) / max(len(made), 1) * left / max(jobs, 1) * min(len(made), jobs)
+                if made and left
+                else 0
+            )
+            say(
+                f"[{len(records)}/{len(tasks)}] {task.name}: {record.reason or word}"
+                + (f" (about {rest:.0f} s to go)" if rest > 10 else "")
+            )
 
     def worker():
         busy = 0  # consecutive tasks that others are running

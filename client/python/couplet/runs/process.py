@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One process (or mpirun) from start to end with its costs, and mpirun's own messages about the end of a job, between lines of dashes."""
+"""One process (or mpirun) from start to end with its costs, and mpirun's own messages about the end of a job, between
+lines of dashes."""
 import dataclasses
 import os
 import pathlib
@@ -13,7 +14,7 @@ import time
 from couplet import files
 
 STOP = threading.Event()  # when set, everything launched from any thread ends
-PATIENCE = 5.0            # [s] between SIGTERM and SIGKILL
+PATIENCE = 5.0  # [s] between SIGTERM and SIGKILL
 
 
 class RunFailed(RuntimeError):
@@ -22,14 +23,21 @@ class RunFailed(RuntimeError):
 
 @dataclasses.dataclass
 class Cost:
-    wall: float    # [s]
-    cpu: float     # [s] user and system, of all descendants, including waiting MPI ranks
+    wall: float  # [s]
+    cpu: float  # [s] user and system, of all descendants, including waiting MPI ranks
     memory: float  # [MB] peak of one process, as counted by the system
 
 
 def environment():
-    """Uses one thread per rank. Ranks are not bound, because Open MPI would bind those of concurrent jobs to the same cores."""
-    ours = dict(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", MPLBACKEND="Agg")
+    """Uses one thread per rank. Ranks are not bound, because Open MPI would bind those of concurrent jobs to the same
+    cores."""
+    ours = dict(
+        OMP_NUM_THREADS="1",
+        OPENBLAS_NUM_THREADS="1",
+        OMPI_ALLOW_RUN_AS_ROOT="1",
+        OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+        MPLBACKEND="Agg",
+    )
     return {"OMPI_MCA_hwloc_base_binding_policy": "none", **os.environ, **ours}
 
 
@@ -37,11 +45,13 @@ def last_words(text):
     """Last output of a program without MPI's messages."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
     # A line of the watch over the job says why it ends; the error estimate is written at the end of a failed run, too.
-    named = [line for line in lines if line.startswith("couplet: ")] or [line for line in lines if "error:" in line.lower()]
+    named = [line for line in lines if line.startswith("couplet: ")] or [
+        line for line in lines if "error:" in line.lower()
+    ]
     if not named:
         return " / ".join(lines[-3:])
     at = len(lines) - 1 - lines[::-1].index(named[-1])
-    return " / ".join(lines[at:at + 2]) if named[-1].endswith(":") else named[-1]
+    return " / ".join(lines[at : at + 2]) if named[-1].endswith(":") else named[-1]
 
 
 def launch(command, log, folder=None, timeout=3600, env=None):
@@ -49,8 +59,15 @@ def launch(command, log, folder=None, timeout=3600, env=None):
     log = pathlib.Path(log)
     start = time.monotonic()
     with files.in_place(log.parent, log.name) as out:
-        process = subprocess.Popen([str(c) for c in command], stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
-                                   cwd=folder, env=env or environment(), start_new_session=True)
+        process = subprocess.Popen(
+            [str(c) for c in command],
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=subprocess.STDOUT,
+            cwd=folder,
+            env=env or environment(),
+            start_new_session=True,
+        )
         late = False
         try:
             while True:
@@ -68,7 +85,10 @@ def launch(command, log, folder=None, timeout=3600, env=None):
         except BaseException:  # stopped by the user: no process is left running
             os.killpg(process.pid, signal.SIGTERM)
             limit = time.monotonic() + PATIENCE
-            while os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None and time.monotonic() < limit:
+            while (
+                os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None
+                and time.monotonic() < limit
+            ):
                 time.sleep(0.02)
             os.killpg(process.pid, signal.SIGKILL)
             os.wait4(process.pid, 0)
@@ -86,8 +106,18 @@ def launch(command, log, folder=None, timeout=3600, env=None):
 
 def machine():
     """Returns {name, cores, load} of this machine."""
-    model = next((line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-                  if line.startswith("model name")), platform.machine()) if pathlib.Path("/proc/cpuinfo").exists() else platform.machine()
+    model = (
+        next(
+            (
+                line.split(":", 1)[1].strip()
+                for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+                if line.startswith("model name")
+            ),
+            platform.machine(),
+        )
+        if pathlib.Path("/proc/cpuinfo").exists()
+        else platform.machine()
+    )
     return {"processor": model, "cores": len(os.sched_getaffinity(0)), "load": round(os.getloadavg()[0], 1)}
 
 
@@ -98,7 +128,11 @@ def commit(root):
 
 FRAME = re.compile(rb"-{40,}\s*")
 KILLED = re.compile(r"process rank (\d+) .*exited on signal (\d+)(?: \((.*?)\))?", re.S)
-OTHERS = ("Primary job terminated normally", "mpirun detected that one or more processes exited", "MPI_ABORT was invoked")  # a program ended the job, with a message of its own
+OTHERS = (
+    "Primary job terminated normally",
+    "mpirun detected that one or more processes exited",
+    "MPI_ABORT was invoked",
+)  # a program ended the job, with a message of its own
 LONGEST = 40  # maximum lines between two lines of dashes; longer texts are not mpirun's
 
 
@@ -110,7 +144,9 @@ class Pages:
 
     def feed(self, data, last=False):
         """Returns complete parts that are not mpirun's."""
-        *lines, self.rest = (self.rest + data).splitlines(keepends=True) + ([b""] if (self.rest + data).endswith(b"\n") else []) or [b""]
+        *lines, self.rest = (self.rest + data).splitlines(keepends=True) + (
+            [b""] if (self.rest + data).endswith(b"\n") else []
+        ) or [b""]
         if last:
             lines, self.rest = [*lines, self.rest], b""
         out = b""
@@ -140,6 +176,9 @@ def culprit(killed, sizes):
     rank, number, name = killed
     for who, ranks in sizes:
         if rank < ranks:
-            return f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was ended by signal {number}{f' ({name})' if name else ''}"
+            return (
+                f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was ended by signal"
+                f" {number}{f' ({name})' if name else ''}"
+            )
         rank -= ranks
     return f"a process was ended by signal {number}"

@@ -35,7 +35,8 @@ class Logs:
         self.folder, self.logs = pathlib.Path(folder), {}
 
     def look(self):
-        """Returns (status or "", [warnings and errors]) since the last poll. The status is that of the program that drives the steps."""
+        """Returns (status or "", [warnings and errors]) since the last poll. The status is that of the program that
+        drives the steps."""
         status, worth = "", []
         for name in sorted(p.name for p in self.folder.iterdir() if p.is_dir() and (p / f"{p.name}.log").exists()):
             for line in self.logs.setdefault(name, Log(self.folder / name / f"{name}.log")).lines():
@@ -59,7 +60,7 @@ def tail(file, rows=ROWS):
             cut = size - BYTES > start
     except OSError:
         return {}
-    lines = text.split("\n")[1 if cut else 0:-1][-rows:]  # the last one may be incomplete
+    lines = text.split("\n")[1 if cut else 0 : -1][-rows:]  # the last one may be incomplete
     names, columns = next(csv.reader([head]), []), {}
     table = [r for r in csv.reader(lines) if len(r) == len(names)]
     for i, name in enumerate(names):
@@ -81,17 +82,31 @@ def curves(folder):
     for place in sorted(p for p in folder.iterdir() if p.is_dir()) if folder.is_dir() else ():
         steps, probes = tail(place / "steps.csv"), tail(place / "probes.csv")
         if "dt [s]" in steps:
-            found.append({"title": f"step size of {place.name}", "x": "time [s]", "log": False, "lines": {"dt [s]": list(zip(steps["time [s]"], steps["dt [s]"]))}})
+            found.append(
+                {
+                    "title": f"step size of {place.name}",
+                    "x": "time [s]",
+                    "log": False,
+                    "lines": {"dt [s]": list(zip(steps["time [s]"], steps["dt [s]"]))},
+                }
+            )
         if len(probes) > 1:
             time = next(iter(probes))
-            found.append({"title": f"probes of {place.name}", "x": time, "log": False, "lines": {n: list(zip(probes[time], v)) for n, v in list(probes.items())[1:9]}})
+            found.append(
+                {
+                    "title": f"probes of {place.name}",
+                    "x": time,
+                    "log": False,
+                    "lines": {n: list(zip(probes[time], v)) for n, v in list(probes.items())[1:9]},
+                }
+            )
     return found
 
 
 def by_tables(folder):
     """Status of a quiet run."""
     for file in [folder / "coupler" / "participants.csv", *sorted(folder.glob("*/steps.csv"))]:
-        if (times := next(iter(tail(file, 1).values()), [])):
+        if times := next(iter(tail(file, 1).values()), []):
             return f"t={times[-1]:.6g} s"
     return ""
 
@@ -106,5 +121,10 @@ class Progress:
         status, worth = self.logs.look()
         self.status = status or (self.status if "step" in self.status else by_tables(self.folder))
         self.worth += [w for w in worth if w not in self.worth]
-        return {"folder": str(self.folder), "running": folders.driver(self.folder) is not None, "status": self.status, "warnings": self.worth[-20:],
-                "curves": curves(self.folder)}
+        return {
+            "folder": str(self.folder),
+            "running": folders.driver(self.folder) is not None,
+            "status": self.status,
+            "warnings": self.worth[-20:],
+            "curves": curves(self.folder),
+        }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Division of a number of ranks among the participants, by the work measured in an earlier run or expected by the programs."""
+"""Division of a number of ranks among the participants, by the work measured in an earlier run or expected by the
+programs."""
 import os
 import re
 import subprocess
@@ -14,18 +15,26 @@ ELSEWHERE = ("OMPI_MCA_orte_default_hostfile", "SLURM_JOB_ID", "PBS_NODEFILE", "
 def measured(case, folder):
     """Returns {participant: processor seconds of work} of the run in this folder. Empty if one is missing."""
     from couplet.runs.results import Results
+
     results = Results(folder)
-    found = {name: float(results.report(name).get("processor-working", 0)) for name in case.participants if (folder / name / "run.json").exists()}
+    found = {
+        name: float(results.report(name).get("processor-working", 0))
+        for name in case.participants
+        if (folder / name / "run.json").exists()
+    }
     return found if len(found) == len(case.participants) else {}
 
 
 def expected(case):
-    """Returns {participant: ms per step on one rank}, from --explain of the programs. An external program counts as zero."""
+    """Returns {participant: ms per step on one rank}, from --explain of the programs. An external program counts as
+    zero."""
     found = {}
     for name in case.participants:
         if case.program(name).name not in OURS:
             continue
-        said = subprocess.run([case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True).stdout
+        said = subprocess.run(
+            [case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True
+        ).stdout
         number = re.search(r"^expected: .*?([\d.e+-]+) (ms|s) per step", said, flags=re.M)
         found[name] = float(number[1]) * (1 if number[2] == "ms" else 1000) if number else 0.0
     return found
@@ -38,8 +47,8 @@ def side_by_side(case):
 
 
 def shares(work, total, together=False):
-    """Whole numbers of at least 1 that sum to `total`. They minimize the sum of work / ranks for sequential participants, and the maximum for those
-    that work `together`."""
+    """Whole numbers of at least 1 that sum to `total`. They minimize the sum of work / ranks for sequential
+    participants, and the maximum for those that work `together`."""
     ranks = dict.fromkeys(work, 1)
     for _ in range(total - len(work)):
         best = max(ranks, key=lambda name: work[name] / (ranks[name] if together else ranks[name] * (ranks[name] + 1)))
@@ -58,16 +67,27 @@ def fit_total(total):
     if any(os.environ.get(name) for name in ELSEWHERE):
         return
     cores = len(os.sched_getaffinity(0))
-    expect(total <= MOST_PER_CORE * cores, f"{total} processes on {cores} cores would hardly advance, since each polls for its messages: at most {MOST_PER_CORE * cores} here. "
-           "On several machines use --slurm, or name their file in OMPI_MCA_orte_default_hostfile")
+    expect(
+        total <= MOST_PER_CORE * cores,
+        (
+            f"{total} processes on {cores} cores would hardly advance, since each polls for its messages: at most"
+            f" {MOST_PER_CORE * cores} here. On several machines use --slurm, or name their file in"
+            " OMPI_MCA_orte_default_hostfile"
+        ),
+    )
 
 
 def divide(case, total):
     """Returns {participant: ranks}. The coupler has one rank, which counts."""
     from couplet.runs.job import output_of
+
     expect(total <= MOST, f"-n {total}: at most {MOST} processes")
     names = [n for n in case.participants if not case.guest(n)]
     free = total - (len(case.participants) - len(names)) - (1 if case.coupled else 0)
-    expect(free >= len(names), f"-n {total}: '{case.file}' needs at least {total - free + len(names)} ranks" + (f", one of them for the {COUPLER}" if case.coupled else ""))
+    expect(
+        free >= len(names),
+        f"-n {total}: '{case.file}' needs at least {total - free + len(names)} ranks"
+        + (f", one of them for the {COUPLER}" if case.coupled else ""),
+    )
     work = measured(case, output_of(case, ())) or expected(case)
     return shares({name: work.get(name, 0.0) for name in names}, free, side_by_side(case))

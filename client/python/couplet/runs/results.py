@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results in the output folder of a run: series, probes, monitors, step reports, and the summary of each participant."""
+"""Results in the output folder of a run: series, probes, monitors, step reports, and the summary of each
+participant."""
 from __future__ import annotations
 
 import csv
@@ -16,10 +17,15 @@ if typing.TYPE_CHECKING:  # starting a run needs neither numpy nor h5py
 
 
 def read_csv(file: str | pathlib.Path, heads: list[str] | None = None) -> dict[str, np.ndarray]:
-    """Columns of a CSV by their heads (given, or from its first line). Texts are kept, and a truncated row (of a running job) is skipped."""
+    """Columns of a CSV by their heads (given, or from its first line). Texts are kept, and a truncated row (of a
+    running job) is skipped."""
     import numpy as np  # imported late, since starting a run does not need it
+
     with open(file, newline="") as lines:
-        rows = [*([heads] if heads else []), *csv.reader(line for line in lines if line.strip() and not line.startswith("#"))]
+        rows = [
+            *([heads] if heads else []),
+            *csv.reader(line for line in lines if line.strip() and not line.startswith("#")),
+        ]
     head, body = [h.strip() for h in rows[0]], [r for r in rows[1:] if len(r) == len(rows[0])]
     columns = {}
     for i, name in enumerate(head):
@@ -38,8 +44,11 @@ class Results:
 
     def participants(self) -> list[str]:
         """Names of the participants that have written something, and the coupler."""
-        return sorted(f.name for f in self.folder.iterdir() if f.is_dir() and f.name not in ("checkpoints", "meshes")
-                      and any(f.glob("*.log")))
+        return sorted(
+            f.name
+            for f in self.folder.iterdir()
+            if f.is_dir() and f.name not in ("checkpoints", "meshes") and any(f.glob("*.log"))
+        )
 
     def table(self, participant: str, file: str) -> dict[str, np.ndarray]:
         """Columns of <participant>/<file> by their heads. Raises LookupError if there is no such file."""
@@ -62,21 +71,26 @@ class Results:
     def passes(self) -> np.ndarray:
         """Coupling iterations of each accepted step."""
         import numpy as np
+
         return np.unique(self.table("coupler", "residuals.csv")["step"], return_counts=True)[1]
 
     def fields(self, participant: str) -> FieldSeries:
         """Field series of a participant: times, cells, and fields by name as arrays."""
         from couplet.series import find_series
+
         return find_series(self.folder / participant)
 
     def surfaces(self, participant: str) -> list[str]:
         """Patches with written fields (`output.surfaces`)."""
         from couplet.series import surface_names
+
         return surface_names(self.folder / participant)
 
     def surface(self, participant: str, patch: str) -> Surface:
-        """Fields on a patch over time with one row per face or point; areas, integrals, and the chain of edges in 2-D."""
+        """Fields on a patch over time with one row per face or point; areas, integrals, and the chain of edges in
+        2-D."""
         from couplet.series import find_surface
+
         return find_surface(self.folder / participant, patch)
 
     def probes(self, participant: str) -> dict[str, np.ndarray]:
@@ -85,12 +99,19 @@ class Results:
 
     def findings(self) -> list[dict[str, typing.Any]]:
         """Findings of the run: [{participant, id, severity, ...}] as in run.json."""
-        return [{"participant": name, **found} for name in self.participants() for found in self.report(name).get("findings", ())]
+        return [
+            {"participant": name, **found}
+            for name in self.participants()
+            for found in self.report(name).get("findings", ())
+        ]
 
     def budget(self) -> dict[str, dict[str, float]]:
-        """Error contributions {participant: {mesh, step, linear, coupling, model: share of the solution}} as far as the run could estimate them.
-        `model` is due to neglected effects."""
-        told = {name: {k: v for k, v in self.report(name).get("errors", {}).items() if isinstance(v, (int, float))} for name in self.participants()}
+        """Error contributions {participant: {mesh, step, linear, coupling, model: share of the solution}} as far as the
+        run could estimate them. `model` is due to neglected effects."""
+        told = {
+            name: {k: v for k, v in self.report(name).get("errors", {}).items() if isinstance(v, (int, float))}
+            for name in self.participants()
+        }
         return {name: parts for name, parts in told.items() if parts}
 
     def report(self, participant: str) -> dict[str, typing.Any]:
@@ -110,7 +131,8 @@ class Results:
         return self.table(participant, "steps.csv")
 
     def costs(self) -> dict[str, typing.Any]:
-        """Costs over all participants: steps, iterations, memory [MB], processor seconds of work (without waiting), phases {name: seconds}."""
+        """Costs over all participants: steps, iterations, memory [MB], processor seconds of work (without waiting),
+        phases {name: seconds}."""
         found = {"steps": 0, "iterations": 0, "memory": 0.0, "work": 0.0, "phases": {}}
         for name in self.participants():
             report = self.report(name)

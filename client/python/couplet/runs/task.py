@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One run of a study in a folder of its own. It is made once, found again, and never made by two processes at a time."""
+"""One run of a study in a folder of its own. It is made once, found again, and never made by two processes at a
+time."""
 import contextlib
 import dataclasses
 import fcntl
@@ -25,20 +26,21 @@ MESHING_COUNTS = 30  # [s]; shorter runs that generated their mesh are repeated 
 @dataclasses.dataclass
 class Record:
     """Stored data of a run. `state` is "done" or "failed", with a reason."""
+
     identity: str
     name: str
     state: str
     reason: str = ""
     settings: dict = dataclasses.field(default_factory=dict)
     ranks: dict = dataclasses.field(default_factory=dict)
-    wall: float = 0.0        # [s], the median of the repeats
-    cpu: float = 0.0         # [s], the median of the repeats
-    spread: float = 0.0      # (largest - smallest) / median of the cpu seconds
+    wall: float = 0.0  # [s], the median of the repeats
+    cpu: float = 0.0  # [s], the median of the repeats
+    spread: float = 0.0  # (largest - smallest) / median of the cpu seconds
     repeats: list = dataclasses.field(default_factory=list)  # [[wall, cpu], ...]
-    memory: float = 0.0      # [MB], of all processes together if the programs report it
+    memory: float = 0.0  # [MB], of all processes together if the programs report it
     steps: int = 0
     iterations: int = 0
-    work: float = 0.0        # [s], processor time of all participants without waiting
+    work: float = 0.0  # [s], processor time of all participants without waiting
     phases: dict = dataclasses.field(default_factory=dict)
     version: str = ""
     machine: dict = dataclasses.field(default_factory=dict)
@@ -46,11 +48,15 @@ class Record:
 
 
 class Task:
-    """`changes` is {absolute key: value}; `alone` runs only this participant; `meshed` means that an earlier run generated the meshes, whose time
-    does not count."""
+    """`changes` is {absolute key: value}; `alone` runs only this participant; `meshed` means that an earlier run
+    generated the meshes, whose time does not count."""
 
     def __init__(self, case: Case, name, folder, changes, alone=None, ranks=None, repeats=1, timeout=3600):
-        self.case, self.name, self.folder = case, name, files.below(pathlib.Path(folder).absolute().parent, pathlib.Path(folder).name)
+        self.case, self.name, self.folder = (
+            case,
+            name,
+            files.below(pathlib.Path(folder).absolute().parent, pathlib.Path(folder).name),
+        )
         self.changes, self.alone, self.ranks = dict(changes), alone, dict(ranks or {})
         self.repeats, self.timeout = repeats, timeout
 
@@ -85,12 +91,20 @@ class Task:
             yield True
 
     def make(self):
-        """Runs the task and finally writes its record atomically. The caller holds the lock. A failed run has a record, too."""
+        """Runs the task and finally writes its record atomically. The caller holds the lock. A failed run has a record,
+        too."""
         if self.folder.exists():
             shutil.rmtree(self.folder)
         self.folder.mkdir(parents=True)
-        record = Record(self.identity(), self.name, "done", settings=self.changes, ranks=self.ranks, version=commit(ROOT),
-                        machine=machine())
+        record = Record(
+            self.identity(),
+            self.name,
+            "done",
+            settings=self.changes,
+            ranks=self.ranks,
+            version=commit(ROOT),
+            machine=machine(),
+        )
         try:
             log, costs = self.folder / "run.log", []
             while len(costs) < self.repeats or len(costs) < 3 and sum(c[1] for c in costs) < SHORT:

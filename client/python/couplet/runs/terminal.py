@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Output of a run on a terminal: participants, one status line that renews itself, findings above it, and at the end the results and the verdict. In a file, or with --verbose, the programs' own lines are kept."""
+"""Output of a run on a terminal: participants, one status line that renews itself, findings above it, and at the end
+the results and the verdict. In a file, or with --verbose, the programs' own lines are kept."""
 import re
 import shutil
 import sys
@@ -21,7 +22,13 @@ def short(status):
     """Shortens a status line and puts the remaining time before the costs of parts, since the end may not fit."""
     parts = re.split(r"\s{2,}", status.strip())
     first = [p for p in parts if not re.match(r"ETA|\w+ [\d.]+ s$", p)]
-    return "  ".join([*first, *(p for p in parts if p.startswith("ETA")), *(p for p in parts if p not in first and not p.startswith("ETA"))]).replace("ETA ", "to go ")
+    return "  ".join(
+        [
+            *first,
+            *(p for p in parts if p.startswith("ETA")),
+            *(p for p in parts if p not in first and not p.startswith("ETA")),
+        ]
+    ).replace("ETA ", "to go ")
 
 
 class Plain:
@@ -47,7 +54,7 @@ class Screen:
         for part in textwrap.wrap(text, width() - 1, subsequent_indent="  ") if self.live else [text]:
             print(f"\r\033[K{part}" if self.live else part, flush=True)
         if self.live and self.shown:
-            print(self.shown[:width() - 1], end="", flush=True)
+            print(self.shown[: width() - 1], end="", flush=True)
 
     def clear(self):
         if self.live and self.shown:
@@ -56,7 +63,8 @@ class Screen:
 
 
 class Digest(Screen):
-    """Digest of the programs' lines: the status of the program that drives the steps, and warnings and errors, once per kind."""
+    """Digest of the programs' lines: the status of the program that drives the steps, and warnings and errors, once per
+    kind."""
 
     def __init__(self, job):
         super().__init__()
@@ -72,12 +80,21 @@ class Digest(Screen):
 
     def begin(self):
         simulation = dict(mapping_of(self.job.case.data.get("simulation")))
-        simulation |= {key: value for key, _, value in (s.removeprefix("simulation.").partition("=") for s in self.job.sets if s.startswith("simulation."))}
+        simulation |= {
+            key: value
+            for key, _, value in (
+                s.removeprefix("simulation.").partition("=") for s in self.job.sets if s.startswith("simulation.")
+            )
+        }
         ranks = self.job.ranks
         names = [self.job.alone] if self.job.alone else list(self.job.case.participants)
-        print(f"{simulation.get('name', self.job.case.file.parent.name)} to t = {simulation.get('end-time', '?')}, results in {self.job.output}"[:width()])
+        name, end = simulation.get('name', self.job.case.file.parent.name), simulation.get('end-time', '?')
+        print(f"{name} to t = {end}, results in {self.job.output}"[: width()])
         for name in names[:8]:
-            print(f"  {name:12} {self.job.case.participants[name].get('program')}, {ranks.get(name, 1)} {'rank' if ranks.get(name, 1) == 1 else 'ranks'}")
+            print(
+                f"  {name:12} {self.job.case.participants[name].get('program')},"
+                f" {ranks.get(name, 1)} {'rank' if ranks.get(name, 1) == 1 else 'ranks'}"
+            )
         if len(names) > 8:
             print(f"  and {len(names) - 8} more")
         self.status("starts ...")
@@ -100,12 +117,22 @@ class Digest(Screen):
         """Prints the results, the verdict and the number of further warnings."""
         from couplet.command.report import MOST_ROWS, rows, verdict
         from couplet.runs.results import Results
+
         self.clear()
         if code not in (0, 3, 4):
-            print(*self.unsaid[-30:] if code == 2 else (), sep="\n", end="\n" if code == 2 and self.unsaid else "", file=sys.stderr)
+            print(
+                *self.unsaid[-30:] if code == 2 else (),
+                sep="\n",
+                end="\n" if code == 2 and self.unsaid else "",
+                file=sys.stderr,
+            )
             return
         results = Results(self.job.output)
-        names = [name for name in results.participants() if name in ([self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants])]
+        names = [
+            name
+            for name in results.participants()
+            if name in ([self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants])
+        ]
         print(*rows(results, names, MOST_ROWS - 2 * len(names)), *verdict(results, names), sep="\n")
         hidden = len(self.told) - MOST_FINDINGS
         if hidden > 0:

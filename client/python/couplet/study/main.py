@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the section `study` of a case and reports the result: named variants with their summaries in one table, axes with error against time, or the
-best of some variables. An interrupted study continues where it stopped, and two at once share their work. docs/studies.md describes the section."""
+"""Runs the section `study` of a case and reports the result: named variants with their summaries in one table, axes
+with error against time, or the best of some variables. An interrupted study continues where it stopped, and two at once
+share their work. docs/studies.md describes the section."""
 import fnmatch
 import os
 import pathlib
@@ -33,7 +34,11 @@ def run_variants(cases, arguments):
         for name in found:
             if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.only.split(",")):
                 folder = out_of(case, arguments) / (f"{case.file.parent.name}-{name}" if several else name)
-                runs.append(variants.Variant(case, name, folder, {**found[name], **arguments.changes}, alone=participant, timeout=86400))
+                runs.append(
+                    variants.Variant(
+                        case, name, folder, {**found[name], **arguments.changes}, alone=participant, timeout=86400
+                    )
+                )
     expect(runs, f"--only {arguments.only}: there is no such variant.")
     if arguments.list:
         for run in runs:
@@ -50,17 +55,21 @@ def run_variants(cases, arguments):
     for line in warnings_of(run.folder / "run.log" for run in runs):
         say(line)
     failed = sum(record.state != "done" for record in records.values())
-    print(f"{len(runs) - failed} of {len(runs)} variants in {time.monotonic() - start:.1f} s, {jobs} at a time; "
-          f"one after the other they take {sum(r.wall for r in records.values()):.1f} s")
+    print(
+        f"{len(runs) - failed} of {len(runs)} variants in {time.monotonic() - start:.1f} s, {jobs} at a time; "
+        f"one after the other they take {sum(r.wall for r in records.values()):.1f} s"
+    )
     return 1 if failed else 0
 
 
 def run_axes(case, arguments):
     from couplet.study.study import Study
+
     out = out_of(case, arguments)
     study = Study(case, out, arguments.changes, arguments.repeats)
     if arguments.for_error:
         from couplet.study.predict import for_error
+
         return for_error(study, arguments.for_error, arguments.quantity, say)
     points = study.axes.points()
     names = chosen([p.name for p in points], arguments)
@@ -73,6 +82,7 @@ def run_axes(case, arguments):
     peers, why = [], {}
     if arguments.peers:
         from couplet.peers.race import Race
+
         race = Race(study, say, arguments.allow_commands)
         peers, why = race.rows(rows), race.why
         for name, reason in why.items():
@@ -81,7 +91,11 @@ def run_axes(case, arguments):
     if arguments.publish:
         for file in (*out.glob("peers.csv"), out / "runs.csv"):
             files.copy(file, files.folder(arguments.publish, "."))
-        files.write(arguments.publish, "report.md", re.sub(r"^!\[.*\]\(.*\)\n\n?", "", (out / "report.md").read_text(), flags=re.M))
+        files.write(
+            arguments.publish,
+            "report.md",
+            re.sub(r"^!\[.*\]\(.*\)\n\n?", "", (out / "report.md").read_text(), flags=re.M),
+        )
     failed = [row for row in rows if not row.good]
     for row in failed:
         say(f"failed: {row.point.name}: {row.record.reason or row.reason}")
@@ -90,21 +104,71 @@ def run_axes(case, arguments):
 
 
 def declare(parser):
-    parser.add_argument("cases", nargs="+", type=pathlib.Path, metavar="CASE", help="case files; several only for studies of variants")
-    parser.add_argument("--only", default="*", metavar="NAMES", help="runs to make, separated by commas; * matches any text (diameter-*)")
-    parser.add_argument("--jobs", type=int, metavar="N", help="number of concurrent runs (default: the number of processors; 1 for axes, whose times are compared)")
+    parser.add_argument(
+        "cases", nargs="+", type=pathlib.Path, metavar="CASE", help="case files; several only for studies of variants"
+    )
+    parser.add_argument(
+        "--only",
+        default="*",
+        metavar="NAMES",
+        help="runs to make, separated by commas; * matches any text (diameter-*)",
+    )
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        metavar="N",
+        help="number of concurrent runs (default: the number of processors; 1 for axes, whose times are compared)",
+    )
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="changes a value in all runs")
-    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="folder for runs and tables (default: out/study or out/optimise beside the case)")
+    parser.add_argument(
+        "--out",
+        type=pathlib.Path,
+        metavar="FOLDER",
+        help="folder for runs and tables (default: out/study or out/optimise beside the case)",
+    )
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="folder whose bin/ contains the programs")
     parser.add_argument("--list", action="store_true", help="lists the runs and their changes")
     parser.add_argument("--repeats", type=int, metavar="N", help="repetitions of each run of axes; their median counts")
-    parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report without its plots and the tables to this folder")
+    parser.add_argument(
+        "--publish",
+        type=pathlib.Path,
+        metavar="FOLDER",
+        help="copies the report without its plots and the tables to this folder",
+    )
     parser.add_argument("--again", action="store_true", help="repeats runs even if results exist")
-    parser.add_argument("--peers", action="store_true", help="also writes the case for CalculiX or OpenFOAM, runs those that are installed, and shows them in the same pictures; reports why if it cannot")
-    parser.add_argument("--allow-commands", action="store_true", help="with --peers: allows a .geo to run commands and write files, with your permissions")
-    parser.add_argument("--for-error", metavar="SHARE", help="predicts the cheapest setting for this error (such as 1%%) from a few cheap runs, runs it, and compares error and time with the prediction")
-    parser.add_argument("--quantity", metavar="NAME", help="quantity that --for-error is about, if the study has several")
-    parser.add_argument("--quantities", action="store_true", help="estimates the errors of the study's quantities for the case as it is, from runs with a half and a quarter of the cells along each line, with two and four times the step, and with tighter tolerances (section `sources`), and names the dominant one")
+    parser.add_argument(
+        "--peers",
+        action="store_true",
+        help=(
+            "also writes the case for CalculiX or OpenFOAM, runs those that are installed, and shows them in the same"
+            " pictures; reports why if it cannot"
+        ),
+    )
+    parser.add_argument(
+        "--allow-commands",
+        action="store_true",
+        help="with --peers: allows a .geo to run commands and write files, with your permissions",
+    )
+    parser.add_argument(
+        "--for-error",
+        metavar="SHARE",
+        help=(
+            "predicts the cheapest setting for this error (such as 1%%) from a few cheap runs, runs it, and compares"
+            " error and time with the prediction"
+        ),
+    )
+    parser.add_argument(
+        "--quantity", metavar="NAME", help="quantity that --for-error is about, if the study has several"
+    )
+    parser.add_argument(
+        "--quantities",
+        action="store_true",
+        help=(
+            "estimates the errors of the study's quantities for the case as it is, from runs with a half and a quarter"
+            " of the cells along each line, with two and four times the step, and with tighter tolerances (section"
+            " `sources`), and names the dominant one"
+        ),
+    )
     parser.add_argument("--optimise", action="store_true", help="finds the best values of some variables in few runs")
 
 
@@ -115,10 +179,12 @@ def run(arguments):
     cases = [Case(file, arguments.build) for file in arguments.cases]
     if arguments.optimise:
         from couplet.study import optimise
+
         expect(len(cases) == 1, "--optimise: one case at a time.")
         return optimise.run(cases[0], arguments)
     if arguments.quantities:
         from couplet.study import interest
+
         expect(len(cases) == 1, "--quantities: one case at a time.")
         return interest.run(cases[0], out_of(cases[0], arguments), arguments, say)
     if all("axes" not in case.study for case in cases):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sizing by few runs: the best of one to four continuous variables of a case, what `couplet study CASE.yaml --optimise` does.
-The section of the case:
+"""Sizing by few runs: the best of one to four continuous variables of a case, what `couplet study CASE.yaml --optimise`
+does. The section of the case:
   study:
     participant: tank                     # keys below start at it unless they start with simulation. or participants.
     optimise:
@@ -12,9 +12,9 @@ The section of the case:
         diameter: {from: 34, to: 50, unit: m}
         cut-off: {key: flow.cut-off, from: 5, to: 30, unit: K}
         height: {from: 8, to: 16, unit: m, sets: {bed.layers.0.height: 0.01, bed.layers.1.height: 0.99}}   # key: share
-A surface of cubic radial functions through the runs so far predicts where the best is; the next runs go there, as many at a
-time as there are processors, the others of a round to where the surface is known least. optimise.csv has all runs so far; a
-search that was interrupted and is started again finds the runs that are done. --again repeats them."""
+A surface of cubic radial functions through the runs so far predicts where the best is; the next runs go there, as many
+at a time as there are processors, the others of a round to where the surface is known least. optimise.csv has all runs
+so far; a search that was interrupted and is started again finds the runs that are done. --again repeats them."""
 import itertools
 import math
 import os
@@ -55,10 +55,12 @@ def surface(points, values):
 
 
 def next_points(points, values, count, nearest):
-    """`count` new points and the expected minimum of the surface: the minimum, then others with low expected values far from known ones. None is
-    closer than `nearest` to a known one."""
+    """`count` new points and the expected minimum of the surface: the minimum, then others with low expected values far
+    from known ones. None is closer than `nearest` to a known one."""
     dimensions, model = len(points[0]), surface(points, values)
-    grid = np.array(list(itertools.product(np.linspace(0, 1, {1: 201, 2: 41, 3: 15}.get(dimensions, 8)), repeat=dimensions)))
+    grid = np.array(
+        list(itertools.product(np.linspace(0, 1, {1: 201, 2: 41, 3: 15}.get(dimensions, 8)), repeat=dimensions))
+    )
     expected = model(grid)
     best = None
     for start in grid[np.argsort(expected)[:5]]:
@@ -81,8 +83,9 @@ def next_points(points, values, count, nearest):
 
 
 def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
-    """Minimizes a function on the unit cube. `evaluate(points)` returns a value per point (inf: failed), `together` at a time. Returns (best point,
-    its value, all points, all values). Reports values times `sign`, and finally why it ended."""
+    """Minimizes a function on the unit cube. `evaluate(points)` returns a value per point (inf: failed), `together` at
+    a time. Returns (best point, its value, all points, all values). Reports values times `sign`, and finally why it
+    ended."""
     points, values = [], []
     todo = first_points(dimensions)[:runs]
     quiet = 0
@@ -101,11 +104,16 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
         # Converged if the surface expects no improvement three times in a row.
         quiet = quiet + 1 if best - wanted <= tolerance * abs(best) else 0
         if quiet > 2:
-            say(f"optimise: ends after {len(points)} of {runs} runs: three times in a row nothing better by more than "
-                f"{tolerance:.2g} of it was expected (study.optimise.tolerance); a smaller tolerance looks further")
+            say(
+                f"optimise: ends after {len(points)} of {runs} runs: three times in a row nothing better by more than "
+                f"{tolerance:.2g} of it was expected (study.optimise.tolerance); a smaller tolerance looks further"
+            )
             break
         if not todo:
-            say(f"optimise: ends after {len(points)} of {runs} runs: no place is left that is 2 % of the range from all others")
+            say(
+                f"optimise: ends after {len(points)} of {runs} runs: no place is left that is 2 % of the range from all"
+                " others"
+            )
     k = int(np.argmin(np.where(np.isfinite(values), values, np.inf)))
     return points[k], values[k], points, values
 
@@ -124,20 +132,29 @@ class Variable:
         unknown = set(spec) - {"key", "from", "to", "unit", "sets"}
         expect(not unknown, f"{place}: unknown key '{next(iter(unknown), '')}'; valid are key, from, to, unit, sets.")
         low, high = spec.get("from"), spec.get("to")
-        expect(is_number(low) and is_number(high) and low < high,
-               f"{place}: 'from' and 'to' must be numbers, the first below the second; give the unit in 'unit'.")
+        expect(
+            is_number(low) and is_number(high) and low < high,
+            f"{place}: 'from' and 'to' must be numbers, the first below the second; give the unit in 'unit'.",
+        )
         self.name, self.low, self.high, self.unit = name, low, high, spec.get("unit", "")
         expect(isinstance(self.unit, str), f"{place}.unit: expected a text, not {self.unit!r}.")
         expect(not ("sets" in spec and "key" in spec), f"{place}: give either 'key' or 'sets'.")
         self.sets = spec["sets"] if "sets" in spec else {spec.get("key", name): 1}
-        expect(isinstance(self.sets, dict) and self.sets and all(isinstance(k, str) and is_number(v) for k, v in self.sets.items()),
-               f"{place}.sets: expected {{key: share of the variable, ...}}, the shares numbers.")
+        expect(
+            isinstance(self.sets, dict)
+            and self.sets
+            and all(isinstance(k, str) and is_number(v) for k, v in self.sets.items()),
+            f"{place}.sets: expected {{key: share of the variable, ...}}, the shares numbers.",
+        )
 
     def at(self, x):
         return self.low + x * (self.high - self.low)
 
     def changes(self, x, case, participant):
-        return {case.absolute(key, participant): f"{self.at(x) * share:.9g} {self.unit}".strip() for key, share in self.sets.items()}
+        return {
+            case.absolute(key, participant): f"{self.at(x) * share:.9g} {self.unit}".strip()
+            for key, share in self.sets.items()
+        }
 
 
 class Search:
@@ -147,24 +164,46 @@ class Search:
         section, place = case.study.get("optimise"), f"{case.asked}: study.optimise"
         expect(isinstance(section, dict), f"{place}: this section does not exist.")
         unknown = set(section) - {"minimise", "maximise", "runs", "tolerance", "variables", "set"}
-        expect(not unknown, f"{place}: unknown key '{next(iter(unknown), '')}'; valid are minimise, maximise, runs, tolerance, variables, set.")
+        expect(
+            not unknown,
+            (
+                f"{place}: unknown key '{next(iter(unknown), '')}'; valid are minimise, maximise, runs, tolerance,"
+                " variables, set."
+            ),
+        )
         expect(("minimise" in section) != ("maximise" in section), f"{place}: give either 'minimise' or 'maximise'.")
         self.case, self.sign = case, 1 if "minimise" in section else -1
         self.quantity = section.get("minimise", section.get("maximise"))
-        expect(isinstance(self.quantity, str), f"{place}: what is sought is the name of a quantity of summary.csv, not {self.quantity!r}.")
+        expect(
+            isinstance(self.quantity, str),
+            f"{place}: what is sought is the name of a quantity of summary.csv, not {self.quantity!r}.",
+        )
         found = section.get("variables") or {}
         expect(isinstance(found, dict), f"{place}.variables: expected {{name: {{from: ..., to: ...}}}}.")
         self.variables = [Variable(name, spec, f"{place}.variables") for name, spec in found.items()]
         expect(1 <= len(self.variables) <= 4, f"{place}.variables: one to four are needed.")
         self.runs = section.get("runs", 10 * len(self.variables))
-        expect(is_number(self.runs) and self.runs == int(self.runs) and self.runs >= 3, f"{place}.runs: expected a whole number of at least 3.")
+        expect(
+            is_number(self.runs) and self.runs == int(self.runs) and self.runs >= 3,
+            f"{place}.runs: expected a whole number of at least 3.",
+        )
         self.tolerance = section.get("tolerance", 0.005)
-        expect(is_number(self.tolerance) and self.tolerance >= 0, f"{place}.tolerance: expected a number of at least 0.")
+        expect(
+            is_number(self.tolerance) and self.tolerance >= 0, f"{place}.tolerance: expected a number of at least 0."
+        )
         expect(isinstance(case.participants, dict), f"{case.file}: participants: expected a mapping.")
         self.participant = case.study.get("participant", next(iter(case.participants), None))
-        expect(self.participant in case.participants, f"{case.asked}: study.participant: there is no participant '{self.participant}'.")
-        expect(case.program(self.participant).is_file(), f"{case.program(self.participant)}: there is no such program. Build it, or name the "
-                                                         "folder of the build by --build.")
+        expect(
+            self.participant in case.participants,
+            f"{case.asked}: study.participant: there is no participant '{self.participant}'.",
+        )
+        expect(
+            case.program(self.participant).is_file(),
+            (
+                f"{case.program(self.participant)}: there is no such program. Build it, or name the "
+                "folder of the build by --build."
+            ),
+        )
         fixed = section.get("set") or {}
         expect(isinstance(fixed, dict), f"{place}.set: expected {{key: value, ...}}.")
         self.fixed = {case.absolute(key, self.participant): value for key, value in fixed.items()}
@@ -188,16 +227,30 @@ class Search:
 
 
 class Runs:
-    """Runs of a case, one per point, each in a folder of its own where it is found again. `table` is written after each round."""
+    """Runs of a case, one per point, each in a folder of its own where it is found again. `table` is written after each
+    round."""
 
     def __init__(self, search, folder, jobs, further=None, again=False, say=print):
-        self.search, self.folder, self.jobs, self.further, self.again, self.say = search, pathlib.Path(folder), jobs, further or {}, again, say
+        self.search, self.folder, self.jobs, self.further, self.again, self.say = (
+            search,
+            pathlib.Path(folder),
+            jobs,
+            further or {},
+            again,
+            say,
+        )
         self.points, self.values = [], []
 
     def task(self, number, point):
         name = f"run-{number:03d}"
-        return Variant(self.search.case, name, self.folder / name, self.search.changes(point, self.further), alone=self.search.participant,
-                       timeout=86400)
+        return Variant(
+            self.search.case,
+            name,
+            self.folder / name,
+            self.search.changes(point, self.further),
+            alone=self.search.participant,
+            timeout=86400,
+        )
 
     def value(self, task, record):
         """Value to minimize; infinite if there is none."""
@@ -205,9 +258,15 @@ class Runs:
             return math.inf
         found = {quantity: value for (quantity, _), value in task.summary().items()}
         wanted = self.search.quantity
-        expect(wanted in found, f"{self.search.case.asked}: study.optimise: summary.csv has no '{wanted}'; it has {', '.join(found)}.")
+        expect(
+            wanted in found,
+            f"{self.search.case.asked}: study.optimise: summary.csv has no '{wanted}'; it has {', '.join(found)}.",
+        )
         if not math.isfinite(found[wanted]):
-            self.say(f"optimise: {task.name}: '{wanted}' is {found[wanted]:g}: it counts as failed, see {task.folder / 'run.log'}")
+            self.say(
+                f"optimise: {task.name}: '{wanted}' is {found[wanted]:g}: it counts as failed, see"
+                f" {task.folder / 'run.log'}"
+            )
             return math.inf
         return self.search.sign * found[wanted]
 
@@ -231,12 +290,23 @@ class Runs:
 def run(case, arguments):
     wanted = Search(case)
     jobs = arguments.jobs or len(os.sched_getaffinity(0))
-    runs = Runs(wanted, arguments.out or files.below(wanted.case.file.parent / "out", "optimise"), jobs, arguments.changes, arguments.again,
-                lambda line: print(line, flush=True))
-    point, value, points, _ = search(runs, len(wanted.variables), int(wanted.runs), wanted.tolerance, jobs, runs.say, wanted.sign)
+    runs = Runs(
+        wanted,
+        arguments.out or files.below(wanted.case.file.parent / "out", "optimise"),
+        jobs,
+        arguments.changes,
+        arguments.again,
+        lambda line: print(line, flush=True),
+    )
+    point, value, points, _ = search(
+        runs, len(wanted.variables), int(wanted.runs), wanted.tolerance, jobs, runs.say, wanted.sign
+    )
     where = ", ".join(f"{v.name} {v.at(x):.4g} {v.unit}".strip() for v, x in zip(wanted.variables, point))
     edge = [v.name for v, x in zip(wanted.variables, point) if x < 0.02 or x > 0.98]
-    print(f"best {wanted.quantity} {wanted.sign * value:.6g} at {where}, after {len(points)} runs; all in {runs.folder / 'optimise.csv'}")
+    print(
+        f"best {wanted.quantity} {wanted.sign * value:.6g} at {where}, after {len(points)} runs; all in"
+        f" {runs.folder / 'optimise.csv'}"
+    )
     for line in warnings_of(runs.folder / f"run-{number:03d}" / "run.log" for number in range(len(points))):
         print(line)
     failed = sum(not math.isfinite(v) for v in runs.values)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds the cheapest setting for a requested error, predicted from few cheap runs, and runs it.
 
-For each series (combination of all axes except the refinement) up to three of the smallest sizes are run. A fit of its values over the sizes
-(fits.py) gives the size that meets the target with an error bound, and seconds(n) = a + b n^q its cost. The series with the lowest predicted cost
-continues with larger sizes until a run meets the target. The target is met only where a second witness confirms the extrapolated error (Series.doubt);
-otherwise one more size is run. Series without a fit continue if that costs less than the best prediction. A reason is
-reported for each rejected series."""
+For each series (combination of all axes except the refinement) up to three of the smallest sizes are run. A fit of its
+values over the sizes (fits.py) gives the size that meets the target with an error bound, and seconds(n) = a + b n^q its
+cost. The series with the lowest predicted cost continues with larger sizes until a run meets the target. The target is
+met only where a second witness confirms the extrapolated error (Series.doubt); otherwise one more size is run. Series
+without a fit continue if that costs less than the best prediction. A reason is reported for each rejected series."""
 import json
 import math
 import re
@@ -15,16 +15,17 @@ from couplet.runs import expect
 from couplet.study import table
 from couplet.study.series import ENOUGH, GROWTH, ROUNDS, Prediction, Refusal, Series
 
-NEAR = 1.5       # maximum ratio of the final size to the largest one tried
-LEAP = 3.0       # ... the same if an intermediate run is too expensive
-AT_ONCE = 1.15   # ratio up to which no intermediate run is made
-SHORT = 1.0      # [s]; shorter final runs may be preceded by many runs
-BEFORE = 3.0     # maximum ratio of the time before the final run to its own, if that exceeds SHORT ...
-RESERVE = 2.0    # ... of which pilots and intermediate runs may take so much; the rest is for a failed final run
-TRY = 0.7        # a series continues if it may be cheaper than this fraction of the best prediction and has a cheaper larger run
-TOO_GOOD = 0.4   # of the target: a smaller error is no answer if a smaller size would do ...
-TOO_MUCH = 1.4   # ... nor a run that takes so much longer than that
-FREE = 10.0      # [s] to spend in any case before a search without prediction ends
+NEAR = 1.5  # maximum ratio of the final size to the largest one tried
+LEAP = 3.0  # ... the same if an intermediate run is too expensive
+AT_ONCE = 1.15  # ratio up to which no intermediate run is made
+SHORT = 1.0  # [s]; shorter final runs may be preceded by many runs
+BEFORE = 3.0  # maximum ratio of the time before the final run to its own, if that exceeds SHORT ...
+RESERVE = 2.0  # ... of which pilots and intermediate runs may take so much; the rest is for a failed final run
+# a series continues if it may be cheaper than this fraction of the best prediction and has a cheaper larger run
+TRY = 0.7
+TOO_GOOD = 0.4  # of the target: a smaller error is no answer if a smaller size would do ...
+TOO_MUCH = 1.4  # ... nor a run that takes so much longer than that
+FREE = 10.0  # [s] to spend in any case before a search without prediction ends
 
 
 def target_of(text):
@@ -59,7 +60,8 @@ class Search:
 
     # -- the first runs
     def pilots(self):
-        """Runs the three smallest sizes of each series. Expensive third runs are skipped unless the best prediction allows them."""
+        """Runs the three smallest sizes of each series. Expensive third runs are skipped unless the best prediction
+        allows them."""
         found = {}
         for point in self.study.axes.points():
             labels = {k: v for k, v in point.labels.items() if k != self.refining.name}
@@ -74,8 +76,10 @@ class Search:
             if len(sizes) > 2 and (best is None or self.affords(series.seconds(sizes[2]), best[1].seconds)):
                 self.run(series, sizes[2])
             elif len(sizes) > 2:
-                series.short = (f"size {sizes[2]:g} was not run, which would take {series.seconds(sizes[2]):.2g} s: "
-                                f"{best[0].name} should do in {best[1].seconds:.2g} s, after {self.spent():.2g} s of runs before it")
+                series.short = (
+                    f"size {sizes[2]:g} was not run, which would take {series.seconds(sizes[2]):.2g} s: "
+                    f"{best[0].name} should do in {best[1].seconds:.2g} s, after {self.spent():.2g} s of runs before it"
+                )
 
     def run(self, series, size):
         row = series.add(size, self.say)
@@ -85,7 +89,8 @@ class Search:
 
     # -- larger ones
     def candidates(self, best, chosen):
-        """Returns [(seconds, series)] that may still turn out cheaper: without prediction, or with an uncertain one from few runs."""
+        """Returns [(seconds, series)] that may still turn out cheaper: without prediction, or with an uncertain one
+        from few runs."""
         found = []
         for i, series in enumerate(self.every):
             if series is chosen or series.failed or not series.rows or len(series.rows) >= ROUNDS:
@@ -94,7 +99,11 @@ class Search:
             if best is None and isinstance(guess, Refusal) and guess.hopeful and seconds <= max(FREE, self.spent()):
                 found.append((seconds, i, series))
             elif best is not None and seconds < TRY * best.seconds and self.affords(seconds, best.seconds):
-                found += [(seconds, i, series)] if getattr(guess, "hopeful", False) or getattr(guess, "cheap", math.inf) < TRY * best.seconds else []
+                found += (
+                    [(seconds, i, series)]
+                    if getattr(guess, "hopeful", False) or getattr(guess, "cheap", math.inf) < TRY * best.seconds
+                    else []
+                )
         return [(seconds, series) for seconds, _, series in sorted(found, key=lambda f: f[:2])]
 
     def step(self):
@@ -104,7 +113,11 @@ class Search:
         if others:
             seconds, other = others[0]
             guess = other.predict(self.target)
-            why = guess.reason if isinstance(guess, Refusal) else f"size {guess.size:g} should do in {guess.seconds:.2g} s, at best {guess.cheap:.2g} s"
+            why = (
+                guess.reason
+                if isinstance(guess, Refusal)
+                else f"size {guess.size:g} should do in {guess.seconds:.2g} s, at best {guess.cheap:.2g} s"
+            )
             self.say(f"{other.name}: {why}; a larger size may show more, in about {seconds:.2g} s")
             self.run(other, self.following(other))
             return False
@@ -113,10 +126,15 @@ class Search:
         there = next((r for r in series.rows if r.point.size >= best.size and series.meets(r, self.target)), None)
         if there:
             return self.settle(series, best, there)
-        self.say(f"{series.name}: size {best.size:g} should leave an error of {best.error:.2g} (at most {best.bound:.2g}) and take {best.seconds:.3g} s")
+        self.say(
+            f"{series.name}: size {best.size:g} should leave an error of {best.error:.2g} (at most {best.bound:.2g})"
+            f" and take {best.seconds:.3g} s"
+        )
         size = self.next_size(series, best)
         row = self.run(series, size)
-        reached = [r for r in series.rows if series.meets(r, self.target)]  # a run may have been too little to show that the ones before it suffice
+        reached = [
+            r for r in series.rows if series.meets(r, self.target)
+        ]  # a run may have been too little to show that the ones before it suffice
         if size == best.size and row in reached and reached[0] is row and not self.smaller(series, row):
             self.found = series, row, best
             return True
@@ -128,18 +146,29 @@ class Search:
         largest = series.sizes()[-1]
         if best.size <= NEAR * largest:
             return best.size
-        between = self.refining.round(min(best.size / NEAR, (2 if best.bound < 2 * best.error else GROWTH) * largest), up=True)
-        costly = best.size <= LEAP * largest and best.seconds > SHORT and not self.affords(series.seconds(between), best.seconds)
+        between = self.refining.round(
+            min(best.size / NEAR, (2 if best.bound < 2 * best.error else GROWTH) * largest), up=True
+        )
+        costly = (
+            best.size <= LEAP * largest
+            and best.seconds > SHORT
+            and not self.affords(series.seconds(between), best.seconds)
+        )
         if between <= largest or between * AT_ONCE >= best.size or costly:
             return best.size
         return between
 
     def smaller(self, series, row):
-        """Prediction of a smaller size if the row is much better or more expensive than requested and one more run is affordable."""
+        """Prediction of a smaller size if the row is much better or more expensive than requested and one more run is
+        affordable."""
         if series.failed:
             return None
         found, left = series.predict(self.target), series.left(row)
-        if not isinstance(found, Prediction) or found.size >= row.point.size or any(r.point.size == found.size for r in series.rows):
+        if (
+            not isinstance(found, Prediction)
+            or found.size >= row.point.size
+            or any(r.point.size == found.size for r in series.rows)
+        ):
             return None
         much = left[0] < TOO_GOOD * self.target or series.cost(row) > TOO_MUCH * found.seconds
         return found if much and (found.seconds <= SHORT or self.spent() <= BEFORE * found.seconds) else None
@@ -148,7 +177,10 @@ class Search:
         """Accepts an existing run that meets the target, unless a smaller size would do."""
         less = self.smaller(series, row)
         if less:
-            self.say(f"{series.name}: size {row.point.size:g} is better than asked; size {less.size:g} should do in {less.seconds:.3g} s")
+            self.say(
+                f"{series.name}: size {row.point.size:g} is better than asked; size {less.size:g} should do in"
+                f" {less.seconds:.3g} s"
+            )
             made = self.run(series, less.size)
             if made.good and series.meets(made, self.target) and not self.smaller(series, made):
                 self.found = series, made, less
@@ -162,7 +194,10 @@ class Search:
     def go(self):
         self.found, self.doubt = (None, None, None), ""
         self.pilots()
-        expect(any(s.rows for s in self.every), "no series could be run: " + "; ".join(f"{s.name}: {s.failed}" for s in self.every))
+        expect(
+            any(s.rows for s in self.every),
+            "no series could be run: " + "; ".join(f"{s.name}: {s.failed}" for s in self.every),
+        )
         for _ in range(ROUNDS + 3 * len(self.every)):
             if self.step():
                 break
@@ -176,7 +211,10 @@ class Search:
         if not self.doubt or series.failed:
             return
         size = self.following(series)
-        self.say(f"{series.name}: size {row.point.size:g} is not sure to meet the target: {self.doubt}; size {size:g} may confirm it, in about {series.seconds(size):.2g} s")
+        self.say(
+            f"{series.name}: size {row.point.size:g} is not sure to meet the target: {self.doubt}; size {size:g} may"
+            f" confirm it, in about {series.seconds(size):.2g} s"
+        )
         made = self.run(series, size)
         for one in (row, made) if made.good else ():
             self.doubt = series.doubt(one) if one is made or not series.agree(row, made) else ""
@@ -205,7 +243,8 @@ def others(search, chosen, row):
 
 
 def seen_from_others(search, chosen, row):
-    """Lower bound of a run's error from other series: its distance from a more certain limit minus the bound of that."""
+    """Lower bound of a run's error from other series: its distance from a more certain limit minus the bound of
+    that."""
     least, who = 0.0, ""
     for series in search.every:
         if series is chosen or series.known or not series.rows:
@@ -226,23 +265,56 @@ def said(search, series, row, predicted):
     rest = others(search, series, row)
     lines = [f"  {o['series']}: not chosen: {o['reason']}" for o in rest]
     if row is None:
-        return {"met": False, "target": target, "quantity": quantity.name, "others": rest, "before": search.spent(),
-                "lines": [f"No setting was found for an error of {target:.3g}, after {sum(len(s.rows) for s in search.every)} runs:", *lines]}
+        return {
+            "met": False,
+            "target": target,
+            "quantity": quantity.name,
+            "others": rest,
+            "before": search.spent(),
+            "lines": [
+                (
+                    f"No setting was found for an error of {target:.3g}, after"
+                    f" {sum(len(s.rows) for s in search.every)} runs:"
+                ),
+                *lines,
+            ],
+        }
     if series.known:
         table.set_errors([row], [quantity])
-    true, (error, bound) = row.errors.get(quantity.name), series.left(row) or (predicted.error, predicted.bound)  # a run more may have left no fit
+    true, (error, bound) = row.errors.get(quantity.name), series.left(row) or (
+        predicted.error,
+        predicted.bound,
+    )  # a run more may have left no fit
     elsewhere, who = (0.0, "") if true is not None else seen_from_others(search, series, row)
     reached = true if true is not None else max(error, elsewhere)
     seconds, spent = series.cost(row), search.spent()
     settings = ", ".join(f"{k}={v}" for k, v in row.point.changes.items())
     how = "against the reference" if true is not None else f"by extrapolation, at most {max(bound, elsewhere):.3g}"
-    first = [f"Cheapest for {quantity.name} to {target:.3g}: {series.name}, size {row.point.size:g} ({settings})",
-             f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})" + (f"; seen from {who}" if elsewhere > error else ""),
-             *([f"not confirmed: {search.doubt}"] if search.doubt else []),
-             f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); the runs before it took {spent - seconds:.3g} s"]
-    return {"met": reached <= ENOUGH * target and not search.doubt, "doubt": search.doubt, "target": target, "quantity": quantity.name, "series": series.name, "size": row.point.size,
-            "value": row.values[quantity.name], "predicted error": predicted.error, "predicted seconds": predicted.seconds, "error": reached, "bound": bound, "estimate": error,
-            "seconds": seconds, "before": spent - seconds, "others": rest, "lines": first + lines}
+    first = [
+        f"Cheapest for {quantity.name} to {target:.3g}: {series.name}, size {row.point.size:g} ({settings})",
+        f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})"
+        + (f"; seen from {who}" if elsewhere > error else ""),
+        *([f"not confirmed: {search.doubt}"] if search.doubt else []),
+        f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); the runs before it took {spent - seconds:.3g} s",
+    ]
+    return {
+        "met": reached <= ENOUGH * target and not search.doubt,
+        "doubt": search.doubt,
+        "target": target,
+        "quantity": quantity.name,
+        "series": series.name,
+        "size": row.point.size,
+        "value": row.values[quantity.name],
+        "predicted error": predicted.error,
+        "predicted seconds": predicted.seconds,
+        "error": reached,
+        "bound": bound,
+        "estimate": error,
+        "seconds": seconds,
+        "before": spent - seconds,
+        "others": rest,
+        "lines": first + lines,
+    }
 
 
 def for_error(study, text, name, say):

@@ -6,12 +6,14 @@ quantities:
   drag: {file: forces.csv, column: "cylinder pressure x [N]", at: mean, from: 4 s}
   efficiency: {summary: eta_th}                                      # a row of a tank's summary.csv
   u: {python: "nine_points.py: errors", item: 0, is: error}          # what a function of a file beside the case returns
-  velocity: {field: velocity, exact: ["sin(x)*cos(y)*exp(-2*t)", ...]}  # relative L2 norm over the cells; is an error itself
+  velocity: {field: velocity, exact: ["sin(x)*cos(y)*exp(-2*t)", ...]}  # relative L2 norm over the cells; is an error
+                                                                        itself
   profile: {file: bed.csv, column: T, over: z, against: reference.csv}  # relative L2 norm against a table
-at: last (default), first, maximum, minimum, mean, amplitude, period, or a time; reference: a number, or finest, richardson;
-good-to: 5.0e-4, what a number given as reference is itself uncertain by, over its size (for the estimate of errors);
-orders: {upwind: 1} where a series is of another order than 2 (for the estimate of errors); absolute: true where the error is not to be divided by the reference
-The error of a temperature (unit K or degC) is relative to the range of temperatures of the run, not to kelvin."""
+at: last (default), first, maximum, minimum, mean, amplitude, period, or a time; reference: a number, or finest,
+richardson; good-to: 5.0e-4, what a number given as reference is itself uncertain by, over its size (for the estimate of
+errors); orders: {upwind: 1} where a series is of another order than 2 (for the estimate of errors); absolute: true
+where the error is not to be divided by the reference The error of a temperature (unit K or degC) is relative to the
+range of temperatures of the run, not to kelvin."""
 import dataclasses
 import functools
 import importlib.util
@@ -24,9 +26,31 @@ import numpy as np
 from couplet.runs import expect
 from couplet.study.axes import evaluate
 
-FUNCTIONS = {name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where")}
-KEYS = {"probe", "file", "column", "summary", "python", "item", "field", "exact", "over", "against", "at", "from", "reference", "absolute",
-        "is", "participant", "unit", "orders", "good-to"}
+FUNCTIONS = {
+    name: getattr(np, name)
+    for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where")
+}
+KEYS = {
+    "probe",
+    "file",
+    "column",
+    "summary",
+    "python",
+    "item",
+    "field",
+    "exact",
+    "over",
+    "against",
+    "at",
+    "from",
+    "reference",
+    "absolute",
+    "is",
+    "participant",
+    "unit",
+    "orders",
+    "good-to",
+}
 
 
 @functools.cache
@@ -60,7 +84,7 @@ def top(t, y):
     i = int(np.argmax(y))
     if not 0 < i < len(y) - 1:
         return t[i], y[i]
-    a, b, c = np.polyfit(t[i - 1:i + 2] - t[i], y[i - 1:i + 2], 2)
+    a, b, c = np.polyfit(t[i - 1 : i + 2] - t[i], y[i - 1 : i + 2], 2)
     return (t[i] - b / (2 * a), c - b * b / (4 * a)) if a != 0 else (t[i], c)
 
 
@@ -89,7 +113,7 @@ def reduced(t, y, at):
 class Quantity:
     name: str
     given: dict
-    folder: pathlib.Path   # of the case
+    folder: pathlib.Path  # of the case
     participant: str
 
     @property
@@ -104,17 +128,22 @@ class Quantity:
     @property
     def unit(self):
         head = str(self.given.get("probe", self.given.get("column", "")))
-        return self.given.get("unit") or (head[head.rindex("[") + 1:-1] if head.endswith("]") else "1")
+        return self.given.get("unit") or (head[head.rindex("[") + 1 : -1] if head.endswith("]") else "1")
 
     def size(self, value, row):
         """What an error of the value is relative to: the row's range of temperatures if it is one, else the value."""
         return 1 if self.given.get("absolute") else row.ranges.get(self.name) or abs(value)
 
     def range(self, results):
-        """Range of the run's temperatures: of all in the same table, or else of the last field. 0 for other quantities."""
+        """Range of the run's temperatures: of all in the same table, or else of the last field. 0 for other
+        quantities."""
         if self.is_error or self.unit not in ("K", "degC"):
             return 0.0
-        table = results.table(self.participant, "probes.csv" if "probe" in self.given else self.given["file"]) if "python" not in self.given else {}
+        table = (
+            results.table(self.participant, "probes.csv" if "probe" in self.given else self.given["file"])
+            if "python" not in self.given
+            else {}
+        )
         found = [v for head, v in table.items() if head.endswith(f"[{self.unit}]")]
         range_seen = float(np.ptp(np.concatenate(found))) if found else 0.0
         if range_seen > 0 or self.unit != "K":
@@ -148,6 +177,7 @@ class Quantity:
 
     def distance(self, x, y, g):
         from couplet.runs.results import read_csv
+
         reference = read_csv(self.folder / g["against"])
         at, wanted = reference[g["over"]], reference[g["column"]]
         order = np.argsort(x)
@@ -155,18 +185,27 @@ class Quantity:
         return float(np.linalg.norm(gap) / np.linalg.norm(wanted))
 
     def norm(self, series):
-        """Relative L2 norm of the difference from the exact field at the last output, over the cells, or over the points with their shares of
-        cells."""
+        """Relative L2 norm of the difference from the exact field at the last output, over the cells, or over the
+        points with their shares of cells."""
         i = len(series.times) - 1
         field, at_points = series.field(i, self.given["field"]), series.is_at_points(i, self.given["field"])
-        centres, weight = (series.reference(), series.shares_of_points()) if at_points else (series.centres(), series.volumes())
+        centres, weight = (
+            (series.reference(), series.shares_of_points()) if at_points else (series.centres(), series.volumes())
+        )
         field = field.reshape(len(field), -1)
-        names = {"pi": np.pi, "x": centres[:, 0], "y": centres[:, 1], "z": centres[:, 2] if centres.shape[1] > 2 else 0 * centres[:, 0],
-                 "t": series.times[i]}
+        names = {
+            "pi": np.pi,
+            "x": centres[:, 0],
+            "y": centres[:, 1],
+            "z": centres[:, 2] if centres.shape[1] > 2 else 0 * centres[:, 0],
+            "t": series.times[i],
+        }
         exact = self.given["exact"] if isinstance(self.given["exact"], list) else [self.given["exact"]]
         wanted = np.stack([np.broadcast_to(evaluate(e, names, FUNCTIONS), len(centres)) for e in exact], axis=1)
         weight = weight[:, None]
-        return float(np.sqrt((weight * (field[:, :wanted.shape[1]] - wanted) ** 2).sum() / (weight * wanted**2).sum()))
+        return float(
+            np.sqrt((weight * (field[:, : wanted.shape[1]] - wanted) ** 2).sum() / (weight * wanted**2).sum())
+        )
 
 
 def check_exact(formula, where):
@@ -179,7 +218,9 @@ def check_exact(formula, where):
 
 def quantities_of(case, section, participant, place="study"):
     given = section.get("quantities")
-    expect(isinstance(given, dict) and given, f"{case.file}: {place}.quantities: expected quantities of interest by name.")
+    expect(
+        isinstance(given, dict) and given, f"{case.file}: {place}.quantities: expected quantities of interest by name."
+    )
     found = []
     for name, content in given.items():
         where = f"{case.file}: {place}.quantities.{name}"
@@ -190,18 +231,31 @@ def quantities_of(case, section, participant, place="study"):
         expect(len(ways) == 1, f"{where}: expected one of probe, file, summary, python, field.")
         expect("file" not in content or "column" in content, f"{where}: 'file' needs a 'column'.")
         expect("field" not in content or "exact" in content, f"{where}: 'field' needs 'exact'.")
-        for formula in content["exact"] if isinstance(content.get("exact"), list) else [content[k] for k in ("exact",) if k in content]:
+        for formula in (
+            content["exact"]
+            if isinstance(content.get("exact"), list)
+            else [content[k] for k in ("exact",) if k in content]
+        ):
             check_exact(formula, where)
         if "python" in content:
             file = (case.file.parent / str(content["python"]).split(":")[0].strip()).resolve()
-            expect(file.is_relative_to(case.file.parent.resolve()), f"{where}: python: '{file}' is not in the folder of the case.")
-        expect("against" not in content or "over" in content, f"{where}: 'against' needs 'over', the column of the places.")
+            expect(
+                file.is_relative_to(case.file.parent.resolve()),
+                f"{where}: python: '{file}' is not in the folder of the case.",
+            )
+        expect(
+            "against" not in content or "over" in content, f"{where}: 'against' needs 'over', the column of the places."
+        )
         orders = content.get("orders", {})
-        expect(isinstance(orders, dict) and all(isinstance(p, (int, float)) and p > 0 for p in orders.values()),
-               f"{where}: orders: expected {{word in a series' name: order of convergence}}.")
+        expect(
+            isinstance(orders, dict) and all(isinstance(p, (int, float)) and p > 0 for p in orders.values()),
+            f"{where}: orders: expected {{word in a series' name: order of convergence}}.",
+        )
         expect(content.get("is") in (None, "error"), f"{where}: is: expected error.")
         reference = content.get("reference")
-        expect(reference is None or isinstance(reference, (int, float)) or reference in ("finest", "richardson"),
-               f"{where}: reference: expected a number, finest or richardson.")
+        expect(
+            reference is None or isinstance(reference, (int, float)) or reference in ("finest", "richardson"),
+            f"{where}: reference: expected a number, finest or richardson.",
+        )
         found.append(Quantity(str(name), content, case.file.parent, content.get("participant", participant)))
     return found

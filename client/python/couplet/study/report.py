@@ -43,7 +43,12 @@ class Report:
             elif kind == "table":
                 head, rows = what
                 escaped = [[str(c).replace("|", "\\|") for c in row] for row in (head, *rows)]
-                lines += ["| " + " | ".join(escaped[0]) + " |", "|" + "---|" * len(head), *("| " + " | ".join(r) + " |" for r in escaped[1:]), ""]
+                lines += [
+                    "| " + " | ".join(escaped[0]) + " |",
+                    "|" + "---|" * len(head),
+                    *("| " + " | ".join(r) + " |" for r in escaped[1:]),
+                    "",
+                ]
             else:
                 lines += [f"![{what[1]}]({what[0].resolve().relative_to(pathlib.Path(folder).resolve())})", ""]
         return "\n".join(lines).rstrip() + "\n"
@@ -52,8 +57,13 @@ class Report:
         def inline(text):
             text = re.sub(r"`([^`]+)`", r"<code>\1</code>", html.escape(text, quote=False))
             return re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
-        parts = [f"<!doctype html><html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width,initial-scale=1'>"
-                 f"<title>{html.escape(self.title)}</title><style>{STYLE}</style></head><body><h1>{html.escape(self.title)}</h1>"]
+
+        parts = [
+            "<!doctype html><html lang=en><head><meta charset=utf-8><meta name=viewport"
+            " content='width=device-width,initial-scale=1'>"
+            f"<title>{html.escape(self.title)}</title><style>{STYLE}</style></head>"
+            f"<body><h1>{html.escape(self.title)}</h1>"
+        ]
         for kind, *what in self.blocks:
             if kind == "text":
                 parts.append(f"<p>{inline(what[0])}</p>")
@@ -61,11 +71,19 @@ class Report:
                 parts.append(f"<h2>{inline(what[0])}</h2>")
             elif kind == "table":
                 head, rows = what
-                parts.append("<table><thead><tr>" + "".join(f"<th>{inline(str(c))}</th>" for c in head) + "</tr></thead><tbody>" + "".join(
-                    "<tr>" + "".join(f"<td>{inline(c)}</td>" for c in row) + "</tr>" for row in rows) + "</tbody></table>")
+                parts.append(
+                    "<table><thead><tr>"
+                    + "".join(f"<th>{inline(str(c))}</th>" for c in head)
+                    + "</tr></thead><tbody>"
+                    + "".join("<tr>" + "".join(f"<td>{inline(c)}</td>" for c in row) + "</tr>" for row in rows)
+                    + "</tbody></table>"
+                )
             else:
                 data = base64.b64encode(what[0].read_bytes()).decode()
-                parts.append(f"<figure><img alt=\"{html.escape(what[1])}\" src=\"data:image/png;base64,{data}\"><figcaption>{inline(what[1])}</figcaption></figure>")
+                parts.append(
+                    f"<figure><img alt=\"{html.escape(what[1])}\""
+                    f" src=\"data:image/png;base64,{data}\"><figcaption>{inline(what[1])}</figcaption></figure>"
+                )
         return "\n".join([*parts, "</body></html>\n"])
 
     def write(self, folder, stem="report"):

@@ -10,7 +10,13 @@ from couplet.study import fits
 from couplet.study.axes import Point
 
 COSTS = ("wall", "cpu", "work", "memory", "steps", "iterations", "spread")
-HEADS = {"wall": "wall [s]", "cpu": "processor [s]", "work": "work [s]", "memory": "memory [MB]", "spread": "spread of processor [1]"}
+HEADS = {
+    "wall": "wall [s]",
+    "cpu": "processor [s]",
+    "work": "work [s]",
+    "memory": "memory [MB]",
+    "spread": "spread of processor [1]",
+}
 PARTS = ("mesh", "step", "linear", "coupling")  # of an estimated error, without that of the model
 ITSELF = "itself"  # reference of a quantity that is already an error
 
@@ -20,7 +26,11 @@ class Row:
         self.point, self.record, self.series = point, record, series
         self.own = 0.0  # error that the run itself estimates, relative; 0 if unknown
         self.ranges = {}  # of the temperatures of a run, by the quantity
-        self.values, self.errors, self.reason = {}, {}, re.sub(r" \(see \S+\)$", "", record.reason)  # a log's location is meaningless elsewhere
+        self.values, self.errors, self.reason = (
+            {},
+            {},
+            re.sub(r" \(see \S+\)$", "", record.reason),
+        )  # a log's location is meaningless elsewhere
 
     @property
     def good(self):
@@ -38,7 +48,10 @@ def rows_of(axes, quantities, points, tasks, records):
 def value_row(row, quantities, results):
     """Row with every quantity read from its results, or with the reason of a failure."""
     if row.good and hasattr(results, "budget"):
-        row.own = max((sum(v for part, v in parts.items() if part in PARTS and v > 0) for parts in results.budget().values()), default=0.0)
+        row.own = max(
+            (sum(v for part, v in parts.items() if part in PARTS and v > 0) for parts in results.budget().values()),
+            default=0.0,
+        )
     for quantity in quantities if row.good else ():
         try:
             row.values[quantity.name] = quantity.value(results)
@@ -61,12 +74,15 @@ def series_of(rows):
 
 def limits_of(rows, quantity):
     """Returns {series: Limit or None} of a quantity's values over the sizes."""
-    return {name: fits.limit_of([r.point.size for r in some], [r.values[quantity.name] for r in some])
-            for name, some in series_of(rows).items()}
+    return {
+        name: fits.limit_of([r.point.size for r in some], [r.values[quantity.name] for r in some])
+        for name, some in series_of(rows).items()
+    }
 
 
 def set_errors(rows, quantities, others=()):
-    """Computes the errors. Returns {quantity: its reference}. `others` are rows of other programs, which do not affect the reference."""
+    """Computes the errors. Returns {quantity: its reference}. `others` are rows of other programs, which do not affect
+    the reference."""
     against = {}
     for quantity in quantities:
         name = quantity.name
@@ -79,16 +95,25 @@ def set_errors(rows, quantities, others=()):
         reference, word = quantity.reference, "the reference"
         good = [r for r in rows if r.good]
         if reference is None or reference == "richardson":
-            limits = [(some[-1], limit) for some, limit in
-                      ((series_of(rows)[s], limit) for s, limit in limits_of(rows, quantity).items()) if limit]
+            limits = [
+                (some[-1], limit)
+                for some, limit in ((series_of(rows)[s], limit) for s, limit in limits_of(rows, quantity).items())
+                if limit
+            ]
             reference, word = None, "none: the values do not approach a limit"
-            if limits:  # of the series with the largest sizes the one with the smallest uncertainty, because coarse ones look too certain
+            # Of the series with the largest sizes the one with the smallest uncertainty: coarse ones look too certain.
+            if limits:
                 finest, best = min(limits, key=lambda pair: (-pair[0].point.size, pair[1].gci))
                 reference = best.value
-                word = f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by {100 * best.gci / (quantity.size(best.value, finest) or 1):.2g} %)"
+                word = (
+                    f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by"
+                    f" {100 * best.gci / (quantity.size(best.value, finest) or 1):.2g} %)"
+                )
         elif reference == "finest":
             finest = max(good, key=lambda r: (r.point.size, r.record.cpu)) if good else None
-            reference, word = (finest.values[name], f"the finest run, {finest.point.name}") if finest else (None, "no run")
+            reference, word = (
+                (finest.values[name], f"the finest run, {finest.point.name}") if finest else (None, "no run")
+            )
         else:
             word = f"{reference:g}"
         against[name] = word
@@ -103,11 +128,19 @@ def read(file, axes, quantities):
     with open(file, newline="") as source:
         heads, count = next(lines := csv.reader(source)), len(axes.all)
         for line in lines:
-            labels, cells = dict(zip(heads, line[:count])), dict(zip(heads[count:], line[count:]))  # an axis may have the name of a cost
+            labels, cells = dict(zip(heads, line[:count])), dict(
+                zip(heads[count:], line[count:])
+            )  # an axis may have the name of a cost
             size = float(labels[axes.refining.name]) if axes.refining else 0
             point = Point(labels, {}, {}, size)
             costs = {c: float(cells.get(HEADS.get(c, c)) or 0) for c in COSTS}
-            record = types.SimpleNamespace(reason=cells["reason"], version=cells["version"], state="failed" if cells["reason"] else "done", phases={}, **costs)
+            record = types.SimpleNamespace(
+                reason=cells["reason"],
+                version=cells["version"],
+                state="failed" if cells["reason"] else "done",
+                phases={},
+                **costs,
+            )
             row = Row(point, record, axes.series_of(point))
             for q in quantities:
                 error = cells[q.name] if q.is_error and q.name in cells else cells[f"error of {q.name}"]
@@ -121,8 +154,13 @@ def read(file, axes, quantities):
 
 
 def write(file, rows, axes, quantities):
-    heads = [*(a.name for a in axes.all), *(n for q in quantities for n in (q.name, f"error of {q.name}") if not (q.is_error and n == q.name)),
-             *(HEADS.get(c, c) for c in COSTS), "version", "reason"]
+    heads = [
+        *(a.name for a in axes.all),
+        *(n for q in quantities for n in (q.name, f"error of {q.name}") if not (q.is_error and n == q.name)),
+        *(HEADS.get(c, c) for c in COSTS),
+        "version",
+        "reason",
+    ]
     with files.part(file.parent, file.name) as made, open(made, "w", newline="") as out:
         writer = csv.writer(out)
         writer.writerow(heads)

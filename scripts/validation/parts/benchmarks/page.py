@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/benchmarks.md: the coupled benchmarks beside the figures of others, from the committed tables: ours from docs/validation, theirs from
-the reference of FSI1 to FSI3 and from page.yaml. Usage: page.py [--check] (without: writes the page). --check also compares the numbers that README
-and docs/limitations.md quote with the tables."""
+"""docs/benchmarks.md: the coupled benchmarks beside the figures of others, from the committed tables: ours from
+docs/validation, theirs from the reference of FSI1 to FSI3 and from page.yaml. Usage: page.py [--check] (without: writes
+the page). --check also compares the numbers that README and docs/limitations.md quote with the tables."""
 import csv
 import pathlib
 import re
@@ -21,7 +21,11 @@ DATA = yaml.safe_load(pathlib.Path(__file__).with_name("page.yaml").read_text())
 
 def published(case):
     with open(ROOT / "configs/turek-hron/reference/turek_hron.csv", newline="") as file:
-        return {r["source"]: r for r in csv.DictReader(line for line in file if not line.startswith("#")) if r["case"] == case}
+        return {
+            r["source"]: r
+            for r in csv.DictReader(line for line in file if not line.startswith("#"))
+            if r["case"] == case
+        }
 
 
 def hours(text):
@@ -44,19 +48,46 @@ def flag(case, rows):
 
     def number(text, name):
         _, factor, digits = shown[name]
-        return f"{factor * float(text):.{digits}g}" if re.fullmatch(NUMBER, text) else "-"  # a row may tell why there is none
-    mine = {q.rsplit(": ", 1)[1]: r.got for q, r in rows.items() if q.startswith(f"{case}, ") and r.verdict != "not measured"}
+        return (
+            f"{factor * float(text):.{digits}g}" if re.fullmatch(NUMBER, text) else "-"
+        )  # a row may tell why there is none
+
+    mine = {
+        q.rsplit(": ", 1)[1]: r.got
+        for q, r in rows.items()
+        if q.startswith(f"{case}, ") and r.verdict != "not measured"
+    }
     values = {name: text.split(" for ")[0].split(", ") for name, text in mine.items()}
     minutes = re.search(r"\(([\d., ]+) processor minutes", next(iter(mine.values()), ""))
     for i, (cells, step) in enumerate(zip(DATA["meshes"], DATA["steps"][case])):
         cost = f"{float(minutes[1].split(', ')[i]) / 60:.3f}" if minutes else "-"
-        found.append(("**Couplet**", cells, step, *(number(values[name][i], name) if name in values else "-" for name in shown), cost))
+        found.append(
+            (
+                "**Couplet**",
+                cells,
+                step,
+                *(number(values[name][i], name) if name in values else "-" for name in shown),
+                cost,
+            )
+        )
     for source, (who, cells, step, cost) in DATA["peers"].items():
         if source in theirs:
-            found.append((who, cells, step if case == "FSI3" else "-", *(number(theirs[source][name], name) for name in shown), cost if case == "FSI3" else "-"))
+            found.append(
+                (
+                    who,
+                    cells,
+                    step if case == "FSI3" else "-",
+                    *(number(theirs[source][name], name) for name in shown),
+                    cost if case == "FSI3" else "-",
+                )
+            )
     values = [[float(number(r[name], name)) for r in theirs.values() if r[name]] for name in shown]
     found.append(("spread of the published", "", "", *map(spread, values), ""))
-    return [f"## {case} of Turek and Hron", "", *lines(("", "fluid, solid cells", "step", *(head for head, _, _ in shown.values()), "core-hours"), found)]
+    return [
+        f"## {case} of Turek and Hron",
+        "",
+        *lines(("", "fluid, solid cells", "step", *(head for head, _, _ in shown.values()), "core-hours"), found),
+    ]
 
 
 def figure(text, rows, flagship):
@@ -71,7 +102,10 @@ def figure(text, rows, flagship):
 
 
 def text():
-    fluid, solid, coupled, flagship = (table.read(ROOT / "docs/validation" / f"{name}.md") for name in ("fluid", "finite-strain", "coupled-benchmarks", "flagship"))
+    fluid, solid, coupled, flagship = (
+        table.read(ROOT / "docs/validation" / f"{name}.md")
+        for name in ("fluid", "finite-strain", "coupled-benchmarks", "flagship")
+    )
     rows = {**fluid, **solid, **coupled}
     found = [DATA["head"], *(line for case in ("FSI1", "FSI2", "FSI3") for line in flag(case, rows))]
     for title, other in DATA["others"].items():
@@ -87,7 +121,11 @@ def misquoted():
     """Yields what page.yaml's quotes say and no page or table does."""
     for page, words, name, beginning in DATA["quotes"]:
         said, file = words.replace("`", ""), ROOT / "docs/validation" / f"{name}.md"
-        rows = [r.got for q, r in table.read(file).items() if q.startswith(beginning)] if beginning else [file.read_text().partition("\n| quantity")[0]]
+        rows = (
+            [r.got for q, r in table.read(file).items() if q.startswith(beginning)]
+            if beginning
+            else [file.read_text().partition("\n| quantity")[0]]
+        )
         if said not in " ".join((ROOT / page).read_text().split()):
             yield f"{page} does not say '{said}'"
         if len(rows) != 1:
@@ -104,7 +142,10 @@ def write():
 
 if __name__ == "__main__":
     if "--check" in sys.argv and PAGE.read_text() != text():
-        sys.exit(f"{PAGE}: differs from the tables that it is made of. Write it again: scripts/validation/parts/benchmarks/page.py")
+        sys.exit(
+            f"{PAGE}: differs from the tables that it is made of. Write it again:"
+            " scripts/validation/parts/benchmarks/page.py"
+        )
     if "--check" in sys.argv and (wrong := list(misquoted())):
         sys.exit("\n".join(wrong))
     if "--check" not in sys.argv:

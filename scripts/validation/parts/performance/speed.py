@@ -22,7 +22,9 @@ def cavity(job):
 
 
 def peak(job, n, name, *sets):
-    folder = job.case("taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600).folder
+    folder = job.case(
+        "taylor-green-3d", [f"participants.fluid.mesh-parameters.n={n}", ORDERS[name], *sets], timeout=48 * 3600
+    ).folder
     return job.beside("configs/taylor-green-3d/budget.py").budget(folder / "fluid")
 
 
@@ -39,6 +41,7 @@ def benchmark(job, only):
     def make():
         result = job.done([sys.executable, job.root / "benchmarks/fluid", "--build", job.build, "--only", only])
         return result.stdout
+
     return job.once(("benchmark", only), make)
 
 
@@ -62,8 +65,8 @@ def second_core(job, wanted):
 
 # -- jobs -------------------------------------------------------------------------------------------------------------
 def overhead(job):
-    """Wall and processor time of couplet run less those of mpirun with the same line; the programs do nothing, the runs alternate. What the
-    machine does besides lengthens both: the quickest of all runs counts."""
+    """Wall and processor time of couplet run less those of mpirun with the same line; the programs do nothing, the runs
+    alternate. What the machine does besides lengthens both: the quickest of all runs counts."""
     couplet, folder, programs = job.root / "scripts/couplet", job.scratch / "overhead", job.scratch / "idle/bin"
     job.run([couplet, "new", folder], check=True)
     programs.mkdir(parents=True)
@@ -81,4 +84,10 @@ def overhead(job):
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
             processor[name].append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     seconds, used = (min(t["couplet"]) - min(t["mpirun"]) for t in (wall, processor))
-    return f"{seconds:.2f} s, {used:.2f} s of the processor (mpirun {min(wall['mpirun']):.2f} s; load {os.getloadavg()[0]:.0f})", seconds < 0.2
+    return (
+        (
+            f"{seconds:.2f} s, {used:.2f} s of the processor (mpirun {min(wall['mpirun']):.2f} s; load"
+            f" {os.getloadavg()[0]:.0f})"
+        ),
+        seconds < 0.2,
+    )
