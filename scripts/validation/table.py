@@ -123,7 +123,10 @@ def age(name, bars, rows, folders, history):
     }
     measured = [b.quantity for b in bars if b.quantity in rows and rows[b.quantity].verdict != "not measured"]
     dates = sorted(filter(None, (commit and history.date(commit) for commit in old.values())))
-    text = f"On {datetime.date.today()}, {len(measured) - len(old)} of {len(bars)} rows were measured on the present sources"
+    text = (
+        f"On {datetime.date.today()}, {len(measured) - len(old)} of {len(bars)} rows were measured on the present"
+        " sources"
+    )
     text += f", {len(old)} on older ones (since {dates[0]})" if dates else ""
     return text + (f"; {len(bars) - len(measured)} were not measured." if len(bars) > len(measured) else ".")
 

@@ -102,11 +102,20 @@ def figure(text, rows, flagship):
 
 
 def text():
-    files = [ROOT / "docs/validation" / f"{name}.md" for name in ("fluid", "finite-strain", "coupled-benchmarks", "flagship")]
+    files = [
+        ROOT / "docs/validation" / f"{name}.md" for name in ("fluid", "finite-strain", "coupled-benchmarks", "flagship")
+    ]
     fluid, solid, coupled, flagship = map(table.read, files)
     rows = {**fluid, **solid, **coupled}
     ages = [f"- [{f.stem}](validation/{f.name}): {re.search(r'[*]{2}(.*)[*]{2}', f.read_text())[1]}" for f in files]
-    found = [DATA["head"], "Age of our rows:", "", *ages, "", *(line for case in ("FSI1", "FSI2", "FSI3") for line in flag(case, rows))]
+    found = [
+        DATA["head"],
+        "Age of our rows:",
+        "",
+        *ages,
+        "",
+        *(line for case in ("FSI1", "FSI2", "FSI3") for line in flag(case, rows)),
+    ]
     for title, other in DATA["others"].items():
         body = []
         for who, step, given, cost in other["rows"]:
