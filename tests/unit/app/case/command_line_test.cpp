@@ -75,7 +75,7 @@ TEST(CommandLine, a_wrong_command_line_leaves_with_code_2_and_says_why) {
   EXPECT_EQ(message({"a.yaml", "--set"}), "--set: 1 required a.b=v missing");
   EXPECT_EQ(message({"a.yaml", "-v", "-q"}), "Use either --verbose or --quiet, not both.");
   EXPECT_EQ(message({"a.yaml", "--check", "--docs"}),
-            "Use only one of --check, --docs, --schema, --print-config, --explain and --effects.");
+            "Use only one of --check, --docs, --schema, --print-config and --explain.");
 }
 
 }  // namespace couplet::command_line_test
