@@ -82,28 +82,28 @@ def by_hand(folder):
     hand = subprocess.run(printed.stdout, shell=True, capture_output=True, text=True, cwd=folder, env={
         **environment(bin_), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
     check("the printed line runs", hand.returncode == 0, hand.stderr)
-    same = call(bin_, "compare", folder / "by-couplet", folder / "a/out")
+    same = call_here(bin_, "compare", folder / "by-couplet", folder / "a/out")
     count = re.match(r"(\d+) columns and fields: equal bit for bit", same.stdout)
     check("both leave the same, bit for bit", same.returncode == 0 and count and int(count[1]) > 50, same.stdout)
     shutil.rmtree(folder / "a/out")
     short = subprocess.run(mpmd([[bin_ / program, case] for program in COUPLED]), capture_output=True, text=True, env=environment(bin_))
-    same = call(bin_, "compare", folder / "by-couplet", folder / "a/out")
+    same = call_here(bin_, "compare", folder / "by-couplet", folder / "a/out")
     check("and so does a line that names the programs", short.returncode == 0 and same.returncode == 0, short.stderr + same.stdout)
     for run, rounded in (("by-couplet", "1e-12"), ("a/out", "-2e-12")):
         (folder / run / "solid/round-off.csv").write_text(f"time [s],x [N],y [N]\n1,1000,{rounded}\n")
-    same = call(bin_, "compare", folder / "by-couplet", folder / "a/out", "--tolerance", "1e-9")
+    same = call_here(bin_, "compare", folder / "by-couplet", folder / "a/out", "--tolerance", "1e-9")
     check("a column of round-off is compared with the others of its table, and differences within the tolerance are not listed", same.returncode == 0 and "1 differ, 0 by more than 1e-09" in same.stdout and "round-off" not in same.stdout, same.stdout)
     for run in ("by-couplet", "a/out"):
         (folder / run / "solid/round-off.csv").unlink()
     for tolerance in ("nan", "inf", "-1"):
-        refused = call(bin_, "compare", folder / "by-couplet", folder / "a/out", f"--tolerance={tolerance}")
+        refused = call_here(bin_, "compare", folder / "by-couplet", folder / "a/out", f"--tolerance={tolerance}")
         check(f"compare refuses the tolerance {tolerance}", refused.returncode == 2 and "at least 0" in refused.stderr, refused.stderr)
     for run in ("empty-1", "empty-2"):
         shutil.copytree(folder / "a/out", folder / run, ignore=shutil.ignore_patterns("*.csv", "*.h5"))
-    nothing = call(bin_, "compare", folder / "empty-1", folder / "empty-2")
+    nothing = call_here(bin_, "compare", folder / "empty-1", folder / "empty-2")
     check("compare refuses runs without results", nothing.returncode not in (0, 1) or "did the runs fail" in nothing.stderr, nothing.stdout + nothing.stderr)
     longer = call(bin_, "run", case, "--set", "participants.solid.material.youngs-modulus=3.9e6", "--set", f"simulation.output.folder={folder / 'other'}", "-q")
-    other = call(bin_, "compare", folder / "a/out", folder / "other")
+    other = call_here(bin_, "compare", folder / "a/out", folder / "other")
     check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "solid/probes.csv: tip" in other.stdout, other.stdout[-300:])
     two = call(bin_, "run", case, "-n", "fluid=2", "--print").stdout
     check("-n gives ranks", two.startswith("mpirun --oversubscribe -n 5 ") and two.endswith(" -n fluid=2\n"), two)
@@ -114,7 +114,7 @@ def by_hand(folder):
     check("-n 6 is divided by the work measured", " -n 6 " in shared.stdout and shared.stdout.endswith(" -n fluid=3,solid=1,mover=1\n"), shared.stdout + shared.stderr)
     for text in ("{", "[]"):
         report.write_text(text)
-        told = call(bin_, "report", folder / "a/out")
+        told = call_here(bin_, "report", folder / "a/out")
         check("a damaged run.json is named", told.returncode == 2 and f"{report}: this is not the report of a run" in told.stderr and "Traceback" not in told.stderr, told.stderr)
     shutil.rmtree(folder / "a/out")
     foreseen = call(bin_, "run", case, "-n", "5", "--print")
@@ -138,11 +138,11 @@ def side_by_side(folder):
             continue
     check("every rank may run on every core", len(lists) == 4 and set(lists) == {own}, (lists, own))
     codes = [job.communicate() and job.returncode for job in jobs]
-    same = call(bin_, "compare", folder / "b", folder / "c")
+    same = call_here(bin_, "compare", folder / "b", folder / "c")
     check("both end well, with the same results", codes == [0, 0] and same.returncode == 0, same.stdout)
     alone = call(bin_, "run", case, "--participant", "fluid", "--set", f"simulation.output.folder={folder / 'one'}")
     # Iterations and what round-off leaves differ between numbers of ranks; fields do not.
-    fields = re.findall(r"fluid\.h5: \S+: .* ([\d.e+-]+) of the largest", call(bin_, "compare", folder / "b", folder / "one").stdout)
+    fields = re.findall(r"fluid\.h5: \S+: .* ([\d.e+-]+) of the largest", call_here(bin_, "compare", folder / "b", folder / "one").stdout)
     check("compare knows cells and points by their numbers: one rank is the same as two", alone.returncode == 0 and fields and all(float(v) < 1e-6 for v in fields), fields)
 
 
@@ -158,7 +158,7 @@ def stop(folder):
         if how == "couplet stop":
             second = call(bin_, "run", case)
             check("a second job in the same folder is refused", second.returncode == 2 and "in use by another job" in second.stderr, second.stderr)
-            watched = call(bin_, "watch", folder / "a/out", "--once")
+            watched = call_here(bin_, "watch", folder / "a/out", "--once")
             check("watch shows the time", re.search(r"t=[\d.e-]+/1.2 s .* its", watched.stdout), watched.stdout)
             stopped = call(bin_, "stop", folder / "a/out")
             check("stop waits for the end and names the checkpoint", stopped.returncode == 0 and "saved as step-" in stopped.stdout, stopped.stdout + stopped.stderr)
@@ -180,7 +180,7 @@ def stop(folder):
     check("a resume with another density is refused, and leaves no trace", refused.returncode not in (0, 3) and "density" in refused.stderr, f"{refused.returncode} {refused.stderr[-300:]}")
     resumed = call(bin_, "resume", folder / "a/out")
     check("resume goes on to the end", resumed.returncode == 0 and "done in" in resumed.stdout, resumed.stdout[-200:] + resumed.stderr)
-    same = call(bin_, "compare", folder / "whole", folder / "a/out")
+    same = call_here(bin_, "compare", folder / "whole", folder / "a/out")
     check("to what the undisturbed run leaves, bit for bit", same.returncode == 0 and "equal bit for bit" in same.stdout, same.stdout)
     others = call(bin_, "resume", folder / "stopped/out", "-n", "fluid=2,solid=2")
     check("resume goes on on other ranks", others.returncode == 0 and "done in" in others.stdout, others.stdout[-200:] + others.stderr)
@@ -194,7 +194,7 @@ def stop(folder):
     (newest / "solid.h5").write_bytes(content)
     shutil.copytree(folder / "whole", folder / "truncated")
     os.truncate(folder / "truncated/solid/solid.h5", 1000)
-    same = call(bin_, "compare", folder / "whole", folder / "truncated")
+    same = call_here(bin_, "compare", folder / "whole", folder / "truncated")
     check("compare names a truncated file", same.returncode == 2 and "truncated/solid/solid.h5: cannot be read" in same.stderr, same.stderr)
     edited = folder / "copied/case.yaml"
     edited.write_text(edited.read_text().replace("density: ", "density: 2", 1))
@@ -216,7 +216,7 @@ def stop(folder):
     for program in ("/bin/sh", "../../bin/sh", "sh"):
         hostile.write_text(f'note: "$({touch})"\nsimulation: {{end-time: 1 s, time-step: 1 s}}\nparticipants: {{solid: {{program: {program}}}}}\n')
         for command in ("check", "explain", "watch", "plot", "stop"):
-            call(bin_, command, hostile)
+            call_here(bin_, command, hostile)
     check("nothing that a case names was started", not (folder / "EXECUTED").exists())
     again = start(bin_, "run", case, "--set", "simulation.checkpoint.interval=0", "--set", "participants.solid.material.density=2000 kg/m^3")
     check("another run in the same folder steps", until(lambda: "2000 kg" in (folder / "a/out/job.json").read_text() and "density: 2000" in (folder / "a/out/solid/effective.yaml").read_text()))
@@ -342,7 +342,7 @@ def tell(folder):
     soft = call(bin_, "run", case, "--set", "simulation.end-time=0.05", "--set", "participants.solid.material.youngs-modulus=1 kPa", "--set", f"simulation.output.folder={folder / 'soft'}")
     verdicts = [re.findall(r"^Verdict: .*\n  .*", text, flags=re.M) for text in (soft.stdout, call_here(bin_, "report", folder / "soft").stdout)]
     check("the verdict of a coupled run counts what the participants find at its end", "[solid 0] warning: " in soft.stdout and "geometric-non-linearity" in verdicts[0][0] and verdicts[0] == verdicts[1], (verdicts, soft.stdout[-2000:]))
-    drawn = call(bin_, "plot", folder / "a/out/fluid/forces.csv")
+    drawn = call_here(bin_, "plot", folder / "a/out/fluid/forces.csv")
     for name, field, more in (("fluid", "velocity", ("--component", "x")),):
         picture = folder / f"{field}.png"
         told = call_here(bin_, "plot", folder / "a/out" / name, "--field", field, "--picture", picture, *more)
