@@ -14,7 +14,6 @@ PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_
 HOUSE = ("common", *PROGRAMS)
 LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', re.S)
 CLASS = re.compile(r"\b(?:class|struct)\s+(?:\[\[\w+\]\]\s*)?([\w:]+)(?:\s+final)?\s*(?::([^:;{(][^;{(]*))?\{")
-BAD_BEGINNING = re.compile(r"(?:Of|What|Whether|By|The same|That|Those)\b")
 
 
 # -- files ------------------------------------------------------------------------------------------------------------
@@ -111,7 +110,7 @@ TEN = (
 def share_of_diagnostics(job, most, most_of_static):
     """Returns the time of the timer that every run has, over the processor time of its process. In a coupled job the
     participant with the largest share counts. The timer also counts while other processes run, hence the least of three
-    runs, and over the time on the clock if that is longer. """
+    runs, and over the time on the clock if that is longer."""
     found = {}
     for case, keys, is_static in TEN:
         runs = [job.case(case, (*keys, f"simulation.name={case}-{i}")) for i in range(3)]
@@ -190,23 +189,6 @@ def largest_class(job, most):
                 found[match[1]] = max(found.get(match[1], 0), data_members(text[match.end() : at]))
     over = sum(n > most for n in found.values())
     return f"{worst(found, 5)}; {over} of {len(found)} have more than {most}", not over
-
-
-def comment_blocks(job, share):
-    found, bad = 0, 0
-    for text in texts(job).values():
-        before = ""
-        for line in text.splitlines():
-            own = re.match(r"\s*//[/!]?<?\s*(.*)", line)
-            if (
-                own
-                and not re.match(r"\s*//", before)
-                and not own[1].startswith(("SPDX", "clang-format", "NOLINT", "namespace"))
-            ):
-                found += 1
-                bad += bool(BAD_BEGINNING.match(own[1]))
-            before = line
-    return f"{bad} of {found} ({100 * bad / found:.1f} %)", bad <= share * found
 
 
 def mirrored(job, share):
