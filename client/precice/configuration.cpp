@@ -11,8 +11,13 @@
 namespace couplet::dropin {
 namespace {
 
-[[noreturn]] void refuse(const std::string& file, const Element& e, const std::string& why) {
-  throw ::precice::Error(file + ":" + std::to_string(e.line) + ": " + why);
+using Element = pugi::xml_node;
+
+std::string name(const Element& element) { return element.name(); }
+
+/// Value of an attribute; empty if there is none.
+std::string value(const Element& element, const char* attribute) {
+  return element.attribute(attribute).value();
 }
 
 bool begins(const std::string& text, const std::string& with) {
@@ -37,31 +42,31 @@ struct Connection {
 
 class Reader {
  public:
-  Reader(const std::string& file, const std::string& participant) : root_(read_xml(file)) {
+  Reader(const std::string& file, const std::string& participant) : xml_(file), root_(xml_.root()) {
     c_.file = file;
     c_.participant = participant;
   }
 
   Configuration read() {
-    if (root_.name != "precice-configuration")
-      refuse(c_.file, root_,
-             "<precice-configuration> of preCICE's version 3 is expected, this is <" + root_.name + ">.");
-    if (is_true(root_.attribute("allow-remeshing")))
-      refuse(
-          c_.file, root_,
+    if (name(root_) != "precice-configuration")
+      xml_.refuse(root_, "<precice-configuration> of preCICE's version 3 is expected, this is <" +
+                             name(root_) + ">.");
+    if (is_true(value(root_, "allow-remeshing")))
+      xml_.refuse(
+          root_,
           "<precice-configuration> with allow-remeshing is not supported: meshes that change during the run.");
-    const Element& me = participant(c_.participant);
-    for (const Element& child : root_.children)
-      if (begins(child.name, "data:")) {
-        is_vector_[child.attribute("name")] = child.name == "data:vector";
-        degree_[child.attribute("name")] = degree(child);
+    const Element me = participant(c_.participant);
+    for (const Element child : root_.children())
+      if (begins(name(child), "data:")) {
+        is_vector_[value(child, "name")] = name(child) == "data:vector";
+        degree_[value(child, "name")] = degree(child);
       }
     check_supported(me);
-    c_.introduction = digest(root_);
+    c_.introduction = xml_.digest();
     meshes(me);
     data(me);
-    for (const Element& child : root_.children)
-      if (begins(child.name, "coupling-scheme:")) scheme(child);
+    for (const Element child : root_.children())
+      if (begins(name(child), "coupling-scheme:")) scheme(child);
     wires();
     return std::move(c_);
   }
@@ -69,95 +74,89 @@ class Reader {
  private:
   /// Degree of the interpolation in time.
   int degree(const Element& datum) const {
-    const std::string word = datum.attribute("waveform-degree");
+    const std::string word = value(datum, "waveform-degree");
     if (word.empty()) return 1;
     if (word.size() > 2 || word.find_first_not_of("0123456789") != std::string::npos)
-      refuse(c_.file, datum,
-             "waveform-degree of \"" + datum.attribute("name") + "\" is \"" + word +
-                 "\"; expected a whole number from 0 to 99.");
+      xml_.refuse(datum, "waveform-degree of \"" + value(datum, "name") + "\" is \"" + word +
+                             "\"; expected a whole number from 0 to 99.");
     return std::stoi(word);
   }
 
-  const Element& participant(const std::string& name) const {
+  Element participant(const std::string& wanted) const {
     std::vector<std::string> names;
-    for (const Element* p : root_.all("participant")) {
-      if (p->attribute("name") == name) return *p;
-      names.push_back(p->attribute("name"));
+    for (const Element p : root_.children("participant")) {
+      if (value(p, "name") == wanted) return p;
+      names.push_back(value(p, "name"));
     }
-    throw ::precice::Error("The participant \"" + name + "\" is not defined in the preCICE configuration " +
+    throw ::precice::Error("The participant \"" + wanted + "\" is not defined in the preCICE configuration " +
                            c_.file + ". Defined participants are: " + listed(names) + ".");
   }
 
   void check_supported(const Element& me) const {
-    for (const Element& child : me.children) {
-      const std::string named = "<" + child.name + ">";
-      if (begins(child.name, "action:"))
-        refuse(c_.file, child, named + " is not supported: actions on data.");
-      if (child.name == "use-mesh")
-        refuse(c_.file, child, named + " is of preCICE's version 2; this library reads version 3.");
-      if (child.name == "receive-mesh" &&
-          (is_true(child.attribute("api-access")) || is_true(child.attribute("direct-access"))))
-        refuse(c_.file, child,
-               named + " with api-access is not supported: direct access to received meshes.");
-      if (!begins(child.name, "mapping:")) continue;
-      if (child.attribute("from").empty() || child.attribute("to").empty())
-        refuse(c_.file, child, named + " without from or to is not supported: just-in-time mapping.");
-      if (child.name.find("gradient") != std::string::npos)
-        refuse(c_.file, child, named + " is not supported: mapping with gradients.");
-      if (child.name.find("multiscale") != std::string::npos)
-        refuse(c_.file, child, named + " is not supported: mapping between dimensions.");
-      if (begins(child.attribute("constraint"), "scaled"))
-        refuse(c_.file, child,
-               named + " with constraint \"" + child.attribute("constraint") + "\" is not supported.");
+    for (const Element child : me.children()) {
+      const std::string named = "<" + name(child) + ">";
+      if (begins(name(child), "action:")) xml_.refuse(child, named + " is not supported: actions on data.");
+      if (name(child) == "use-mesh")
+        xml_.refuse(child, named + " is of preCICE's version 2; this library reads version 3.");
+      if (name(child) == "receive-mesh" &&
+          (is_true(value(child, "api-access")) || is_true(value(child, "direct-access"))))
+        xml_.refuse(child, named + " with api-access is not supported: direct access to received meshes.");
+      if (!begins(name(child), "mapping:")) continue;
+      if (value(child, "from").empty() || value(child, "to").empty())
+        xml_.refuse(child, named + " without from or to is not supported: just-in-time mapping.");
+      if (name(child).find("gradient") != std::string::npos)
+        xml_.refuse(child, named + " is not supported: mapping with gradients.");
+      if (name(child).find("multiscale") != std::string::npos)
+        xml_.refuse(child, named + " is not supported: mapping between dimensions.");
+      if (begins(value(child, "constraint"), "scaled"))
+        xml_.refuse(child,
+                    named + " with constraint \"" + value(child, "constraint") + "\" is not supported.");
     }
   }
 
   /// Returns true if a projection maps values consistently from this mesh or conservatively to it.
   bool projected(const std::string& mesh) const {
-    for (const Element* p : root_.all("participant"))
-      for (const Element* m : p->all("mapping:nearest-projection"))
-        if (m->attribute(m->attribute("constraint") == "conservative" ? "to" : "from") == mesh) return true;
+    for (const Element p : root_.children("participant"))
+      for (const Element m : p.children("mapping:nearest-projection"))
+        if (value(m, value(m, "constraint") == "conservative" ? "to" : "from") == mesh) return true;
     return false;
   }
 
   void meshes(const Element& me) {
     int dimensions = 0;
-    for (const Element& child : me.children) {
-      const bool provided = child.name == "provide-mesh";
-      if (!provided && child.name != "receive-mesh") continue;
-      const std::string name = child.attribute("name");
-      const auto all = root_.all("mesh");
-      const auto found = std::find_if(all.begin(), all.end(),
-                                      [&](const Element* m) { return m->attribute("name") == name; });
-      if (found == all.end()) refuse(c_.file, child, "there is no <mesh name=\"" + name + "\">.");
-      const std::string size = (*found)->attribute("dimensions");
+    for (const Element child : me.children()) {
+      const bool provided = name(child) == "provide-mesh";
+      if (!provided && name(child) != "receive-mesh") continue;
+      const std::string mesh = value(child, "name");
+      const Element found = root_.find_child_by_attribute("mesh", "name", mesh.c_str());
+      if (!found) xml_.refuse(child, "there is no <mesh name=\"" + mesh + "\">.");
+      const std::string size = value(found, "dimensions");
       if (size != "2" && size != "3")
-        refuse(c_.file, **found, "dimensions of a mesh are \"2\" or \"3\", not \"" + size + "\".");
-      c_.meshes.push_back({name, size == "2" ? 2 : 3, provided, provided && projected(name)});
+        xml_.refuse(found, "dimensions of a mesh are \"2\" or \"3\", not \"" + size + "\".");
+      c_.meshes.push_back({mesh, size == "2" ? 2 : 3, provided, provided && projected(mesh)});
       if (!provided) continue;
       if (dimensions == 0) dimensions = c_.meshes.back().dimensions;
       if (c_.meshes.back().dimensions != dimensions)
-        refuse(c_.file, child, "meshes of two and of three dimensions in one participant are not supported.");
+        xml_.refuse(child, "meshes of two and of three dimensions in one participant are not supported.");
     }
-    if (dimensions == 0) refuse(c_.file, me, "a participant that provides no mesh is not supported.");
+    if (dimensions == 0) xml_.refuse(me, "a participant that provides no mesh is not supported.");
   }
 
   void data(const Element& me) {
-    for (const Element& child : me.children) {
-      const bool written = child.name == "write-data";
-      if (!written && child.name != "read-data") continue;
-      const std::string name = child.attribute("name"), mesh = child.attribute("mesh");
-      if (!is_vector_.count(name))
-        refuse(c_.file, child, "there is no <data:scalar> or <data:vector> with name \"" + name + "\".");
+    for (const Element child : me.children()) {
+      const bool written = name(child) == "write-data";
+      if (!written && name(child) != "read-data") continue;
+      const std::string datum = value(child, "name"), mesh = value(child, "mesh");
+      if (!is_vector_.count(datum))
+        xml_.refuse(child, "there is no <data:scalar> or <data:vector> with name \"" + datum + "\".");
       const Configuration::Mesh* used = c_.mesh(mesh);
       if (!used)
-        refuse(c_.file, child,
-               "\"" + c_.participant + "\" neither provides nor receives the mesh \"" + mesh + "\".");
+        xml_.refuse(child,
+                    "\"" + c_.participant + "\" neither provides nor receives the mesh \"" + mesh + "\".");
       if (!used->provided)
-        refuse(c_.file, child,
-               "data on a received mesh (\"" + mesh +
-                   "\") are not supported: direct access and just-in-time mapping.");
-      c_.data.push_back({mesh, name, is_vector_[name], written});
+        xml_.refuse(child, "data on a received mesh (\"" + mesh +
+                               "\") are not supported: direct access and just-in-time mapping.");
+      c_.data.push_back({mesh, datum, is_vector_[datum], written});
     }
   }
 
@@ -165,59 +164,51 @@ class Reader {
   std::map<std::string, bool> ends(const Element& who, const std::string& datum, const std::string& mesh,
                                    bool writes) const {
     std::map<std::string, bool> reached, found;
-    for (const Element* p : who.all("provide-mesh"))
-      if (p->attribute("name") == mesh) reached[mesh] = false;
-    for (const Element& m : who.children)
-      if (begins(m.name, "mapping:") && m.attribute("direction") == (writes ? "write" : "read") &&
-          m.attribute(writes ? "to" : "from") == mesh)
-        reached[m.attribute(writes ? "from" : "to")] = m.attribute("constraint") == "conservative";
-    for (const Element* d : who.all(writes ? "write-data" : "read-data"))
-      if (const auto end = reached.find(d->attribute("mesh"));
-          d->attribute("name") == datum && end != reached.end())
+    for (const Element p : who.children("provide-mesh"))
+      if (value(p, "name") == mesh) reached[mesh] = false;
+    for (const Element m : who.children())
+      if (begins(name(m), "mapping:") && value(m, "direction") == (writes ? "write" : "read") &&
+          value(m, writes ? "to" : "from") == mesh)
+        reached[value(m, writes ? "from" : "to")] = value(m, "constraint") == "conservative";
+    for (const Element d : who.children(writes ? "write-data" : "read-data"))
+      if (const auto end = reached.find(value(d, "mesh")); value(d, "name") == datum && end != reached.end())
         found.insert(*end);
     return found;
   }
 
   void scheme(const Element& s) {
-    const bool serial = begins(s.name, "coupling-scheme:serial");
-    const bool implicit = s.name.find("explicit") == std::string::npos;
-    const auto pair = s.all("participants");
-    const std::string first = pair.empty() ? "" : pair[0]->attribute("first");
-    bool mine = !pair.empty() && (first == c_.participant || pair[0]->attribute("second") == c_.participant);
-    for (const Element* p : s.all("participant")) mine = mine || p->attribute("name") == c_.participant;
+    const bool serial = begins(name(s), "coupling-scheme:serial");
+    const bool implicit = name(s).find("explicit") == std::string::npos;
+    const Element pair = s.child("participants");
+    const std::string first = value(pair, "first"), second = value(pair, "second");
+    bool mine = first == c_.participant || second == c_.participant;
+    for (const Element p : s.children("participant")) mine = mine || value(p, "name") == c_.participant;
     if (mine) {
       c_.implicit = c_.implicit || implicit;
-      c_.introduction +=
-          std::string("\x1e") + (implicit ? "implicit" : "explicit") +
-          (serial && !pair.empty() ? "\x1fserial\x1f" + first + "\x1f" + pair[0]->attribute("second")
-                                   : "\x1fparallel");
+      c_.introduction += std::string("\x1e") + (implicit ? "implicit" : "explicit") +
+                         (serial && pair ? "\x1fserial\x1f" + first + "\x1f" + second : "\x1fparallel");
     }
-    for (const Element* w : s.all("time-window-size"))
-      if (mine && w->attribute("method") == "first-participant")
-        refuse(c_.file, *w, "<time-window-size method=\"first-participant\"> is not supported.");
-    for (const Element* e : s.all("exchange")) {
-      const std::string giver = e->attribute("from"), taker = e->attribute("to"),
-                        datum = e->attribute("data");
-      const auto starts = ends(participant(giver), datum, e->attribute("mesh"), true);
-      const auto stops = ends(participant(taker), datum, e->attribute("mesh"), false);
+    for (const Element w : s.children("time-window-size"))
+      if (mine && value(w, "method") == "first-participant")
+        xml_.refuse(w, "<time-window-size method=\"first-participant\"> is not supported.");
+    for (const Element e : s.children("exchange")) {
+      const std::string giver = value(e, "from"), taker = value(e, "to"), datum = value(e, "data");
+      const auto starts = ends(participant(giver), datum, value(e, "mesh"), true);
+      const auto stops = ends(participant(taker), datum, value(e, "mesh"), false);
       // Data that the receiver does not read serve only the convergence measures, which the coupler computes.
-      const auto reads = participant(taker).all("read-data");
-      const bool unread = std::none_of(reads.begin(), reads.end(),
-                                       [&](const Element* d) { return d->attribute("name") == datum; });
+      const bool unread = !participant(taker).find_child_by_attribute("read-data", "name", datum.c_str());
       if ((starts.empty() && giver == c_.participant) ||
           (stops.empty() && !unread && taker == c_.participant))
-        refuse(c_.file, *e,
-               "no mapping of \"" + c_.participant + "\" leads \"" + datum + "\" on mesh \"" +
-                   e->attribute("mesh") + "\" to where it is read or written.");
-      const bool sub_steps = e->attribute("substeps").empty() || is_true(e->attribute("substeps"));
+        xml_.refuse(e, "no mapping of \"" + c_.participant + "\" leads \"" + datum + "\" on mesh \"" +
+                           value(e, "mesh") + "\" to where it is read or written.");
+      const bool sub_steps = value(e, "substeps").empty() || is_true(value(e, "substeps"));
       if (const int degree = degree_[datum]; degree > 1 && !sub_steps)
-        refuse(c_.file, *e,
-               "waveform-degree " + std::to_string(degree) + " of \"" + datum +
-                   "\" needs its values at the sub-steps: substeps=\"true\".");
+        xml_.refuse(e, "waveform-degree " + std::to_string(degree) + " of \"" + datum +
+                           "\" needs its values at the sub-steps: substeps=\"true\".");
       for (const auto& [from, from_conservative] : starts)
         for (const auto& [to, to_conservative] : stops)
           connections_.push_back({datum, giver, from, taker, to, from_conservative || to_conservative,
-                                  is_true(e->attribute("initialize")), implicit, !serial || taker == first,
+                                  is_true(value(e, "initialize")), implicit, !serial || taker == first,
                                   sub_steps});
     }
   }
@@ -248,6 +239,7 @@ class Reader {
     }
   }
 
+  XmlFile xml_;
   Element root_;
   Configuration c_;
   std::map<std::string, bool> is_vector_;

@@ -1,30 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <pugixml.hpp>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace couplet::dropin {
 
-/// XML element with its name as written ("data:scalar"), line and contents. Texts between elements are not
-/// kept.
-struct Element {
-  std::string name;
-  int line = 0;
-  std::vector<std::pair<std::string, std::string>> attributes;
-  std::vector<Element> children;
+/// A configuration of preCICE: its elements, and its text, which has their lines.
+class XmlFile {
+ public:
+  /// Throws precice::Error with file and line.
+  explicit XmlFile(std::string file);
+  pugi::xml_node root() const { return document_.document_element(); }
+  /// Throws precice::Error with the file and the line of an element.
+  [[noreturn]] void refuse(pugi::xml_node element, const std::string& why) const;
+  /// Digest "xml-" and 16 hexadecimal digits (64-bit FNV-1a) of names and trimmed attributes, in order. Skips
+  /// elements that do not affect the result (log, export, ...). `couplet import` computes the same.
+  std::string digest() const;
 
-  /// Value of an attribute. Empty if there is none.
-  std::string attribute(const std::string& key) const;
-  std::vector<const Element*> all(const std::string& name) const;
+ private:
+  [[noreturn]] void refuse_at(std::ptrdiff_t offset, const std::string& why) const;
+
+  std::string file_, text_;
+  pugi::xml_document document_;
 };
-
-/// Digest "xml-" and 16 hexadecimal digits (64-bit FNV-1a) of names and trimmed attributes, in order. Skips
-/// elements that do not affect the result (log, export, ...). `couplet import` computes the same.
-std::string digest(const Element& element);
-
-/// Reads the outermost element. Throws precice::Error with file and line.
-Element read_xml(const std::string& file);
 
 }  // namespace couplet::dropin
