@@ -23,7 +23,7 @@ template <int D>
 ImmersedBodies<D>::ImmersedBodies(const mesh::Mesh& mesh, const FluidParameters& parameters)
     : Obstacles<D>(mesh),
       cut_(parameters.bodies.begin()->second.surface == BodySurface::cut),
-      nu_(parameters.kinematic_viscosity()),
+      nu_(parameters.properties().nu),
       body_(mesh.cells.n_local(), -1),
       depth_(mesh.cells.n_local(), 0.0),
       velocity_(mesh.cells.n_local(), Vec<D>::Zero()) {

@@ -121,7 +121,7 @@ template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
   const Placement<D>& at = *fluid.state().placement;
-  const auto [rho, mu, nu, sound] = fluid.parameters().properties();
+  const auto [rho, mu, nu, sound] = fluid.properties();
   std::vector<std::array<double, 2>> units(fluid.viscous_force().size());
   for (std::size_t b = 0; b < units.size(); ++b) {
     const Index f = mesh.n_interior + static_cast<Index>(b);
@@ -170,7 +170,7 @@ Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParamete
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  const double qa = 0.5 * fluid.parameters().density * c.speed * c.speed * c.area;
+  const double qa = 0.5 * fluid.properties().rho * c.speed * c.speed * c.area;
   return {sums[0].dot(c.drag.normalized()) / qa, sums[0].dot(c.lift.normalized()) / qa,
           sums[1].dot(c.axis.normalized()) / (qa * c.length)};
 }
@@ -180,7 +180,7 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
   const State<D>& s = fluid.state();
   const Placement<D>& at = *s.placement;
-  const double rho = fluid.parameters().density, mu = fluid.parameters().viscosity;
+  const auto [rho, mu, nu, sound] = fluid.properties();
   double sums[4] = {};
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) sums[0] += 0.5 * rho * at.volume[c] * s.u[c].squaredNorm();
   const bool before = s.u_old.size() == s.u.size();

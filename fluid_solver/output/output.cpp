@@ -278,7 +278,7 @@ std::vector<double> FluidSurfaces<D>::pressure_coefficient(const mesh::Patch& pa
                                                            std::span<const double> pressure) const {
   for (const auto& [name, c] : fluid_.parameters().output.coefficients) {
     if (std::ranges::find(c.patches, patch.name) == c.patches.end()) continue;
-    const double q = 0.5 * fluid_.parameters().density * c.speed * c.speed;
+    const double q = 0.5 * fluid_.properties().rho * c.speed * c.speed;
     std::vector<double> result(pressure.begin(), pressure.end());
     for (double& value : result) value = (value - c.pressure) / q;
     return result;

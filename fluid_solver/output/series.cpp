@@ -104,7 +104,7 @@ std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
       sums[p][0] += area;
       sums[p][1] += flux;
       sums[p][2] += area * pressure->boundary[b];
-      Eigen::Map<Vec<D>>(&sums[p][3]) += fluid.parameters().density * flux * s.u_boundary[b] +
+      Eigen::Map<Vec<D>>(&sums[p][3]) += fluid.properties().rho * flux * s.u_boundary[b] +
                                          fluid.pressure_force()[b] + fluid.viscous_force()[b];
     }
   }
@@ -133,7 +133,7 @@ Row fluxes(const Fluid<D>& fluid) {
 template <int D>
 Row flow_areas(const Fluid<D>& fluid) {
   Row row;
-  const double density = fluid.parameters().density;
+  const double density = fluid.properties().rho;
   const std::vector<PatchFlux<D>> all = patch_fluxes(fluid);
   if (all.empty()) return row;
   const auto of = [&](const std::string& patch) -> const PatchFlux<D>& {
@@ -189,7 +189,7 @@ Row balance(const Fluid<D>& fluid) {
       if ((*s.blocked)[c]) out[c] = 0;
   const CellSums over_cells = sum_cells<D>(volumes, out.data(), s.u.data());
   sums[divergence] = over_cells.divergence, sums[volume] = over_cells.volume;
-  sums[energy] = 0.5 * fluid.parameters().density * over_cells.squares;
+  sums[energy] = 0.5 * fluid.properties().rho * over_cells.squares;
   if (s.pressure[0]) sums[taken_up] = s.pressure[0]->taken_up;
   MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh.comm);
   const double worst = parallel::max(mesh.comm, over_cells.worst);
@@ -225,7 +225,7 @@ Row bodies(const Fluid<D>& fluid) {
   Row row;
   const State<D>& s = fluid.state();
   if (!s.pressure[0]) return row;
-  const auto all = fluid.bodies()->forces(*s.placement, *s.pressure[0], s.u, fluid.parameters().viscosity);
+  const auto all = fluid.bodies()->forces(*s.placement, *s.pressure[0], s.u, fluid.properties().mu);
   for (std::size_t i = 0; i < all.size(); ++i) {
     add_to_row<D>(row, fluid.bodies()->names()[i] + " pressure", "N", all[i].first.data());
     add_to_row<D>(row, fluid.bodies()->names()[i] + " viscous", "N", all[i].second.data());

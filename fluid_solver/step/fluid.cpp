@@ -259,7 +259,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
       level->p.assign(level->p.size(), rest);
       level->boundary.assign(level->boundary.size(), rest);
     }
-    step_.scene().add_potential(at, -parameters_.density, *level);
+    step_.scene().add_potential(at, -properties().rho, *level);
     step_.start_level(at, *level);
     s.pressure[0] = level;
   }
@@ -273,8 +273,8 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
 /// see docs/theory/coupling.md.
 template <int D>
 std::array<double, 2> Fluid<D>::unseen_share(const Vectors<D>& w) const {
-  const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
-  double sums[4] = {};  // unseen^2, load^2, load.S, S^2
+  const double layer = std::sqrt(properties().rho * properties().mu / dt_);  // rho sqrt(nu dt)/dt
+  double sums[4] = {};                                                       // unseen^2, load^2, load.S, S^2
   for (std::size_t b = 0; b < guess_.size(); ++b) {
     if (!boundary_.is_interface(static_cast<Index>(b))) continue;
     const Vec<D>& area = level().placement->area[mesh_.n_interior + static_cast<Index>(b)];
@@ -333,7 +333,7 @@ void Fluid<D>::add_turning() {
   for (std::size_t b = 0; b < turn_.size(); ++b) {
     Vec<D> mean = 0.5 * turn_[b];
     if (!accepted_.turn.empty()) mean += 0.5 * accepted_.turn[b];
-    viscous_force_[b] += turning_force<D>(parameters_.viscosity, mean);
+    viscous_force_[b] += turning_force<D>(properties().mu, mean);
   }
 }
 
@@ -342,7 +342,7 @@ std::shared_ptr<const PressureLevel<D>> Fluid<D>::pressure() const {
   const auto& latest = accepted_.pressure[0];
   if (!latest || !step_.scene().potential(latest->time)) return latest;
   auto whole = std::make_shared<PressureLevel<D>>(*latest);
-  step_.scene().add_potential(*accepted_.placement, parameters_.density, *whole);
+  step_.scene().add_potential(*accepted_.placement, properties().rho, *whole);
   return whole;
 }
 

@@ -112,6 +112,7 @@ class Fluid {
   /// Per local point, as read [m].
   const std::vector<Vec3>& points_at_rest() const { return path_.points_at_rest(); }
   const FluidParameters& parameters() const { return parameters_; }
+  const Properties& properties() const { return step_.scene().fluid; }
   const FluidStatistics& statistics() const { return statistics_; }
   SubStepSize<D>& sizes() { return sizes_; }
   bool moving() const { return path_.moves(); }

@@ -255,11 +255,10 @@ template class StepSize<3>;
 template <int D>
 SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
                             const FluidParameters& parameters, const MomentumTerms<D>& terms)
-    : parameters_(parameters),
-      size_(mesh, boundary, parameters.kinematic_viscosity(), terms, parameters.scheme) {
+    : parameters_(parameters), size_(mesh, boundary, parameters.properties().nu, terms, parameters.scheme) {
   const auto& sound = parameters.compressibility;
   if (sound && sound->upstream_line && sound->upstream_line->end != UpstreamLineParameters::End::absorbing)
-    echo_ = 2 * sound->upstream_line->length / solved_sound(sound, parameters.density, parameters.viscosity);
+    echo_ = 2 * sound->upstream_line->length / parameters.properties().sound;
   size_.set_courant(parameters.courant.value_or(0) / parameters.safety_factor);
 }
 
