@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A coupled run from start to end; coupler/step.cpp contains the step.
+// A coupled run from start to end; coupler/step contains the step.
 #include "coupler/coupler.hpp"
 
 #include <algorithm>
@@ -29,24 +29,20 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters,
   start_acceleration();
 }
 
-Coupler::Known::Known(MPI_Comm comm, const Coupler& c)
-    : unknown(comm, c.pass_.sides(), c.pass_.links(), c.pass_.group(), c.pass_.schedule().side_by_side),
-      record(comm, c.parameters_, c.pass_),
-      view{comm, c.parameters_, c.pass_, unknown, record, c.scheme_, c.last_, c.history_, c.last_dt_} {}
-
 void Coupler::initialise() {
   enter_(app::Phase::initialise, {});
   pass_.initialise(parameters_);
-  known_.emplace(comm_, *this);
+  unknown_.emplace(comm_, pass_.sides(), pass_.links(), pass_.group(), pass_.schedule().side_by_side);
+  record_.emplace(comm_, parameters_, pass_);
+  view_.emplace(comm_, parameters_, pass_, *unknown_, *record_, scheme_, last_, history_, last_dt_);
   pass_.exchange_initial_values();
   std::vector<coupling::Exchange> given = pass_.given();
-  known_->unknown.scale(given);
-  if (known_->unknown.complete(given) || known_->unknown.start_at_rest(given))
-    history_.now = known_->unknown.gather(given);
+  unknown_->scale(given);
+  if (unknown_->complete(given) || unknown_->start_at_rest(given)) history_.now = unknown_->gather(given);
   pass_.set_given(std::move(given));
-  known_->diagnostics = coupling_diagnostics(known_->view, diagnostics_);
-  pass_.on_answer([this](std::size_t i, const coupling::Exchange& taken, const coupling::Exchange& answer) {
-    for (const auto& d : known_->diagnostics) d->answered(i, taken, answer);
+  coupling_diagnostics_ = coupling_diagnostics(*view_, diagnostics_);
+  pass_.on_solved([this](std::size_t i, const coupling::Exchange& taken, const coupling::Exchange& given) {
+    for (const auto& d : coupling_diagnostics_) d->answered(i, taken, given);
   });
 }
 
@@ -59,9 +55,9 @@ std::string Coupler::run() {
     restart_time = app::read_run_state(folders_.restart).time;
   }
   base::release_files();
-  known_->record.open(folders_.output, simulation_.end_time, restart_time);
+  record_->open(folders_.output, simulation_.end_time, restart_time);
   const auto write = [&](double time, int output) {
-    pass_.ask_all({coupling::Op::write_output, {}, {}, time, output, ""});
+    pass_.command_all({coupling::Op::write_output, {}, {}, time, output, ""});
   };
   app::StepActions actions;
   actions.attempt = [&](const coupling::Step& step) { return attempt(step); };
@@ -71,7 +67,7 @@ std::string Coupler::run() {
   actions.save = [&](const std::filesystem::path& folder) { save(folder); };
   actions.stateless = stateless;
   actions.report = [&](const coupling::Step& step, double time) {
-    known_->record.monitor().step(step, time, last_, pass_.partners());
+    record_->monitor().step(step, time, last_, pass_.partners());
   };
   actions.advised_dt = [&] { return advised_dt(pass_.everyone()); };
   std::string problem = loop_.run(actions);
@@ -89,7 +85,7 @@ std::string without_advice(const std::string& reason) {
 }  // namespace
 
 std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
-  for (const auto& d : known_->diagnostics)
+  for (const auto& d : coupling_diagnostics_)
     if (std::string reason = d->stop(); !reason.empty()) return app::StepFailure(std::move(reason), false);
   const long before = iterations_;
   auto failure = attempt_once(step);
@@ -110,7 +106,7 @@ std::optional<app::StepFailure> Coupler::attempt(const coupling::Step& step) {
 std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step) {
   enter_(app::Phase::begin_step, step.time);
   for (Partner* p : pass_.everyone()) p->seconds = 0;
-  for (const auto& d : known_->diagnostics) d->begin_step();
+  for (const auto& d : coupling_diagnostics_) d->begin_step();
   scheme_.start_step();
   try {
     solve(step);
@@ -126,11 +122,35 @@ std::optional<app::StepFailure> Coupler::attempt_once(const coupling::Step& step
   return {};
 }
 
+void Coupler::solve(const coupling::Step& step) {
+  coupling::Step begun = step;
+  begun.scheme = scheme_.now();
+  pass_.begin_step(begun);
+  enter_(app::Phase::solve, step.time);
+  last_ = pass_.schedule().iterates ? iterate(step) : single_pass(step);
+  pass_.keep_outputs();
+  last_dt_ = step.dt;
+}
+
+/// Makes the step state n.
+void Coupler::accept(double time, int output) {
+  enter_(app::Phase::accept, {});
+  pass_.command_all({coupling::Op::accept_step, {}, {}, time, output, ""});
+  enter_(app::Phase::accept, time);
+  last_.image = unknown_->end_values(std::move(last_.image));
+  record_->balance();
+  diagnostics_.accepted(time);
+  history_.accepted(last_.image, last_dt_, pass_.schedule().predictor);
+  if (VolumeLevel* level = pass_.volume_level()) level->accept(pass_.given());
+  record_->accepted(time, output, pass_.volume_level());
+  if (scheme_.accepted(time)) start_acceleration();
+}
+
 /// Findings of the coupling precede those of a participant, whose advice would not help.
 app::StepFailure Coupler::cause_of(const std::string& reported) const {
   const std::string met = without_advice(reported);
   std::string remarks;
-  for (const auto& d : known_->diagnostics) {
+  for (const auto& d : coupling_diagnostics_) {
     if (const auto cause = d->suspects()) return {cause->reason + " Thereupon " + met, cause->halving_helps};
     remarks += d->remark();
   }
@@ -144,7 +164,7 @@ void Coupler::start_acceleration() {
 /// `problem`: why the run stopped early; its error is then not judged.
 void Coupler::finalise(const std::string& problem) {
   enter_(app::Phase::finalise, {});
-  Monitor& monitor = known_->record.monitor();
+  Monitor& monitor = record_->monitor();
   log::info("{}", monitor.summary(loop_.halvings()));
   diagnostics::set_result(
       {"coupling iterations per step, mean and most", "1", monitor.iterations_per_step()});
@@ -177,31 +197,31 @@ std::vector<diagnostics::Coordinate> Coupler::position() const {
 }
 
 void Coupler::visit(io::Archive archive) {
-  const IterateOrder order = known_->unknown.order(false);
+  const IterateOrder order = unknown_->order(false);
   for (const auto& [name, iterate] : {std::pair<std::string, Iterate*>{"now", &history_.now},
                                       {"old", &history_.old},
                                       {"older", &history_.older}}) {  // an iterate may be empty
     archive.field(order.unknown, name, iterate->unknown, 1);
-    archive.field(order.rider, name + "-rider", iterate->rider, 1);
+    archive.field(order.dependent, name + "-dependent", iterate->dependent, 1);
   }
   archive.common("history", history_.old_dt, history_.older_dt, iterations_);
-  std::vector<double> weights = known_->unknown.weights();
+  std::vector<double> weights = unknown_->weights();
   std::array<double, 2> scheme = scheme_.state();
   archive.common("weights", weights);
   archive.common("scheme", scheme);
   if (archive.reads()) {
-    known_->unknown.restore_weights(weights);
+    unknown_->restore_weights(weights);
     scheme_.restore(scheme);
   }
-  known_->record.visit(archive);
-  if (accelerator_) accelerator_->visit(archive, known_->unknown.order(true));
+  record_->visit(archive);
+  if (accelerator_) accelerator_->visit(archive, unknown_->order(true));
   pass_.visit(archive);
   diagnostics_.visit(archive);
 }
 
 void Coupler::save(const std::filesystem::path& folder) {
   enter_(app::Phase::save, {});
-  pass_.ask_all({coupling::Op::save, {}, {}, 0, -1, folder.string()});
+  pass_.command_all({coupling::Op::save, {}, {}, 0, -1, folder.string()});
   io::CheckpointWriter file(comm_, folder / "coupler.h5");
   visit(io::Archive(file));
   file.close();
@@ -213,7 +233,7 @@ void Coupler::load() {
   visit(io::Archive(file));
   const app::RunState state = app::read_run_state(folders_.restart);
   loop_.restart(state, folders_.restart);
-  pass_.ask_all({coupling::Op::load, {}, {}, state.time, -1, folders_.restart.string()});
+  pass_.command_all({coupling::Op::load, {}, {}, state.time, -1, folders_.restart.string()});
   log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
 }
 

@@ -57,22 +57,27 @@ class Coupler {
   }
 
  private:
-  /// Parts created once the interfaces are known.
-  struct Known {
-    Known(MPI_Comm comm, const Coupler& coupler);
-    Unknown unknown;
-    Record record;
-    CouplingView view;
-    CouplingDiagnostics diagnostics;
-  };
-
   void initialise();
   std::optional<app::StepFailure> attempt(const coupling::Step& step);
   std::optional<app::StepFailure> attempt_once(const coupling::Step& step);
+  /// Solves x = H(x) for the step from t^n to t^n + dt. Participants keep their state n.
   void solve(const coupling::Step& step);
-  FixedPointResult iterate(const coupling::Step& step, Iterate guess, const FixedPointMap& map);
-  FixedPointResult pass_once(const coupling::Step& step, Iterate guess, const FixedPointMap& map);
   void accept(double time, int output);
+
+  // coupler/step: one step.
+  /// Explicit coupling. Results of additional passes only go to the diagnostics.
+  FixedPointResult single_pass(const coupling::Step& step);
+  void measure_response(const coupling::Step& step, FixedPointResult& result);
+  /// Passes and accelerated guesses until all residuals are below their bounds. Throws SolveFailure.
+  FixedPointResult iterate(const coupling::Step& step);
+  void observe(const coupling::Step& step, int number, const std::vector<Residual>& residuals);
+  Iterate pass(const Iterate& x);
+  Iterate pass_from(std::vector<coupling::Exchange> data);
+  Iterate guess(double dt);
+  std::vector<Residual> measure(const Iterate& x, const Iterate& image) const;
+  bool has_history() const;
+  Iterate first_pass();
+
   /// Forgets what was learned from passes of another kind.
   void start_acceleration();
   app::StepFailure cause_of(const std::string& reported) const;
@@ -94,7 +99,11 @@ class Coupler {
   double last_dt_ = 0;
   long iterations_ = 0;
   diagnostics::Diagnostics diagnostics_;
-  std::optional<Known> known_;
+  // Created once the interfaces are known.
+  std::optional<Unknown> unknown_;
+  std::optional<Record> record_;
+  std::optional<CouplingView> view_;
+  CouplingDiagnostics coupling_diagnostics_;
   diagnostics::ErrorParts errors_;
   std::function<void(app::Phase, std::optional<double>)> enter_ = [](app::Phase, std::optional<double>) {};
 };

@@ -43,7 +43,7 @@ std::vector<Partner*> Pass::everyone() {
   return all;
 }
 
-void Pass::ask_all(const coupling::Command& command) { coupler::ask_all(everyone(), command); }
+void Pass::command_all(const coupling::Command& command) { coupler::command_all(everyone(), command); }
 
 void Pass::initialise(const CouplingParameters& parameters) {
   std::vector<coupling::Interface> interfaces = initialise_all(everyone());
@@ -68,7 +68,7 @@ void Pass::initialise(const CouplingParameters& parameters) {
 void Pass::exchange_initial_values() {
   for (std::size_t i = 0; i < partners_.size(); ++i) {
     given_[i] = std::move(partners_[i].initial);
-    require_finite_answer(i, given_[i]);
+    require_finite_data(i, given_[i]);
   }
   const std::vector<coupling::Exchange> initial = given_;
   for (std::size_t i = 0; i < partners_.size(); ++i) {
@@ -80,39 +80,52 @@ void Pass::exchange_initial_values() {
   if (volume_level_->empty()) volume_level_.reset();
 }
 
-void Pass::require_finite_answer(std::size_t i, const coupling::Exchange& given) const {
+void Pass::require_finite_data(std::size_t i, const coupling::Exchange& given) const {
   require_finite(comm_, given, sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
 }
 
-void Pass::give_back(std::vector<coupling::Exchange> given) {
-  for (std::size_t i = 0; i < given.size(); ++i) partners_[i].channel->reuse(std::move(given[i]));
+void Pass::reuse(std::vector<coupling::Exchange> data) {
+  for (std::size_t i = 0; i < data.size(); ++i) partners_[i].channel->reuse(std::move(data[i]));
 }
 
-std::vector<coupling::Exchange> Pass::operator()(std::vector<coupling::Exchange> known, bool first,
-                                                 coupling::Scheme scheme) {
-  const bool move_mesh = schedule_.mover && (first || scheme != coupling::Scheme::semi_implicit);
-  // The mover uses the motion known before any answer in this pass.
-  if (move_mesh && (first || !schedule_.mesh_on_guess)) guess_ = links_->input(0, known);
-  answered_anew_ = false;
-  if (schedule_.side_by_side) return side_by_side(known, move_mesh);
+void Pass::begin_step(coupling::Step step) {
+  step.waveform = schedule_.waveform;
+  command_all({coupling::Op::begin_step, step, {}, 0, -1, ""});
+  if (volume_level_) volume_level_->start_step(step.dt);
+  scheme_ = step.scheme;
+  first_ = true;
+}
+
+const std::vector<coupling::Exchange>& Pass::operator()(std::vector<coupling::Exchange> data) {
+  reuse(std::exchange(outputs_, {}));
+  const bool move_mesh = schedule_.mover && (first_ || scheme_ != coupling::Scheme::semi_implicit);
+  // The mover uses the motion known before any solution in this pass.
+  if (move_mesh && (first_ || !schedule_.mesh_on_guess)) guess_ = links_->input(0, data);
+  first_ = renewed_prediction_ = false;
+  outputs_ = schedule_.side_by_side ? side_by_side(data, move_mesh) : in_sequence(std::move(data), move_mesh);
+  return outputs_;
+}
+
+/// Each member takes what those before it gave in this pass (Gauss-Seidel).
+std::vector<coupling::Exchange> Pass::in_sequence(std::vector<coupling::Exchange> data, bool move_mesh) {
   for (const std::size_t i : group_) {
-    ask(i, known, move_mesh);
-    answer(i, known[i], move_mesh);
-    if (volume_level_) hold_volume(i, known);
+    send_solve(i, data, move_mesh);
+    receive_solution(i, data[i], move_mesh);
+    if (volume_level_) enforce_volume(i, data);
   }
-  return known;
+  return data;
 }
 
-/// Sends to all members of the group first. Collects failures, so that every reply is received.
-std::vector<coupling::Exchange> Pass::side_by_side(const std::vector<coupling::Exchange>& known,
+/// All members take the data of the last pass (Jacobi). Collects failures, so that every reply is received.
+std::vector<coupling::Exchange> Pass::side_by_side(const std::vector<coupling::Exchange>& data,
                                                    bool move_mesh) {
-  for (const std::size_t i : group_) ask(i, known, move_mesh);
-  std::vector<coupling::Exchange> given = known;
+  for (const std::size_t i : group_) send_solve(i, data, move_mesh);
+  std::vector<coupling::Exchange> given = data;
   std::string failures;
   bool hopeless = false;
   for (const std::size_t i : group_) {
     try {
-      answer(i, given[i], move_mesh);
+      receive_solution(i, given[i], move_mesh);
     } catch (const SolveFailure& failure) {
       if (!failures.empty()) failures += ' ';
       failures += failure.what();
@@ -124,16 +137,16 @@ std::vector<coupling::Exchange> Pass::side_by_side(const std::vector<coupling::E
   return given;
 }
 
-void Pass::ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh) {
+void Pass::send_solve(std::size_t i, const std::vector<coupling::Exchange>& data, bool move_mesh) {
   // The moved participant blocks until the mesh has moved, so the mover is asked first.
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
   if (with_mover) partners_.front().send({coupling::Op::solve, {}, guess_, 0, -1, ""});
-  coupling::Command command{coupling::Op::solve, {}, links_->input(i, known), 0, -1, ""};
+  coupling::Command command{coupling::Op::solve, {}, links_->input(i, data), 0, -1, ""};
   partners_[i].send(command);
   taken_[i] = std::move(command.data);
 }
 
-void Pass::answer(std::size_t i, coupling::Exchange& given, bool move_mesh) {
+void Pass::receive_solution(std::size_t i, coupling::Exchange& given, bool move_mesh) {
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
   // A failed motion makes the moved participant fail, too; the mover knows the reason. Receives both replies.
   std::optional<SolveFailure> mover_failed;
@@ -147,23 +160,23 @@ void Pass::answer(std::size_t i, coupling::Exchange& given, bool move_mesh) {
   try {
     coupling::Reply reply = partners_[i].receive();
     partners_[i].channel->reuse(std::exchange(given, std::move(reply.data)));
-    answered_anew_ = answered_anew_ || reply.anew;
+    renewed_prediction_ = renewed_prediction_ || reply.renewed;
   } catch (const SolveFailure&) {
     if (!mover_failed) throw;
   }
   if (mover_failed) throw SolveFailure(*mover_failed);
-  require_finite_answer(i, given);
-  answered_(i, taken_[i], given);
+  require_finite_data(i, given);
+  solved_(i, taken_[i], given);
 }
 
-/// Called after the answer of `i`, for closed fluids.
-void Pass::hold_volume(std::size_t i, std::vector<coupling::Exchange>& known) {
-  volume_level_->loaded(i, taken_[i], known[i]);
+/// Called after participant `i` was solved: finds the pressure levels of closed fluids.
+void Pass::enforce_volume(std::size_t i, std::vector<coupling::Exchange>& data) {
+  volume_level_->add_level(i, taken_[i], data[i]);
   if (i != volume_level_->structures().back()) return;
-  volume_level_->find(known, [&] {
+  volume_level_->find(data, [&] {
     for (const std::size_t structure : volume_level_->structures()) {
-      ask(structure, known, false);
-      answer(structure, known[structure], false);
+      send_solve(structure, data, false);
+      receive_solution(structure, data[structure], false);
     }
   });
 }

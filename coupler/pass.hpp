@@ -32,19 +32,20 @@ class Pass {
   /// Transfers values given before the first step.
   void exchange_initial_values();
   /// Sends one command to all participants.
-  void ask_all(const coupling::Command& command);
+  void command_all(const coupling::Command& command);
 
-  /// Performs one pass from `known` to new data. `first`: true for the first pass of a step. Throws SolveFailure if a participant
+  /// Begins a step. The mesh moves in its first pass and, unless the scheme is semi-implicit, in all others.
+  void begin_step(coupling::Step step);
+  /// True until the first pass of a step.
+  bool is_first() const { return first_; }
+  /// Performs one pass from `data` to new data, valid until the next pass. Throws SolveFailure if a participant
   /// fails.
-  std::vector<coupling::Exchange> operator()(std::vector<coupling::Exchange> known, bool first,
-                                             coupling::Scheme scheme);
-  /// Returns the data of a pass to the channels, as buffers for later replies.
-  void give_back(std::vector<coupling::Exchange> given);
-  /// Called after each answer in a pass.
-  void on_answer(
+  const std::vector<coupling::Exchange>& operator()(std::vector<coupling::Exchange> data);
+  /// Sets a callback for each participant's solution in a pass.
+  void on_solved(
       std::function<void(std::size_t, const coupling::Exchange& taken, const coupling::Exchange& given)>
           call) {
-    answered_ = std::move(call);
+    solved_ = std::move(call);
   }
 
   const Schedule& schedule() const { return schedule_; }
@@ -60,21 +61,24 @@ class Pass {
   /// Data given by each in the last pass of the last solved step.
   const std::vector<coupling::Exchange>& given() const { return given_; }
   const std::vector<coupling::Exchange>& taken() const { return taken_; }
-  void set_given(std::vector<coupling::Exchange> given) {
-    give_back(std::exchange(given_, std::move(given)));
-  }
-  /// True if some participant renewed its prediction in the last pass (Participant::answered_anew).
-  bool answered_anew() const { return answered_anew_; }
+  void set_given(std::vector<coupling::Exchange> given) { reuse(std::exchange(given_, std::move(given))); }
+  /// Ends a solved step: given() are the data of its last pass.
+  void keep_outputs() { set_given(std::move(outputs_)); }
+  /// True if some participant renewed its prediction in the last pass (Participant::renewed_prediction).
+  bool renewed_prediction() const { return renewed_prediction_; }
 
   /// Saves or loads the coupling's own state: levels of closed fluids, displacements of foreign structures.
   void visit(io::Archive& archive);
 
  private:
-  void ask(std::size_t i, const std::vector<coupling::Exchange>& known, bool move_mesh);
-  void answer(std::size_t i, coupling::Exchange& given, bool move_mesh);
-  std::vector<coupling::Exchange> side_by_side(const std::vector<coupling::Exchange>& known, bool move_mesh);
-  void hold_volume(std::size_t i, std::vector<coupling::Exchange>& known);
-  void require_finite_answer(std::size_t i, const coupling::Exchange& given) const;
+  void send_solve(std::size_t i, const std::vector<coupling::Exchange>& data, bool move_mesh);
+  void receive_solution(std::size_t i, coupling::Exchange& given, bool move_mesh);
+  std::vector<coupling::Exchange> in_sequence(std::vector<coupling::Exchange> data, bool move_mesh);
+  std::vector<coupling::Exchange> side_by_side(const std::vector<coupling::Exchange>& data, bool move_mesh);
+  void enforce_volume(std::size_t i, std::vector<coupling::Exchange>& data);
+  void require_finite_data(std::size_t i, const coupling::Exchange& given) const;
+  /// Returns data to the channels, as buffers for later replies.
+  void reuse(std::vector<coupling::Exchange> data);
 
   MPI_Comm comm_;
   Schedule schedule_;
@@ -83,10 +87,11 @@ class Pass {
   std::vector<Side> sides_;
   std::optional<Links> links_;
   std::optional<VolumeLevel> volume_level_;
-  std::vector<coupling::Exchange> given_, taken_;
-  coupling::Exchange guess_;  // of the motion, as given to the mover
-  bool answered_anew_ = false;
-  std::function<void(std::size_t, const coupling::Exchange&, const coupling::Exchange&)> answered_ =
+  std::vector<coupling::Exchange> given_, taken_, outputs_;  // outputs: of the last pass
+  coupling::Exchange guess_;                                 // of the motion, as given to the mover
+  coupling::Scheme scheme_ = coupling::Scheme::implicit;     // of the current step
+  bool first_ = false, renewed_prediction_ = false;
+  std::function<void(std::size_t, const coupling::Exchange&, const coupling::Exchange&)> solved_ =
       [](std::size_t, const coupling::Exchange&, const coupling::Exchange&) {};
 };
 

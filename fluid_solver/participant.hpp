@@ -42,7 +42,7 @@ class FluidParticipant final : public coupling::Participant {
   coupling::Interface initialise() override;
   void begin_step(const coupling::Step& step) override;
   coupling::Exchange solve(const coupling::Exchange& in) override;
-  bool answered_anew() const override { return renewed_now_; }
+  bool renewed_prediction() const override { return renewed_now_; }
   coupling::StepReport accept_step() override;
   void save(io::CheckpointWriter& file) const override;
   void load(io::CheckpointReader& file) override;

@@ -108,7 +108,7 @@ class Observed final : public coupling::Participant {
     inner_.begin_step(step);
   }
   coupling::Exchange solve(const coupling::Exchange& in) override { return inner_.solve(in); }
-  bool answered_anew() const override { return inner_.answered_anew(); }
+  bool renewed_prediction() const override { return inner_.renewed_prediction(); }
   coupling::StepReport accept_step() override {
     const coupling::StepReport report = inner_.accept_step();
     if (!std::isnan(report.energy)) {

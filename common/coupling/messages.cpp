@@ -116,7 +116,7 @@ std::vector<char> pack(const Reply& r, const Cut& cut) {
   out.put(r.report.energy);
   out.put(r.data);
   out.put(std::int64_t(r.interface.dim));
-  out.put(std::int64_t(r.anew));
+  out.put(std::int64_t(r.renewed));
   out.put(r.interface.parts);
   out.put(r.interface.takes);
   out.put(r.interface.gives);
@@ -155,7 +155,7 @@ Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   r.report.energy = in.real();
   r.data = in.exchange();
   r.interface.dim = int(in.integer(2, 3, "the dimension"));
-  r.anew = in.integer(0, 1, "the flag for a recomputed reply") != 0;
+  r.renewed = in.integer(0, 1, "the flag for a recomputed reply") != 0;
   r.interface.parts = in.names();
   r.interface.takes = in.data(r.surfaces.takes);
   take_out_within(r.interface.takes, r.surfaces);

@@ -100,10 +100,10 @@ struct Reply {
   double seconds = 0;                                             ///< spent on the command
   double suggested_dt = std::numeric_limits<double>::infinity();  ///< initialise, accept_step, load
   StepReport report;                                              ///< accept_step
-  Exchange data;        ///< solve: the output; initialise: values before the first step; this rank's entries
-  bool anew = false;    ///< solve: Participant::answered_anew()
-  Interface interface;  ///< initialise: this rank's entries
-  Surfaces surfaces;    ///< initialise
+  Exchange data;         ///< solve: the output; initialise: values before the first step; this rank's entries
+  bool renewed = false;  ///< solve: Participant::renewed_prediction()
+  Interface interface;   ///< initialise: this rank's entries
+  Surfaces surfaces;     ///< initialise
 };
 
 /// Distribution of a participant's surface over its ranks, part of the reply to initialise.

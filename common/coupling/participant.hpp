@@ -97,7 +97,7 @@ class Participant {
   virtual Exchange solve(const Exchange& in) = 0;
   /// Returns true if the last solve() renewed a prediction, so that differences to earlier passes of this
   /// step are no longer comparable.
-  virtual bool answered_anew() const { return false; }
+  virtual bool renewed_prediction() const { return false; }
   /// Accepts the step. Must not fail: everything that can fail belongs in solve().
   virtual StepReport accept_step() = 0;
   virtual void save(io::CheckpointWriter& file) const = 0;

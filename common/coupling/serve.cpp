@@ -49,7 +49,7 @@ void dispatch(const Command& command, Participant& participant, const std::strin
       return;
     case Op::solve:
       reply.data = participant.solve(command.data);
-      reply.anew = participant.answered_anew();
+      reply.renewed = participant.renewed_prediction();
       return;
     case Op::accept_step:
       reply.report = participant.accept_step();

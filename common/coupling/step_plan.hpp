@@ -78,7 +78,7 @@ class SubStepping final : public Participant {
   double suggest_dt() override { return steps_ * inner_.suggest_dt(); }
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
-  bool answered_anew() const override { return inner_.answered_anew(); }
+  bool renewed_prediction() const override { return inner_.renewed_prediction(); }
   StepReport accept_step() override;
   void save(io::CheckpointWriter& file) const override;
   void load(io::CheckpointReader& file) override;

@@ -9,7 +9,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "coupler/acceleration/quasi_newton.hpp"
 
@@ -48,7 +47,7 @@ void relax(std::vector<double>& x, double omega, const std::vector<double>& imag
 
 void relax(Iterate& x, double omega, const Iterate& image) {
   relax(x.unknown, omega, image.unknown);
-  relax(x.rider, omega, image.rider);
+  relax(x.dependent, omega, image.dependent);
 }
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm) {
@@ -109,19 +108,19 @@ void AitkenRelaxation::start_step() {
 }
 
 void AitkenRelaxation::take_residual(const Iterate& x, const Iterate& image) {
-  const std::size_t n = x.unknown.size(), m = x.rider.size();
+  const std::size_t n = x.unknown.size(), m = x.dependent.size();
   residual_.resize(n + m);  // of its size already but in the first pass
   double* r = residual_.data();
   for (std::size_t i = 0; i < n; ++i) r[i] = image.unknown[i] - x.unknown[i];
-  for (std::size_t i = 0; i < m; ++i) r[n + i] = image.rider[i] - x.rider[i];
+  for (std::size_t i = 0; i < m; ++i) r[n + i] = image.dependent[i] - x.dependent[i];
   if (m == 0) return;
   if (!knows_pass_) {
-    const std::span<const double> own(r, n), riders(r + n, m);
-    std::array<double, 2> squares{dot(own, own), dot(riders, riders)};
+    const std::span<const double> own(r, n), dependents(r + n, m);
+    std::array<double, 2> squares{dot(own, own), dot(dependents, dependents)};
     sum_over(comm_, squares);
-    rider_weight_ = squares[1] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
+    dependent_weight_ = squares[1] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
   }
-  for (std::size_t i = n; i < n + m; ++i) r[i] *= rider_weight_;
+  for (std::size_t i = n; i < n + m; ++i) r[i] *= dependent_weight_;
 }
 
 void AitkenRelaxation::learn() {
@@ -149,10 +148,11 @@ void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
   forget_pass();
 }
 
-bool converged(const Residual& residual, const ConvergenceParameters& parameters) {
-  const bool relative = residual.relative <= parameters.relative,
-             absolute = residual.absolute <= parameters.absolute;
-  return parameters.both ? relative && absolute : relative || absolute;
+bool has_converged(const std::vector<Residual>& residuals, const ConvergenceParameters& parameters) {
+  return std::ranges::all_of(residuals, [&](const Residual& r) {
+    const bool relative = r.relative <= parameters.relative, absolute = r.absolute <= parameters.absolute;
+    return parameters.both ? relative && absolute : relative || absolute;
+  });
 }
 
 std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters) {
@@ -172,37 +172,6 @@ double largest(const std::vector<Residual>& residuals, const std::vector<double>
   for (std::size_t i = 0; i < residuals.size(); ++i)
     if (scales[i] > 0) most = std::max(most, residuals[i].absolute / scales[i]);
   return most;
-}
-
-FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const ResidualMeasure& measure,
-                                   const ConvergenceParameters& parameters, Accelerator& accelerator,
-                                   const IterationObserver& observer) {
-  FixedPointResult result;
-  accelerator.start_step();
-  for (int k = 1; k <= parameters.max_iterations; ++k) {
-    Iterate image = map(x);
-    const std::vector<Residual> residuals = measure(x, image);
-    result.residual = worst(residuals);
-    result.iterations = k;
-    observer(k, residuals, accelerator.relaxation());
-    if (!std::ranges::all_of(residuals, [](const Residual& r) { return std::isfinite(r.absolute); }))
-      throw SolveFailure("the interface values are not finite after {} coupling iterations.", k);
-    result.converged =
-        std::ranges::all_of(residuals, [&](const Residual& r) { return converged(r, parameters); });
-    const bool as_it_is =
-        k == parameters.max_iterations && parameters.at_maximum == ConvergenceParameters::AtMaximum::accept;
-    if ((result.converged && k >= parameters.min_iterations) || as_it_is) {
-      accelerator.accept(x, image);
-      result.x = std::move(x);
-      result.image = std::move(image);
-      return result;
-    }
-    x = accelerator.next(std::move(x), image);
-  }
-  throw SolveFailure(
-      "the coupling did not converge in {} iterations: the relative residual is {:.2e} (tolerance {:.1e}){}.",
-      parameters.max_iterations, result.residual.relative, parameters.relative,
-      absolute_too(result.residual, parameters));
 }
 
 }  // namespace couplet::coupler

@@ -19,8 +19,8 @@ namespace couplet::coupler {
 /// One vector of the fixed-point problem x = H(x): this rank's part of the unknown, and dependent data that
 /// undergo the same linear combinations, such as the velocity of a displacement.
 struct Iterate {
-  std::vector<double> unknown;  ///< any unit
-  std::vector<double> rider;    ///< any unit, any length; may be empty
+  std::vector<double> unknown;    ///< any unit
+  std::vector<double> dependent;  ///< any unit, any length; may be empty
 };
 
 /// Residual of one datum. Those of several data have units of their own: only `relative` ones compare.
@@ -34,11 +34,11 @@ struct Residual {
 
 /// Order of its values in a file, independent of the number of ranks.
 struct IterateOrder {
-  parallel::GlobalOrder unknown, rider;
+  parallel::GlobalOrder unknown, dependent;
   /// Order by rank. Collective.
   static IterateOrder as_they_are(MPI_Comm comm, const Iterate& x) {
     return {parallel::GlobalOrder::as_they_are(comm, x.unknown.size()),
-            parallel::GlobalOrder::as_they_are(comm, x.rider.size())};
+            parallel::GlobalOrder::as_they_are(comm, x.dependent.size())};
   }
 };
 /// Archives `n` vectors in such an order, each a column of one field. Collective.
@@ -75,7 +75,7 @@ class Accelerator {
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm);
 
-/// x += omega (image - x), for unknown and rider.
+/// x += omega (image - x), for unknown and dependent.
 void relax(Iterate& x, double omega, const Iterate& image);
 /// Sums over all ranks of a few values at once, in place.
 void sum_over(MPI_Comm comm, std::span<double> values);
@@ -135,7 +135,7 @@ class AitkenRelaxation final : public Accelerator {
   AccelerationParameters parameters_;
   MPI_Comm comm_;
   double omega_, first_;                          // current factor; for the first update of the next step
-  double rider_weight_ = 0;                       // for this step, from its first residual
+  double dependent_weight_ = 0;                   // for this step, from its first residual
   bool second_pass_ = false;                      // the next pass is the second of this step
   bool knows_pass_ = false;                       // last_residual_ is from this step
   std::vector<double> residual_, last_residual_;  // buffers kept between passes
@@ -145,7 +145,8 @@ class AitkenRelaxation final : public Accelerator {
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
                      MPI_Comm comm = MPI_COMM_SELF);
 
-bool converged(const Residual& residual, const ConvergenceParameters& parameters);
+/// True if the residual of every datum is below its bound.
+bool has_converged(const std::vector<Residual>& residuals, const ConvergenceParameters& parameters);
 /// Suffix for a sentence with the relative residual; empty if only that one decides.
 std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters);
 /// Returns the residual of the datum with the largest relative one.
@@ -154,25 +155,12 @@ Residual worst(const std::vector<Residual>& residuals);
 /// omitted.
 double largest(const std::vector<Residual>& residuals, const std::vector<double>& scales);
 
-/// One pass through all participants, from x to H(x). Throws SolveFailure if one of them fails.
-using FixedPointMap = std::function<Iterate(const Iterate&)>;
-/// Residuals of H(x) - x, one for each unknown.
-using ResidualMeasure = std::function<std::vector<Residual>(const Iterate& x, const Iterate& image)>;
-/// After each pass: its number from 1, its residuals, and the share of the residual before that led to its x.
-using IterationObserver = std::function<void(int, const std::vector<Residual>&, double)>;
-
+/// Solution of a step.
 struct FixedPointResult {
   Iterate x, image;  ///< x and H(x) of the last pass
   Residual residual;
   int iterations = 0;
   bool converged = true;  ///< false: accepted without convergence
 };
-
-/// Solves x = H(x) by accelerated passes from the guess x, until the residual of every unknown is below its
-/// bound. Throws SolveFailure if it does not converge within the allowed iterations or a residual is not
-/// finite.
-FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const ResidualMeasure& measure,
-                                   const ConvergenceParameters& parameters, Accelerator& accelerator,
-                                   const IterationObserver& observer);
 
 }  // namespace couplet::coupler

@@ -89,9 +89,9 @@ void QuasiNewton::learn(const Iterate& x, const Iterate& image) {
   const std::optional<Pair> before = std::exchange(last_, Pair{difference(image.unknown, x.unknown), image});
   if (before) {
     const Pair& now = *last_;
-    Pair pair{
-        difference(now.residual, before->residual),
-        {difference(image.unknown, before->image.unknown), difference(image.rider, before->image.rider)}};
+    Pair pair{difference(now.residual, before->residual),
+              {difference(image.unknown, before->image.unknown),
+               difference(image.dependent, before->image.dependent)}};
     std::array<double, 3> squares{dot(now.residual, now.residual), dot(before->residual, before->residual),
                                   dot(pair.residual, pair.residual)};
     sum_over(comm_, squares);
@@ -111,7 +111,8 @@ Iterate QuasiNewton::next(Iterate x, const Iterate& image) {
     const Eigen::VectorXd c = qr_.minimise(last_->residual);
     add_to(next.unknown, c,
            [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].unknown; });
-    add_to(next.rider, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].rider; });
+    add_to(next.dependent, c,
+           [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].dependent; });
   }
   if (!has_pairs || !is_finite(next)) {
     if (has_pairs) ++resets_;
@@ -168,15 +169,16 @@ void QuasiNewton::add(Pair pair) {
 void QuasiNewton::visit(io::Archive& archive, const IterateOrder& order) {
   qr_.visit(archive, "iqn", order.unknown);
   const auto m = std::size_t(columns());
-  std::vector<std::vector<double>> unknown, rider;
+  std::vector<std::vector<double>> unknown, dependent;
   if (!archive.reads())
-    for (const Iterate& image : images_) unknown.push_back(image.unknown), rider.push_back(image.rider);
+    for (const Iterate& image : images_)
+      unknown.push_back(image.unknown), dependent.push_back(image.dependent);
   visit_columns(archive, order.unknown, "iqn.images", unknown, m);
-  visit_columns(archive, order.rider, "iqn.riders", rider, m);
+  visit_columns(archive, order.dependent, "iqn.dependents", dependent, m);
   archive.common("iqn.step", step_, step_of_);
   if (!archive.reads()) return;
   images_.clear();
-  for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(rider[j])});
+  for (std::size_t j = 0; j < m; ++j) images_.push_back({std::move(unknown[j]), std::move(dependent[j])});
   if (step_of_.size() != m)
     throw Error("The checkpoint's steps of differences ('iqn.step') are damaged. Use an earlier one.");
 }

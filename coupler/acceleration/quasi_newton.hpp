@@ -79,7 +79,7 @@ class QuasiNewton final : public Accelerator {
   bool open_ = false;         // the step is not accepted yet
   long resets_ = 0;
   GrowingQr qr_;                // of V
-  std::deque<Iterate> images_;  // columns of W, with their riders
+  std::deque<Iterate> images_;  // columns of W, with their dependents
   std::deque<double> step_of_;  // number of the step, per column
   double step_ = 0;
 };

@@ -13,19 +13,19 @@
 
 namespace couplet::coupler {
 
-/// Datum of the unknown, or of its riders.
+/// Datum of the unknown, or of its dependents.
 struct UnknownPart {
   std::size_t giver;
   coupling::Interface::Datum datum;
   int components = 1;
-  std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `rider`
-  bool rides = false;
-  std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
-  double weight = 1;                      ///< of a rider always 1
-  bool scaled = false;                    ///< its weight is known
-  bool asked_within = false;              ///< somebody takes its values within the step
-  std::optional<std::size_t> within{};    ///< of a value within the step: the part of its end
-  double share = 1;                       ///< of the step
+  std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `dependent`
+  bool is_dependent = false;
+  std::optional<std::size_t> velocity{};   ///< of a displacement: first value of its velocity in `dependent`
+  double weight = 1;                       ///< of a dependent always 1
+  bool scaled = false;                     ///< its weight is known
+  bool needs_samples = false;              ///< somebody takes its values within the step
+  std::optional<std::size_t> sample_of{};  ///< of a value within the step: the part of its end
+  double share = 1;                        ///< of the step
 };
 
 /// Unknowns of a group's iteration: data that a participant takes before they are given in the same pass, and
@@ -45,19 +45,17 @@ class Unknown {
   std::span<const Part> parts() const { return {parts_.data(), n_parts_}; }
   /// Number of values of this rank at the end of the step.
   std::size_t n_unknown() const { return n_unknown_; }
-  std::size_t n_rider() const { return n_rider_; }
+  std::size_t n_dependent() const { return n_dependent_; }
 
-  /// True if some participant requests values within the step.
-  bool asked_within() const;
-  /// True if there are values within the step.
-  bool has_within() const { return parts_.size() > n_parts_; }
-  /// Sets the times within the step from the given data. Returns true if they changed.
-  bool adopt_times(const std::vector<coupling::Exchange>& given);
+  /// Sets the times within the step from the given data, if some participant requests such values. Returns
+  /// true if they changed.
+  bool adopt_sample_times(const std::vector<coupling::Exchange>& given);
   /// Guess of a step from values at its end: constant within the step.
-  Iterate begin_step(Iterate guess);
-  Iterate held(Iterate ends) const;
+  Iterate start_step(Iterate guess);
+  /// Replaces the values within the step by those at its end.
+  Iterate hold_samples(Iterate x) const;
   /// Values at the end of the step.
-  Iterate ends(Iterate x) const;
+  Iterate end_values(Iterate x) const;
   /// True if all data of the unknown have been given.
   bool complete(const std::vector<coupling::Exchange>& given) const;
   /// Converts between given data and scaled iterates, only for data of the unknown.
@@ -76,7 +74,7 @@ class Unknown {
   /// Order by place numbers, optionally with the values within the step. Collective.
   IterateOrder order(bool within) const;
 
-  /// Residual of each unknown (without riders) over all ranks, including values within the step if x has
+  /// Residual of each unknown (without dependents) over all ranks, including values within the step if x has
   /// them. Relative to the change |H(x) - x^n| since `start`, but no less than the part `least` of |H(x)|; to
   /// |H(x)| with an empty start. A residual d at the end of a step is an error 4 d/dt^2 of the acceleration,
   /// so that a part of the value itself would mean more noise the shorter the step. Collective.
@@ -86,13 +84,15 @@ class Unknown {
   std::vector<double> motion(const Iterate& x) const;
 
  private:
-  void set_times(const std::vector<std::pair<std::size_t, double>>& times);
-  std::vector<double> between_times(const Part& part, const coupling::Exchange& given) const;
+  bool needs_samples() const;
+  bool has_samples() const { return parts_.size() > n_parts_; }
+  void set_sample_times(const std::vector<std::pair<std::size_t, double>>& times);
+  std::vector<double> interpolate_sample(const Part& part, const coupling::Exchange& given) const;
 
   MPI_Comm comm_;
   const std::vector<Side>* sides_;
   std::vector<Part> parts_;
-  std::size_t n_parts_ = 0, n_unknown_ = 0, n_rider_ = 0;  // of ends
+  std::size_t n_parts_ = 0, n_unknown_ = 0, n_dependent_ = 0;  // of ends
   Iterate start_;  // ends at the start of the step; empty where nobody asks for values within it
 };
 

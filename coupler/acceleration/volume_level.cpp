@@ -77,7 +77,7 @@ void VolumeLevel::start_step(double dt) {
 }
 
 /// Applies the level to the mean area of the step, so that its work is that on the volume, or to that of a linear structure.
-void VolumeLevel::loaded(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given) {
+void VolumeLevel::add_level(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given) {
   const auto found = std::ranges::find(cavities_, i, &Cavity::side);
   if (found == cavities_.end()) return;
   found->load = values_of(given, load_name);
@@ -133,10 +133,10 @@ VolumeLevel::Defect VolumeLevel::defect(const std::vector<coupling::Exchange>& k
   return d;
 }
 
-VolumeLevel::Defect VolumeLevel::answer_to(std::vector<coupling::Exchange>& known,
-                                           const std::function<void()>& answer) {
+VolumeLevel::Defect VolumeLevel::response_to(std::vector<coupling::Exchange>& known,
+                                             const std::function<void()>& solve_structures) {
   for (const Cavity& c : cavities_) put(c, known[c.side]);
-  answer();
+  solve_structures();
   return defect(known);
 }
 
@@ -150,7 +150,7 @@ double VolumeLevel::pressure(const Cavity& c, const std::vector<double>& load) c
 }
 
 /// Response of the structure to an additional pressure in each cavity, of the size of the load.
-void VolumeLevel::probe(std::vector<coupling::Exchange>& known, const std::function<void()>& answer,
+void VolumeLevel::probe(std::vector<coupling::Exchange>& known, const std::function<void()>& solve_structures,
                         const Eigen::VectorXd& now) {
   slope_.resize(now.size(), now.size());
   for (Eigen::Index k = 0; k < now.size(); ++k) {
@@ -158,7 +158,7 @@ void VolumeLevel::probe(std::vector<coupling::Exchange>& known, const std::funct
     const double mean = pressure(c, values_of(known[c.side], load_name)), size = mean > 0 ? mean : 1,
                  before = c.level;
     c.level += size;
-    slope_.col(k) = (answer_to(known, answer).value - now) / size;
+    slope_.col(k) = (response_to(known, solve_structures).value - now) / size;
     c.level = before;
   }
   slope_dt_ = dt_;
@@ -175,7 +175,8 @@ Eigen::VectorXd VolumeLevel::step_to(const Eigen::VectorXd& g) const {
   return lu.solve(-g);
 }
 
-void VolumeLevel::find(std::vector<coupling::Exchange>& known, const std::function<void()>& answer) {
+void VolumeLevel::find(std::vector<coupling::Exchange>& known,
+                       const std::function<void()>& solve_structures) {
   Defect now = defect(known);
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(now.value.size());  // by the loads at rest [m^3/s]
   const auto measure = [&] {
@@ -194,12 +195,12 @@ void VolumeLevel::find(std::vector<coupling::Exchange>& known, const std::functi
   measure();
   double best = share(now);
   if (best <= exact) return;
-  if (slope_dt_ != dt_) probe(known, answer, now.value);
+  if (slope_dt_ != dt_) probe(known, solve_structures, now.value);
   measure();
   for (int k = 0; k < most_tries; ++k) {
     const Eigen::VectorXd change = step_to(now.value);
     for (Eigen::Index j = 0; j < change.size(); ++j) cavities_[std::size_t(j)].level += change[j];
-    const Defect next = answer_to(known, answer);
+    const Defect next = response_to(known, solve_structures);
     const double left = share(next);
     if (!std::isfinite(left)) break;
     // The residual of a structure's own solver gives no information about the slope.

@@ -60,11 +60,11 @@ class VolumeLevel {
   const std::vector<std::size_t>& structures() const { return structures_; }
 
   void start_step(double dt);
-  /// Call after the answer of participant `i`: adds the level to the load of a cavity. `taken`: its input.
-  void loaded(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given);
-  /// Call after the last structure's answer: finds the levels. `answer` solves all structures again with the
+  /// Call after participant `i` was solved: adds the level to the load of a cavity. `taken`: its input.
+  void add_level(std::size_t i, const coupling::Exchange& taken, coupling::Exchange& given);
+  /// Call after the last structure was solved: finds the levels. `solve_structures` solves all again with the
   /// data in `known`. Throws SolveFailure if no pressure keeps a volume.
-  void find(std::vector<coupling::Exchange>& known, const std::function<void()>& answer);
+  void find(std::vector<coupling::Exchange>& known, const std::function<void()>& solve_structures);
   void accept(const std::vector<coupling::Exchange>& given);
 
   void visit(io::Archive& archive, const std::vector<Side>& sides);
@@ -78,9 +78,9 @@ class VolumeLevel {
   };
   CavityFlow flow(const Cavity& cavity, const std::vector<coupling::Exchange>& known) const;
   Defect defect(const std::vector<coupling::Exchange>& known) const;
-  Defect answer_to(std::vector<coupling::Exchange>& known, const std::function<void()>& answer);
+  Defect response_to(std::vector<coupling::Exchange>& known, const std::function<void()>& solve_structures);
   void put(const Cavity& cavity, coupling::Exchange& given) const;
-  void probe(std::vector<coupling::Exchange>& known, const std::function<void()>& answer,
+  void probe(std::vector<coupling::Exchange>& known, const std::function<void()>& solve_structures,
              const Eigen::VectorXd& now);
   double pressure(const Cavity& cavity, const std::vector<double>& load) const;
   Eigen::VectorXd step_to(const Eigen::VectorXd& g) const;

@@ -31,8 +31,7 @@ class IterationGrowth final : public CouplingDiagnostic {
     for (std::size_t i = 0; i < scales_.size(); ++i)
       if (scales_[i] == 0 && residuals[i].scale() > 0)
         scales_[i] = residuals[i].scale(), growth_.start_step();
-    if (!std::ranges::all_of(residuals,
-                             [&](const Residual& r) { return converged(r, view_.parameters.convergence); }))
+    if (!has_converged(residuals, view_.parameters.convergence))
       growth_.pass(largest(residuals, scales_), omega, view_.parameters.acceleration.type);
   }
   std::optional<app::StepFailure> suspects() const override {

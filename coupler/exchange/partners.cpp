@@ -26,7 +26,7 @@ coupling::Reply Partner::receive() {
   return reply;
 }
 
-void ask_all(const std::vector<Partner*>& partners, const coupling::Command& command) {
+void command_all(const std::vector<Partner*>& partners, const coupling::Command& command) {
   for (Partner* p : partners) p->send(coupling::Command(command));
   std::string failures;
   for (Partner* p : partners) {

@@ -38,7 +38,7 @@ struct Partner {
 };
 
 /// Sends a command to all, then waits for all replies. Collects failures in one SolveFailure.
-void ask_all(const std::vector<Partner*>& partners, const coupling::Command& command);
+void command_all(const std::vector<Partner*>& partners, const coupling::Command& command);
 /// Returns the interface of each, in order; stores initial values in the partners.
 std::vector<coupling::Interface> initialise_all(const std::vector<Partner*>& partners);
 /// Ends the participants one after the other, so that their logs do not mix. Returns their estimated errors. `problem`: why

@@ -48,8 +48,8 @@ class SchemeChoice {
       : is_open_(scheme.adapts), now_(scheme.first) {}
   coupling::Scheme now() const { return now_; }
   void start_step() { renewals_ = 0; }
-  /// Counts a pass in which a participant renewed its prediction (Participant::answered_anew).
-  void renewed() { ++renewals_; }
+  /// Counts a pass in which a participant renewed its prediction (Participant::renewed_prediction).
+  void count_renewal() { ++renewals_; }
   /// Call after a step that ended at `time`. Returns true if the next step has another scheme; reports it if all have.
   bool accepted(double time);
   /// Call after a failed step. Returns true if it must be repeated as an implicit one, set in now() until accepted().

@@ -109,7 +109,7 @@ CraftedFile checkpoint_file(const CheckpointStamp& stamp) {
                    number("ranks", 1), text_value("set", stamp.text())};
   add_array(file, "u", std::vector<double>(50, 1.5));
   add_field(file, "iqn.images", 3, {1, 4, 2, 5, 3, 6});
-  add_field(file, "iqn.riders", 0, {});
+  add_field(file, "iqn.dependents", 0, {});
   add_field(file, "iqn.q", 3, {1, 0, 0, 1, 0, 0});
   add_array(file, "iqn.r", {4, 1, 0, 0.5, 1});
   add_array(file, "iqn.step", {3, 2, 3, 2});

@@ -40,7 +40,7 @@ Reply some_reply() {
   r.seconds = 0.125;
   r.data = {{"pressure-force", {1, 2}}};
   r.interface.dim = 2;
-  r.anew = true;
+  r.renewed = true;
   r.interface.parts = {"flap", "root"};
   r.interface.takes = {{"displacement", "m", Interface::Place::vertices}};
   r.interface.gives = {{"pressure-force", "N", Interface::Place::faces}};
@@ -77,7 +77,7 @@ TEST(Messages, replies_arrive_as_they_were_sent) {
   EXPECT_TRUE(std::isinf(got.suggested_dt));
   EXPECT_EQ(got.data, (Exchange{{"pressure-force", {}}}));
   EXPECT_EQ(got.interface.dim, 2);
-  EXPECT_TRUE(got.anew);
+  EXPECT_TRUE(got.renewed);
   EXPECT_EQ(got.interface.parts, sent.interface.parts);
   ASSERT_EQ(got.interface.gives.size(), 1u);
   EXPECT_EQ(got.interface.gives[0].name, "pressure-force");

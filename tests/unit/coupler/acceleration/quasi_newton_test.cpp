@@ -20,13 +20,13 @@ AccelerationParameters of_quasi_newton(int reused = 8, Type type = Type::iqn_ils
   return parameters;
 }
 
-/// H(x)_i = -ratio / (i + 1) x_i + b_i: a heavy fluid, 40 modes. The rider is twice the unknown.
+/// H(x)_i = -ratio / (i + 1) x_i + b_i: a heavy fluid, 40 modes. The dependent is twice the unknown.
 Iterate heavy(const Iterate& x, double ratio, double shift) {
   Iterate image = x;
   for (std::size_t i = 0; i < x.unknown.size(); ++i)
     image.unknown[i] = -ratio / double(i + 1) * x.unknown[i] + (1 + shift) / double(i + 1);
-  image.rider = image.unknown;
-  for (double& v : image.rider) v *= 2;
+  image.dependent = image.unknown;
+  for (double& v : image.dependent) v *= 2;
   return image;
 }
 
@@ -130,11 +130,11 @@ TEST(QuasiNewton, needs_a_pass_more_than_a_linear_map_has_modes) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(x.unknown[i], image.unknown[i], 1e-11);
 }
 
-TEST(QuasiNewton, riders_take_the_same_combinations) {
+TEST(QuasiNewton, dependent_data_take_the_same_combinations) {
   const auto accelerator = make_accelerator(of_quasi_newton(), MPI_COMM_SELF);
   Iterate x;
   step(*accelerator, 20, 0, 200, &x);
-  for (std::size_t i = 0; i < 40; ++i) EXPECT_NEAR(x.rider[i], 2 * x.unknown[i], 1e-13);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_NEAR(x.dependent[i], 2 * x.unknown[i], 1e-13);
 }
 
 TEST(QuasiNewton, earlier_steps_save_passes) {
@@ -280,7 +280,7 @@ TEST(Accelerators, continue_from_a_checkpoint_bit_for_bit) {
       Iterate a, b;
       EXPECT_EQ(step(*whole, 10, 0.1 * n, 200, &a), step(*second, 10, 0.1 * n, 200, &b)) << int(type);
       EXPECT_EQ(a.unknown, b.unknown) << int(type);
-      EXPECT_EQ(a.rider, b.rider) << int(type);
+      EXPECT_EQ(a.dependent, b.dependent) << int(type);
     }
   }
   std::filesystem::remove(file);

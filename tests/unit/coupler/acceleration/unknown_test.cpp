@@ -30,8 +30,8 @@ struct Pair {
 TEST(Unknown, one_after_the_other_it_is_what_the_later_gives_to_the_earlier_side_by_side_all) {
   const Pair p;
   ASSERT_EQ(p.serial.parts().size(), 2u);
-  EXPECT_FALSE(p.serial.parts()[0].rides);
-  EXPECT_TRUE(p.serial.parts()[1].rides) << "the velocity goes with the displacement";
+  EXPECT_FALSE(p.serial.parts()[0].is_dependent);
+  EXPECT_TRUE(p.serial.parts()[1].is_dependent) << "the velocity goes with the displacement";
   EXPECT_EQ(p.parallel.parts().size(), 3u);
   const Unknown other_order(MPI_COMM_SELF, p.sides, p.links, {1, 0}, false);
   ASSERT_EQ(other_order.parts().size(), 1u);
@@ -47,7 +47,7 @@ TEST(Unknown, several_data_are_scaled_to_like_size_and_come_back_as_they_were) {
   const Iterate x = p.parallel.gather(given);
   ASSERT_EQ(x.unknown.size(), 2u);
   for (const double v : x.unknown) EXPECT_DOUBLE_EQ(v, 1);
-  EXPECT_EQ(x.rider[0], 0.1);
+  EXPECT_EQ(x.dependent[0], 0.1);
   EXPECT_DOUBLE_EQ(predict(p.parallel, {x, {}, {}, 0, 0}, 0.01, 1).unknown[0], 1 + 0.01 * 0.1 / 1e-4);
   std::vector<Exchange> again(2);
   p.parallel.scatter(x, again);
@@ -98,14 +98,14 @@ TEST(Predictor, order_0_repeats_the_last_state) {
   const Pair p;
   const Iterate guess = predict(p.serial, accelerated_motion(), 0.2, 0);
   EXPECT_EQ(guess.unknown[0], 3.5);
-  EXPECT_EQ(guess.rider[0], 5);
+  EXPECT_EQ(guess.dependent[0], 5);
 }
 
 TEST(Predictor, order_1_goes_on_with_the_last_velocity) {
   const Pair p;
   const Iterate guess = predict(p.serial, accelerated_motion(), 0.2, 1);
   EXPECT_DOUBLE_EQ(guess.unknown[0], 3.5 + 0.2 * 5);
-  EXPECT_EQ(guess.rider[0], 5);
+  EXPECT_EQ(guess.dependent[0], 5);
 }
 
 TEST(Predictor, order_2_is_exact_for_constant_acceleration_also_when_the_step_changes) {
@@ -114,7 +114,7 @@ TEST(Predictor, order_2_is_exact_for_constant_acceleration_also_when_the_step_ch
     const Iterate guess = predict(p.serial, accelerated_motion(), dt, 2);
     const double t = 1 + dt;
     EXPECT_NEAR(guess.unknown[0], 2 * t + 1.5 * t * t, 1e-14) << dt;
-    EXPECT_NEAR(guess.rider[0], 2 + 3 * t, 1e-14) << dt;
+    EXPECT_NEAR(guess.dependent[0], 2 + 3 * t, 1e-14) << dt;
   }
 }
 
@@ -125,7 +125,7 @@ TEST(Predictor, first_step_of_order_2_is_of_order_1) {
   history.old_dt = 0;
   const Iterate guess = predict(p.serial, history, 0.2, 2);
   EXPECT_DOUBLE_EQ(guess.unknown[0], 4.5);
-  EXPECT_EQ(guess.rider[0], 5);
+  EXPECT_EQ(guess.dependent[0], 5);
 }
 
 TEST(Predictor, data_without_velocity_follow_the_polynomial_through_their_last_values) {
@@ -143,7 +143,7 @@ TEST(Predictor, data_without_velocity_follow_the_polynomial_through_their_last_v
 /// A step with so many renewals: whether the scheme has changed.
 bool step(SchemeChoice& choice, int renewals) {
   choice.start_step();
-  for (int i = 0; i < renewals; ++i) choice.renewed();
+  for (int i = 0; i < renewals; ++i) choice.count_renewal();
   return choice.accepted(1);
 }
 

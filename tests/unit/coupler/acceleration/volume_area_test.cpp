@@ -64,7 +64,7 @@ struct Scene {
       const Exchange taken = links.input(0, known);
       known[0] = {{"pressure-force", {0, 0, 0, 0}},
                   {"inflow", {inflow_end / 2, inflow_begin / 2, inflow_end / 2, inflow_begin / 2}}};
-      level.loaded(0, taken, known[0]);
+      level.add_level(0, taken, known[0]);
       answer();
       level.find(known, [&] { answer(); });
     }
