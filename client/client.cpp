@@ -76,7 +76,7 @@ void send_reply(couplet_client& c) {
     head.real(c.error);
     head.real(c.energy);
     head.names(c.output);
-    head.integers({c.surface.dim, 0, 0});  // dimension, comparable to earlier answers, no named parts
+    head.integers({c.surface.dim, 0});  // dimension, comparable to earlier passes
     head.data(first ? c.takes : std::vector<Datum>{});
     head.data(first ? c.gives : std::vector<Datum>{});
     head.list(first ? c.vertex_cut : std::vector<std::int64_t>{0});

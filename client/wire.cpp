@@ -115,7 +115,7 @@ std::vector<char> Surface::cut_out(const Peer& p) const {
     out.integers({std::int64_t(f)});
     out.raw(&centres[3 * f], 24);
     out.raw(&areas[3 * f], 24);
-    out.integers({0, first[f + 1] - first[f]});  // part, number of vertices
+    out.integers({first[f + 1] - first[f]});
     for (std::int64_t k = first[f]; k < first[f + 1]; ++k) out.integers({corners[std::size_t(k)]});
   }
   out.integers({surface.empty() ? 0 : std::int64_t(p.vertices)});
@@ -225,7 +225,6 @@ Command unpack(const std::vector<char>& head) {
   c.scheme = in.integer();
   c.number = in.integer();
   c.sub_steps = in.integer();
-  c.waveform = in.integer();
   c.accepted = in.real();
   c.output = in.integer();
   c.folder = in.text();

@@ -142,7 +142,7 @@ void Coupler::accept(double time, int output) {
   diagnostics_.accepted(time);
   history_.accepted(last_.image, last_dt_, pass_.schedule().predictor);
   if (VolumeLevel* level = pass_.volume_level()) level->accept(pass_.given());
-  record_->accepted(time, output, pass_.volume_level());
+  record_->accepted(time, pass_.volume_level());
   if (scheme_.accepted(time)) start_acceleration();
 }
 

@@ -88,8 +88,7 @@ void Pass::reuse(std::vector<coupling::Exchange> data) {
   for (std::size_t i = 0; i < data.size(); ++i) partners_[i].channel->reuse(std::move(data[i]));
 }
 
-void Pass::begin_step(coupling::Step step) {
-  step.waveform = schedule_.waveform;
+void Pass::begin_step(const coupling::Step& step) {
   command_all({coupling::Op::begin_step, step, {}, 0, -1, ""});
   if (volume_level_) volume_level_->start_step(step.dt);
   scheme_ = step.scheme;

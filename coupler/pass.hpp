@@ -35,7 +35,7 @@ class Pass {
   void command_all(const coupling::Command& command);
 
   /// Begins a step. The mesh moves in its first pass and, unless the scheme is semi-implicit, in all others.
-  void begin_step(coupling::Step step);
+  void begin_step(const coupling::Step& step);
   /// True until the first pass of a step.
   bool is_first() const { return first_; }
   /// Performs one pass from `data` to new data, valid until the next pass. Throws SolveFailure if a participant

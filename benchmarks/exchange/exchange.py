@@ -13,7 +13,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-CASE = """simulation: {{end-time: {end}, time-step: 0.01, output: {{folder: out, interval: 0}}, checkpoint: {{interval: 0}}, max-step-halvings: 0}}
+CASE = """simulation: {{end-time: {end}, time-step: 0.01, output: {{folder: out, interval: 0}}, checkpoint: {{interval: 0}}, max-step-halvings: 0, accept: [interface-oscillation]}}
 participants:
   one: {{program: dummy}}
   two: {{program: dummy}}
@@ -24,7 +24,6 @@ coupling:
   acceleration: {acceleration}
   convergence: {{relative: {relative}, max-iterations: 200}}
   predictor: {{order: 0}}
-  on-divergence: warn
 """
 KINDS = {"constant": "{type: constant, initial-relaxation: 0.66}", "aitken": "{type: aitken, initial-relaxation: 0.5}",
          "iqn-ils": "{type: iqn-ils, initial-relaxation: 0.5, reused-steps: 5}",

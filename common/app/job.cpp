@@ -241,8 +241,9 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
     job.simulation = file.simulation;
     job.choices = file.choices;
     diagnostics::share_limit() = job.simulation.neglected_share;
-    diagnostics::accept(job.simulation.accept);
-    diagnostics::accept(command_line.accept);
+    std::vector<std::string> accepted = job.simulation.accept;
+    accepted.insert(accepted.end(), command_line.accept.begin(), command_line.accept.end());
+    diagnostics::accept(accepted);
     prepare(job, command_line, program.is_coupler);
     job.enter(Phase::initialise);
     supervisor.limit_silence(job.simulation.hang_timeout);

@@ -64,11 +64,6 @@ void check_places(const Interface& interface, const Cut& mine, int rank, const s
     if (v >= mine.vertices.back())
       throw Error("A face of the interface of '{}' refers to vertex {} of {} (counted from 0).", whose, v,
                   mine.vertices.back());
-  const std::size_t parts = std::max<std::size_t>(1, interface.parts.size());
-  for (const int part : interface.face_part)
-    if (std::size_t(part) >= parts)
-      throw Error("A face of the interface of '{}' refers to part {} of {} (counted from 0).", whose, part,
-                  parts);
 }
 
 }  // namespace

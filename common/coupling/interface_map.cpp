@@ -107,7 +107,6 @@ Interface InterfaceMap::describe(const mesh::Geometry& geometry) const {
     interface.vertices.push_back(geometry.points[points_[i]]);
     interface.vertex_ids.push_back(mesh_->point_id[points_[i]]);
   }
-  interface.parts = patches_;
   interface.face_offset.push_back(0);
   for (const Index f : faces_) {
     interface.face_centres.push_back(geometry.face_centre[f]);
@@ -118,13 +117,6 @@ Interface InterfaceMap::describe(const mesh::Geometry& geometry) const {
       interface.face_vertices.push_back(Index(vertices_.global(Index(here))));
     }
     interface.face_offset.push_back(Index(interface.face_vertices.size()));
-    for (std::size_t p = 0; p < patches_.size(); ++p) {
-      const mesh::Patch* patch = mesh_->find_patch(patches_[p]);
-      if (f >= patch->first && f < patch->first + patch->count) {
-        interface.face_part.push_back(int(p));
-        break;
-      }
-    }
   }
   return interface;
 }

@@ -76,7 +76,6 @@ std::vector<char> pack(const Command& c) {
   out.put(std::int64_t(c.step.scheme));
   out.put(std::int64_t(c.step.number));
   out.put(std::int64_t(c.step.sub_steps));
-  out.put(std::int64_t(c.step.waveform));
   out.put(c.time);
   out.put(std::int64_t(c.output));
   out.put(c.folder);
@@ -93,7 +92,6 @@ Command unpack_command(std::span<const char> bytes) {
   c.step.scheme = Scheme(in.integer(0, 3, "the scheme"));
   c.step.number = in.integer(0, largest_integer, "the number of the step");
   c.step.sub_steps = int(in.integer(1, most_sub_steps, "the number of sub-steps"));
-  c.step.waveform = in.integer(0, 1, "the waveform") != 0;
   c.time = in.real();
   c.output = int(in.integer(-1, std::numeric_limits<int>::max(), "the number of the output"));
   c.folder = in.text();
@@ -117,7 +115,6 @@ std::vector<char> pack(const Reply& r, const Cut& cut) {
   out.put(r.data);
   out.put(std::int64_t(r.interface.dim));
   out.put(std::int64_t(r.renewed));
-  out.put(r.interface.parts);
   out.put(r.interface.takes);
   out.put(r.interface.gives);
   out.put(cut.vertices);
@@ -156,7 +153,6 @@ Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   r.data = in.exchange();
   r.interface.dim = int(in.integer(2, 3, "the dimension"));
   r.renewed = in.integer(0, 1, "the flag for a recomputed reply") != 0;
-  r.interface.parts = in.names();
   r.interface.takes = in.data(r.surfaces.takes);
   take_out_within(r.interface.takes, r.surfaces);
   r.interface.gives = in.data(r.surfaces.gives);
@@ -218,7 +214,7 @@ std::vector<std::span<double>> places_in(Exchange& data, const std::vector<Inter
   return stretches<double>(data, of, dim, slice, whose);
 }
 
-// Layout: number, ids and positions of vertices; number, ids, centers, areas, parts, numbers of vertices and
+// Layout: number, ids and positions of vertices; number, ids, centers, areas, numbers of vertices and
 // their positions of faces; surfaces of the vertices, or none.
 std::vector<char> cut_out(const Interface& i, const Slice& s) {
   Packer out;
@@ -232,7 +228,6 @@ std::vector<char> cut_out(const Interface& i, const Slice& s) {
     out.put(i.face_ids.empty() ? std::int64_t(f) : std::int64_t(i.face_ids[f]));
     out.put(i.face_centres[f]);
     out.put(i.face_areas[f]);
-    out.put(std::int64_t(i.face_part.empty() ? 0 : i.face_part[f]));
     if (i.face_offset.empty()) {
       out.put(std::int64_t(0));
       continue;
@@ -253,11 +248,10 @@ void put_back(std::span<const char> bytes, Interface& i, std::vector<int>& surfa
   }
   if (i.face_offset.empty()) i.face_offset.push_back(0);
   constexpr std::int64_t most = std::numeric_limits<Index>::max();
-  for (std::size_t n = in.count(9); n > 0; --n) {
+  for (std::size_t n = in.count(8); n > 0; --n) {
     i.face_ids.push_back(in.integer());
     i.face_centres.push_back(in.point("a face"));
     i.face_areas.push_back(in.point("the area of a face"));
-    i.face_part.push_back(int(in.integer(0, most, "the part of a face")));
     for (std::size_t k = in.count(1); k > 0; --k)
       i.face_vertices.push_back(Index(in.integer(0, most, "a vertex of a face")));
     i.face_offset.push_back(Index(i.face_vertices.size()));

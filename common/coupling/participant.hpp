@@ -39,9 +39,6 @@ struct Interface {
   std::vector<Index> face_offset{}, face_vertices{};
   /// Numbers that do not depend on the partition. If empty, the position is the number.
   std::vector<GlobalIndex> vertex_ids{}, face_ids{};
-  /// Names of the interface's parts (patches), and the part of each face. May be empty.
-  std::vector<std::string> parts{};
-  std::vector<int> face_part{};
   bool empty() const { return vertices.empty() && face_centres.empty(); }
 };
 
@@ -63,7 +60,6 @@ struct Step {
   Scheme scheme = Scheme::standalone;
   GlobalIndex number = 0;
   int sub_steps = 1;     ///< number of steps of the participant within this coupling step (see SubStepping)
-  bool waveform = true;  ///< sub-steps interpolate their input linearly in time; false: it is constant
   bool is_last = false;  ///< once accepted, it ends the run; false in a coupled job
 };
 

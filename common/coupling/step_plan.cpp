@@ -163,7 +163,6 @@ void SubStepping::back_to_start() {
 /// Input at t^n + share dt. A mean over the step is constant.
 Exchange SubStepping::input_at(double share) const {
   Exchange in = given_;
-  if (!step_.waveform) return in;
   for (auto& [name, values] : in) {
     const auto before = before_.find(name);
     if (before == before_.end() || before->second.size() != values.size() || is_mean(name)) continue;

@@ -65,7 +65,7 @@ class StepPlan {
 
 /// Participant that takes several steps within a coupling step. It is restored to state n in memory before
 /// each further pass. Its input is linear in time between the values of the last accepted step and the
-/// current ones (waveform: linear), which keeps the coupling second-order, or constant. Output amounts (N, W)
+/// current ones, which keeps the coupling second-order. Output amounts (N, W)
 /// are means over the sub-steps, other data are taken from the last. With one step per coupling step (the
 /// default) it forwards everything and stores nothing.
 class SubStepping final : public Participant {

@@ -67,9 +67,7 @@ void resume_findings(int rank, const std::vector<Finding>& earlier) {
       kept().push_back(std::move(f));
 }
 
-void accept(std::span<const std::string> ids) {
-  accepted_ids().insert(accepted_ids().end(), ids.begin(), ids.end());
-}
+void accept(std::span<const std::string> ids) { accepted_ids().assign(ids.begin(), ids.end()); }
 
 double& share_limit() {
   static double limit = 0.05;

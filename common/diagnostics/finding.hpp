@@ -42,7 +42,7 @@ const std::vector<Finding>& findings();
 /// has already repeated at its start are not duplicated.
 void resume_findings(int rank, const std::vector<Finding>& earlier);
 
-/// Accepts findings by id. They are logged, but neither end a run with exit code 4 nor fail it with --strict.
+/// Accepts these findings, by id, and no others. They are logged, but neither end a run with exit code 4 nor fail it with --strict.
 void accept(std::span<const std::string> ids);
 bool is_accepted(const std::string& id);
 

@@ -150,14 +150,8 @@ void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
 
 bool has_converged(const std::vector<Residual>& residuals, const ConvergenceParameters& parameters) {
   return std::ranges::all_of(residuals, [&](const Residual& r) {
-    const bool relative = r.relative <= parameters.relative, absolute = r.absolute <= parameters.absolute;
-    return parameters.both ? relative && absolute : relative || absolute;
+    return r.relative <= parameters.relative || r.absolute <= parameters.absolute;
   });
-}
-
-std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters) {
-  if (!parameters.both) return "";
-  return fmt::format(", the absolute one {:.2e} ({:.1e})", residual.absolute, parameters.absolute);
 }
 
 Residual worst(const std::vector<Residual>& residuals) {

@@ -147,8 +147,6 @@ double aitken_factor(double omega, std::span<const double> residual, std::span<c
 
 /// True if the residual of every datum is below its bound.
 bool has_converged(const std::vector<Residual>& residuals, const ConvergenceParameters& parameters);
-/// Suffix for a sentence with the relative residual; empty if only that one decides.
-std::string absolute_too(const Residual& residual, const ConvergenceParameters& parameters);
 /// Returns the residual of the datum with the largest relative one.
 Residual worst(const std::vector<Residual>& residuals);
 /// Returns the largest absolute residual over the `scale` of its datum. Data without a scale yet (0) are

@@ -14,6 +14,9 @@
 namespace couplet::coupler {
 namespace {
 
+// Largest number of differences; each takes as much memory as three interface vectors.
+constexpr int most_columns = 100;
+
 std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> result(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] - b[i];
@@ -163,7 +166,7 @@ void QuasiNewton::add(Pair pair) {
     images_.erase(images_.begin() + j);
     step_of_.erase(step_of_.begin() + j);
   }
-  while (columns() > parameters_.maximum_columns) drop_oldest();
+  while (columns() > most_columns) drop_oldest();
 }
 
 void QuasiNewton::visit(io::Archive& archive, const IterateOrder& order) {

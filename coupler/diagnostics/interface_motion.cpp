@@ -26,8 +26,6 @@ const char* cure_of(coupling::Scheme scheme) {
              : "";
 }
 
-using OnDivergence = CouplingParameters::OnDivergence;
-
 /// Detects a growing oscillation of the interface from step to step (see StepOscillation).
 class InterfaceOscillation final : public CouplingDiagnostic {
  public:
@@ -64,7 +62,8 @@ class InterfaceOscillation final : public CouplingDiagnostic {
   }
 
  private:
-  bool stops() const { return view_.parameters.on_divergence == OnDivergence::stop; }
+  /// A case that accepts the finding goes on.
+  static bool stops() { return !diagnostics::is_accepted("interface-oscillation"); }
 
   const CouplingView& view_;
   StepOscillation swings_;

@@ -68,10 +68,9 @@ class UnconvergedStep final : public CouplingDiagnostic {
          .severity = part < useless_residual ? base::Severity::warning : base::Severity::wrong,
          .number = residual,
          .limit = wanted.relative,
-         .sentence =
-             fmt::format("coupling: relative residual = {:.2e} (limit {:.1e}){} after {} iterations: "
-                         "the step is accepted unconverged",
-                         residual, wanted.relative, absolute_too(last.residual, wanted), last.iterations),
+         .sentence = fmt::format("coupling: relative residual = {:.2e} (limit {:.1e}) after {} iterations: "
+                                 "the step is accepted unconverged",
+                                 residual, wanted.relative, last.iterations),
          .advice = "raise `convergence.max-iterations`, or remove `at-max-iterations: accept`"});
   }
 

@@ -118,8 +118,6 @@ void check_scheme(const CouplingParameters& p, const std::string& who,
     refuse("exchange.participants", fmt::format("'{}' before '{}'", record[3], record[2]), "after it");
 }
 
-bool speaks_precice(const Partner& p) { return p.introduction.starts_with("xml-"); }
-
 void check_dimensions(const std::vector<Side>& sides, const std::string& structure) {
   const Side& first = *std::ranges::find(sides, structure, &Side::name);
   for (const Side& other : sides)
@@ -131,7 +129,7 @@ void check_dimensions(const std::vector<Side>& sides, const std::string& structu
 }  // namespace
 
 std::string without_state(double checkpoint_interval, const std::vector<Partner>& partners) {
-  const auto found = std::ranges::find_if(partners, speaks_precice);
+  const auto found = std::ranges::find_if(partners, &Partner::is_precice);
   if (found == partners.end()) return "";
   if (checkpoint_interval > 0)
     throw Error(
@@ -143,7 +141,7 @@ std::string without_state(double checkpoint_interval, const std::vector<Partner>
 void check_introductions(const CouplingParameters& parameters, const std::vector<Partner>& partners) {
   const Partner* before = nullptr;
   for (const Partner& p : partners) {
-    if (!speaks_precice(p)) continue;
+    if (!p.is_precice()) continue;
     const std::vector<std::string> records = parts(p.introduction, '\x1e');
     if (before != nullptr && records[0] != parts(before->introduction, '\x1e')[0])
       throw Error(

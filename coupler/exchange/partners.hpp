@@ -27,6 +27,8 @@ struct Partner {
   coupling::Exchange initial;
 
   const std::string& name() const { return channel->name(); }
+  /// A program on preCICE's interface: it has no state to save, and repeats steps only in implicit schemes.
+  bool is_precice() const { return introduction.starts_with("xml-"); }
   void send(coupling::Command&& command) { send(command); }
   void send(coupling::Command& command) {
     command.step.sub_steps = sub_steps;

@@ -130,8 +130,6 @@ void Record::open(const std::filesystem::path& folder, double end_time, double r
   std::vector<std::string> names;
   for (const Partner& p : pass_.partners()) names.push_back(p.name());
   monitor_.emplace(comm_, folder, names, end_time, restart_time);
-  if (parameters_.interface_output)
-    interface_output_.emplace(comm_, folder / "interface", pass_.sides(), restart_time);
   monitor_->start(pass_.partners());
 }
 
@@ -140,7 +138,7 @@ const std::vector<SideBalance>& Record::balance() {
   return balances_;
 }
 
-void Record::accepted(double time, int output, VolumeLevel* level) {
+void Record::accepted(double time, VolumeLevel* level) {
   if (level) monitor_->row("volume.csv", time, level->columns(), level->row());
   write_balance(time);
   if (parameters_.exchange) {
@@ -152,7 +150,6 @@ void Record::accepted(double time, int output, VolumeLevel* level) {
   }
   if (watched_)
     monitor_->row("watch.csv", time, watched_->columns(), watched_->row(pass_.given(), pass_.taken()));
-  if (output >= 0 && interface_output_) interface_output_->write(time, output, pass_.given(), pass_.taken());
 }
 
 /// Forces and work of each side, then all moments.

@@ -23,42 +23,7 @@
 
 namespace couplet::coupler {
 
-/// Files of one output: <stem>.<rank>.vtp for each rank of the coupler at that time.
-struct InterfaceFiles {
-  double time = 0;
-  std::string stem;
-  int parts = 0;
-};
-
-/// Writes interface data for ParaView: <participant>.pvd with a VTK file per output and rank of the coupler.
-/// Faces are polygons with the face data; vertex data are at corners, separately for each face. The surface
-/// is the reference configuration, for warping by displacements.
-class InterfaceOutput {
- public:
-  /// `restart_time`: NaN for a fresh start; else later outputs of a previous run are removed. Collective.
-  InterfaceOutput(MPI_Comm comm, std::filesystem::path folder, const std::vector<Side>& sides,
-                  double restart_time);
-  /// Writes the data last given and taken. Collective.
-  void write(double time, int number, const std::vector<coupling::Exchange>& given,
-             const std::vector<coupling::Exchange>& taken);
-
- private:
-  struct Surface {
-    const Side* side;
-    std::size_t index;  // among all sides
-    FaceCorners corners;
-    std::vector<InterfaceFiles> files;
-  };
-  void write_piece(const Surface& surface, const std::filesystem::path& file, const coupling::Exchange& given,
-                   const coupling::Exchange& taken) const;
-  void write_list(const Surface& surface) const;
-
-  MPI_Comm comm_;
-  std::filesystem::path folder_;
-  std::vector<Surface> surfaces_;
-};
-
-/// Integrals of transferred data over interfaces or parts of them (`coupling.watch`):
+/// Integrals of transferred data over interfaces (`coupling.watch`):
 ///   amounts (N, W)            sum of each component
 ///   one value q per place     int q dA and its mean
 ///   a vector q of dim values  int q . n dA, flux out of the participant; for a velocity the swept volume [m^3/s]
@@ -67,7 +32,7 @@ class InterfaceOutput {
 /// meter of depth.
 class InterfaceIntegrals {
  public:
-  /// Throws Error for a missing participant, datum or part or data without an integral. Collective.
+  /// Throws Error for a missing participant or datum, or data without an integral. Collective.
   InterfaceIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
                      const std::map<std::string, IntegralParameters>& watched);
 
@@ -79,7 +44,7 @@ class InterfaceIntegrals {
 
  private:
   enum class Kind { amount, scalar, flux };
-  struct Surface {
+  struct IntegratedSurface {
     std::size_t side;
     int dim;
     FaceCorners corners;
@@ -89,18 +54,18 @@ class InterfaceIntegrals {
     std::size_t surface;
     Kind kind;
     coupling::Interface::Datum datum;
-    std::vector<bool> counts;  // by face (vertex for amounts there) of this rank
+    std::size_t places;  // faces (vertices for amounts there) of this rank
     std::size_t columns;
   };
   Integral integral_of(const std::string& name, const IntegralParameters& p, const Side& side,
-                       const Surface& surface) const;
-  std::vector<Vec3> areas(const Surface& s, const coupling::Exchange& given,
+                       const IntegratedSurface& surface) const;
+  std::vector<Vec3> areas(const IntegratedSurface& s, const coupling::Exchange& given,
                           const coupling::Exchange& taken) const;
   void add_up(const Integral& i, const std::vector<double>& values, const std::vector<Vec3>& areas,
               double* sums) const;
 
   MPI_Comm comm_;
-  std::vector<Surface> surfaces_;
+  std::vector<IntegratedSurface> surfaces_;
   std::vector<Integral> integrals_;
   std::vector<std::string> columns_;
 };
@@ -222,7 +187,7 @@ class Mechanics {
   int dim_ = 3;
 };
 
-/// Output files of the coupler: tables, balances of forces and work, interface data.
+/// Output files of the coupler: tables, balances of forces and work, integrals over interfaces.
 class Record {
  public:
   Record(MPI_Comm comm, const CouplingParameters& parameters, const Pass& pass);
@@ -230,8 +195,8 @@ class Record {
   void open(const std::filesystem::path& folder, double end_time, double restart_time);
   /// Forces and work of the accepted step on both sides. Moves the walls. Collective.
   const std::vector<SideBalance>& balance();
-  /// Records an accepted step. `output`: number of the output that is due, or -1.
-  void accepted(double time, int output, VolumeLevel* level);
+  /// Records an accepted step.
+  void accepted(double time, VolumeLevel* level);
 
   Monitor& monitor() { return *monitor_; }
   const Mechanics& mechanics() const { return mechanics_; }
@@ -248,7 +213,6 @@ class Record {
   Mechanics mechanics_;
   std::vector<SideBalance> balances_;  // of the last accepted step
   std::optional<Monitor> monitor_;
-  std::optional<InterfaceOutput> interface_output_;
   std::optional<InterfaceIntegrals> watched_;
 };
 

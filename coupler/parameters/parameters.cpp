@@ -81,7 +81,6 @@ void declare(config::Section& section, IntegralParameters& p, const std::vector<
   section.value("data", p.data)
       .required()
       .doc("name of a datum it gives or takes, such as pressure-force, velocity or heat");
-  section.value("part", p.part).doc("patch of the interface; default: the whole interface");
   section.check(
       [partners, &p] {
         return std::ranges::find(partners, p.participant) != partners.end()
@@ -174,12 +173,8 @@ void declare_predictor(config::Section& section, CouplingParameters& p) {
 
 void declare_sub_steps(config::Section& section, CouplingParameters& p) {
   section.value("sub-steps", p.sub_steps)
-      .doc("steps that a participant takes within each coupling step, by its name: {fluid: 4}; default 1");
-  using Waveform = CouplingParameters::Waveform;
-  section.choice("waveform", p.waveform, {{"linear", Waveform::linear}, {"constant", Waveform::constant}})
       .doc(
-          "data seen by sub-steps: linear: interpolated in time between the last and the new values (second "
-          "order). constant: the new values");
+          "steps that a participant takes within each coupling step, by its name: {fluid: 4}; default 1. Its input is linear in time between the last and the new values, so that the coupling stays second order");
   section.check([&p] { return problem_of_sub_steps(p); }, "sub-steps");
 }
 
@@ -233,20 +228,11 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
       "data transfer between the two sides of the interface");
-  section.value("interface-output", p.interface_output)
-      .doc(
-          "also write the data of all interfaces for ParaView with each output: coupler/interface/<name>.pvd");
   section.map<IntegralParameters>(
       "watch", p.watch, [&p](config::Section& s, IntegralParameters& w) { declare(s, w, partners_of(p)); },
       "integral",
       "integrals over interfaces, one row per step in coupler/watch.csv: sums of amounts (N, W), fluxes of "
       "vectors, integral and mean of scalars");
-  using OnDivergence = CouplingParameters::OnDivergence;
-  section
-      .choice("on-divergence", p.on_divergence, {{"stop", OnDivergence::stop}, {"warn", OnDivergence::warn}})
-      .doc(
-          "when the motion oscillates with growing amplitude, or the work on the two sides diverges: stop: "
-          "the run ends with the reason. warn: it is reported once");
   section.check([&] { return problem_of_roles(p); }, p.exchange ? "exchange" : "structure");
 }
 
@@ -267,9 +253,6 @@ void declare(config::Section& section, AccelerationParameters& p) {
   section.value("reused-steps", p.reused_steps)
       .range(0, 1000)
       .doc("iqn: number of earlier steps whose differences are reused");
-  section.value("maximum-columns", p.maximum_columns)
-      .range(1, 10000)
-      .doc("iqn: maximum number of differences; each takes as much memory as three interface vectors");
   section.value("filter", p.filter)
       .range(0, 1)
       .doc(
@@ -287,21 +270,10 @@ void declare(config::Section& section, ConvergenceParameters& p) {
       .unit("m", 1e-18, 0.1)
       .not_negative()
       .doc("or when the root mean square of r over the interface vertices is below this; 0 turns this off");
-  section.value("both", p.both)
-      .doc("true: a step has converged only if both limits, `relative` and `absolute`, are met");
-  section.check([&p] { return !p.both || p.absolute > 0 ? "" : "it needs `absolute`"; }, "both");
   section.value("max-iterations", p.max_iterations)
       .range(1, 10000)
       .doc("maximum number of iterations; a step that needs more fails and is halved");
-  section.value("min-iterations", p.min_iterations)
-      .range(1, 10000)
-      .doc("minimum number of iterations, converged or not");
-  section.check(
-      [&p] { return p.min_iterations <= p.max_iterations ? "" : "it is more than `max-iterations`"; },
-      "min-iterations");
-  using AtMaximum = ConvergenceParameters::AtMaximum;
-  section
-      .choice("at-max-iterations", p.at_maximum, {{"fail", AtMaximum::fail}, {"accept", AtMaximum::accept}})
+  section.choice("at-max-iterations", p.accepts_at_maximum, {{"fail", false}, {"accept", true}})
       .doc(
           "after `max-iterations` without convergence: fail: the step is halved. accept: the step is accepted, with "
           "the finding `unconverged-step`");

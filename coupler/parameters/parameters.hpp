@@ -15,9 +15,8 @@ namespace couplet::coupler {
 struct AccelerationParameters {
   enum class Type { constant, aitken, iqn_ils } type = Type::iqn_ils;
   double initial_relaxation = 0.5;
-  int reused_steps = 8;       // quasi-Newton: number of earlier steps with stored differences
-  int maximum_columns = 100;  // largest number of these differences
-  double filter = 1e-3;       // limit of the independent part of a column
+  int reused_steps = 8;  // quasi-Newton: number of earlier steps with stored differences
+  double filter = 1e-3;  // limit of the independent part of a column
 };
 
 struct ConvergenceParameters {
@@ -25,9 +24,8 @@ struct ConvergenceParameters {
   /// Part of |H(x)| that counts as a change in any step: participants solve to about 1e-8 of their values.
   double least_change() const { return std::min(1., 1e-7 / relative); }
   double absolute = 0;  // rms of |r| over the vertices [m]
-  bool both = false;    // require both bounds instead of either
-  int min_iterations = 1, max_iterations = 50;
-  enum class AtMaximum { fail, accept } at_maximum = AtMaximum::fail;
+  int max_iterations = 50;
+  bool accepts_at_maximum = false;  // without convergence; otherwise the step fails
 };
 
 struct MappingParameters {
@@ -38,7 +36,6 @@ struct MappingParameters {
 /// Integral over an interface.
 struct IntegralParameters {
   std::string participant, data;
-  std::string part;  // of the interface; empty for all of it
 };
 
 /// Participants of any kind that exchange data once per step, instead of fluid, structure and mesh.
@@ -84,14 +81,10 @@ struct CouplingParameters {
   Exchange::Order order = Exchange::Order::serial;
   std::optional<double> predictor_order;
   std::map<std::string, double> sub_steps;  // by participant
-  enum class Waveform { linear, constant } waveform = Waveform::linear;
-  bool mesh_on_guess = false;  // in each pass of the implicit scheme
-  bool loads_at_rest = false;  // on the undeformed surface of a linear structure; not a key
+  bool mesh_on_guess = false;               // in each pass of the implicit scheme
+  bool loads_at_rest = false;               // on the undeformed surface of a linear structure; not a key
   MappingParameters mapping;
-  bool interface_output = false;  // for ParaView
   std::map<std::string, IntegralParameters> watch;
-  /// Reaction to a guard that attributes the motion to the coupling scheme.
-  enum class OnDivergence { stop, warn } on_divergence = OnDivergence::stop;
   /// True if a mesh mover moves bodies of a fluid as prescribed: nothing is iterated then.
   bool moves_alone() const { return fluid && mesh && !structure && !exchange; }
   /// Copy with the effective scheme: one pass if nothing is iterated.

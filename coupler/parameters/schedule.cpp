@@ -29,7 +29,6 @@ Schedule schedule_of(const CouplingParameters& p) {
   s.iterates = p.scheme != coupling::Scheme::explicit_;
   s.mesh_on_guess = p.mesh_on_guess || p.scheme.adapts;
   s.loads_at_rest = p.loads_at_rest;
-  s.waveform = p.waveform == CouplingParameters::Waveform::linear;
   for (const auto& [name, steps] : p.sub_steps) s.sub_steps[name] = int(std::lround(steps));
   if (p.exchange) {
     s.group = p.exchange->participants;

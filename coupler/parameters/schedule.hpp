@@ -25,7 +25,6 @@ struct Schedule {
   bool loads_at_rest = false;               ///< pressures act on the undeformed surface of a linear structure
   int predictor = 2;
   std::map<std::string, int> sub_steps;  ///< of participants with several
-  bool waveform = true;                  ///< linear in time as input of sub-steps
 
   /// All participants with the mover first, because the fluid waits for its motion.
   std::vector<std::string> everyone() const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explicit (loose) coupling: one pass per step.
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -26,7 +27,9 @@ FixedPointResult Coupler::single_pass(const coupling::Step& step) {
     result.image = pass(result.x);
     result.residual = worst(measure(result.x, result.image));
     // Sub-steps use linear input in time, which each additional pass would change.
-    if (!unknown_->parts().empty() && pass_.schedule().sub_steps.empty() && measures_response_in(step.number))
+    const bool repeats =
+        pass_.schedule().sub_steps.empty() && std::ranges::none_of(pass_.partners(), &Partner::is_precice);
+    if (repeats && !unknown_->parts().empty() && measures_response_in(step.number))
       measure_response(step, result);
   }
   result.iterations = 1;

@@ -21,17 +21,15 @@ FixedPointResult Coupler::iterate(const coupling::Step& step) {
     residual = worst(residuals);
     observe(step, k, residuals);
     const bool converged = has_converged(residuals, limits);
-    const bool accepts =
-        k == limits.max_iterations && limits.at_maximum == ConvergenceParameters::AtMaximum::accept;
-    if ((converged && k >= limits.min_iterations) || accepts) {
+    if (converged || (k == limits.max_iterations && limits.accepts_at_maximum)) {
       accelerator_->accept(x, image);
       return {std::move(x), std::move(image), residual, k, converged};
     }
     x = accelerator_->next(std::move(x), image);
   }
   throw SolveFailure(
-      "the coupling did not converge in {} iterations: the relative residual is {:.2e} (tolerance {:.1e}){}.",
-      limits.max_iterations, residual.relative, limits.relative, absolute_too(residual, limits));
+      "the coupling did not converge in {} iterations: the relative residual is {:.2e} (tolerance {:.1e}).",
+      limits.max_iterations, residual.relative, limits.relative);
 }
 
 /// Records a pass. Throws SolveFailure if the iteration diverges (IterationGrowth).

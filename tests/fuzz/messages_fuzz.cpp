@@ -27,7 +27,6 @@ Reply reply() {
   r.text = "cell 12 is inverted";
   r.data = {{"pressure-force", {}}};
   r.interface.dim = 2;
-  r.interface.parts = {"flap", "root"};
   r.interface.takes = {{"displacement", "m", Interface::Place::vertices}};
   r.interface.gives = {{"pressure-force", "N", Interface::Place::faces},
                        {"heat", "W", Interface::Place::faces, 1}};
@@ -39,7 +38,6 @@ Interface surface() {
   i.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}};
   i.face_centres = {{0.5, 0, 0}, {1.5, 0.5, 0}};
   i.face_areas = {{0, 1, 0}, {-1, 1, 0}};
-  i.face_part = {0, 1};
   i.face_offset = {0, 2, 4};
   i.face_vertices = {0, 1, 1, 2};
   return i;

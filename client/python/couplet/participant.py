@@ -24,7 +24,7 @@ from mpi4py import MPI  # MPI starts here
 
 from couplet.relay import OverMpi, OverSocket, wait as _wait
 
-VERSION, COMMAND, REPLY, HELLO = 6, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
+VERSION, COMMAND, REPLY, HELLO = 7, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
 JOIN_TAG, COMMAND_TAG, REPLY_TAG, INPUT_TAG, PLACES_TAG, OUTPUT_TAG = 100, 101, 102, 103, 104, 105
 EVENTS = {2: "begin", 3: "solve", 4: "accept", 5: "output", 6: "save", 7: "load"}
 INITIALISE, SOLVE, FINALISE = 1, 3, 8
@@ -218,7 +218,7 @@ class Client:
         step = r.take("d"), r.take("d")
         if self.operation == 2:
             self._begun, self.dt = step
-        self.scheme, self.number, self.sub_steps, self.waveform = (r.take("q") for _ in range(4))
+        self.scheme, self.number, self.sub_steps = (r.take("q") for _ in range(3))
         accepted, self.output, self.folder = r.take("d"), r.take("q"), r.text()
         self.time = accepted if self.operation in (4, 5) else self._begun
         names = [r.text() for _ in range(r.take("q"))]
@@ -266,7 +266,7 @@ class Client:
             out += _integers(v) + _reals(*self._xyz[v])
         out += _integers(faces.stop - faces.start)
         for f in range(faces.start, faces.stop):
-            out += _integers(f) + _reals(*self._centres[f], *self._areas[f]) + _integers(0) + _list(self._corners[f])
+            out += _integers(f) + _reals(*self._centres[f], *self._areas[f]) + _list(self._corners[f])
         return out + _integers(0)
 
     def _send_reply(self):
@@ -280,7 +280,7 @@ class Client:
         if self.comm.rank == 0:
             head = _integers(REPLY, VERSION, self._status) + _text(self._why)
             head += _reals(time.monotonic() - self._started, self._advised, self.dt) + _integers(0) + _reals(math.nan, math.nan)
-            head += _integers(len(names)) + b"".join(map(_text, names)) + _integers(self._dimension, 0, 0)
+            head += _integers(len(names)) + b"".join(map(_text, names)) + _integers(self._dimension, 0)
             for data in (self._takes, self._gives):
                 head += _integers(len(data) if first else 0)
                 for name, unit, place, components in data if first else []:

@@ -79,9 +79,6 @@ inline coupling::Interface part_of(MPI_Comm world, const coupling::Interface& wh
   part.face_centres.assign(whole.face_centres.begin() + f[rank], whole.face_centres.begin() + f[rank + 1]);
   part.face_areas.assign(whole.face_areas.begin() + f[rank], whole.face_areas.begin() + f[rank + 1]);
   if (!whole.face_offset.empty()) part.face_offset.push_back(0);
-  part.parts = whole.parts;
-  if (!whole.face_part.empty())
-    part.face_part.assign(whole.face_part.begin() + f[rank], whole.face_part.begin() + f[rank + 1]);
   for (GlobalIndex face = f[rank]; face < f[rank + 1] && !whole.face_offset.empty(); ++face) {
     part.face_vertices.insert(part.face_vertices.end(), whole.face_vertices.begin() + whole.face_offset[face],
                               whole.face_vertices.begin() + whole.face_offset[face + 1]);

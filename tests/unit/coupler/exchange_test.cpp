@@ -215,19 +215,4 @@ TEST(Links, what_does_not_fit_is_named) {
   EXPECT_THAT(message(wrong), HasSubstr("'wall' takes 'heat', which both 'bed' and 'ground' give"));
 }
 
-TEST(InterfaceFiles, hold_every_value_of_places_and_faces) {
-  Interface i{3, {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {Vec3(0.5, 0.5, 0)}, {Vec3(0, 0, 2)}, {}, {}};
-  i.face_offset = {0, 3}, i.face_vertices = {0, 1, 2};
-  i.gives = {{"displacement", "m", Place::vertices}}, i.takes = {{"pressure-force", "N", Place::faces}};
-  const fs::path folder = fs::temp_directory_path() / fmt::format("couplet-vtp-{}", ::getpid());
-  const std::vector<Side> sides{{MPI_COMM_SELF, "plate", i}};
-  InterfaceOutput(MPI_COMM_SELF, folder, sides, NAN)
-      .write(0.5, 3, {{{"displacement", {1, 2, 3, 4, 5, 6, 7, 8, 9}}}}, {{{"pressure-force", {-1, -2, -3}}}});
-  std::ifstream file(folder / "plate-000003.0.vtp");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  for (const char* numbers : {"0 0 0 2 0 0 0 2 0", "1 2 3 4 5 6 7 8 9", "-1 -2 -3"})
-    EXPECT_THAT(text, HasSubstr(fmt::format("format=\"ascii\">\n{} \n", numbers)));
-  fs::remove_all(folder);
-}
-
 }  // namespace couplet::exchange_test

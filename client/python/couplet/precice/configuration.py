@@ -101,8 +101,7 @@ class Import:
             self._convergence(first, coupling)
             self._acceleration(first, coupling)
         else:
-            # The coupler would repeat steps to estimate its error, but these programs cannot repeat a step.
-            coupling["sub-steps"] = dict.fromkeys(members, 1)
+            # These programs cannot repeat a step.
             self.case["simulation"]["max-step-halvings"] = 0
         coupling["predictor"] = {"order": 0}
 
@@ -166,20 +165,18 @@ class Import:
         if not measures:
             self._note(scheme, "without a convergence measure each window takes max-iterations, and that it has not converged is accepted")
             self.case["simulation"]["accept"] = ["error-estimate", "unconverged-step"]
-        both = absolute and limits and any(not m.name.startswith("absolute-or") for m in measures)
         coupling["convergence"] = {"relative": min(limits, default=1e-14)}
-        if absolute:
+        if absolute and limits and any(not m.name.startswith("absolute-or") for m in measures):
+            self._note(measures[0], "of relative and absolute limits, the relative one decides")
+        elif absolute:
             coupling["convergence"]["absolute"] = f"{min(absolute):g} m"
-        if both:
-            self._note(measures[0], "all data that are iterated on have to meet the relative and the absolute limit")
-            coupling["convergence"]["both"] = True
         if (most := self._count(scheme.one("max-iterations"))) is not None:
             coupling["convergence"] |= {"max-iterations": most, "at-max-iterations": "accept"}
         else:
             self._note(scheme, "without max-iterations a window ends after 10000")
             coupling["convergence"]["max-iterations"] = 10000
         if (least := self._count(scheme.one("min-iterations"))) is not None and least > 1:
-            coupling["convergence"]["min-iterations"] = least
+            self._note(scheme, "min-iterations has no effect: a window ends when it has converged")
 
     def _limit(self, measure, key):
         """Limit of a convergence measure, with preCICE's default if both kinds are in one."""
@@ -210,9 +207,11 @@ class Import:
         kind = a.name.split(":")[1]
         values = {"type": ACCELERATIONS.get(kind, kind)}
         for element, key, whole in (("relaxation", "initial-relaxation", False), ("initial-relaxation", "initial-relaxation", False),
-                                    ("max-used-iterations", "maximum-columns", True), ("time-windows-reused", "reused-steps", True)):
+                                    ("time-windows-reused", "reused-steps", True)):
             if (e := a.one(element)) and (number := self._number(e)) is not None:
                 values[key] = int(number) if whole else number
+        if (m := a.one("max-used-iterations")) and self._number(m) is not None:
+            self._note(m, "<max-used-iterations> has no effect: at most 100 differences are kept")
         if (f := a.one("filter")) and f.get("limit"):
             values["filter"] = self._finite(f, "limit")
             if f.get("type") != "QR2":

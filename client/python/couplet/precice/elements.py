@@ -100,7 +100,7 @@ SILENT = {"log", "sink", "profiling", "m2n:", "intra-comm:", "master:", "data", 
 SILENT |= {"mapping:nearest-neighbor-gradient", "mapping:axial-geometric-multiscale", "mapping:radial-geometric-multiscale", "use-mesh"}
 # Elements without influence on the answer, and their replacements.
 WITHOUT_EFFECT = {
-    "export:": "`coupling.interface-output: true` writes the data of all interfaces for ParaView",
+    "export:": "every program writes its own fields, and `coupling.watch` has integrals",
     "watch-point": "no watch at a point: `coupling.watch` has integrals", "watch-integral": "`coupling.watch` has integrals over interfaces",
     "preconditioner": "data of several kinds are scaled once by their first size", "basis-function:": "`rbf` takes a local interpolant through the nearest vertices",
 }

@@ -153,17 +153,4 @@ TEST(Residual, either_criterion_suffices) {
   EXPECT_FALSE(has_converged({{1e-2, 1e-5}}, p));
 }
 
-TEST(Residual, both_criteria_are_needed_where_both_are_asked_for) {
-  ConvergenceParameters p;
-  p.relative = 1e-3;
-  p.absolute = 1e-6;
-  p.both = true;
-  EXPECT_FALSE(has_converged({{1e-4, 1}}, p));
-  EXPECT_FALSE(has_converged({{1, 1e-7}}, p));
-  EXPECT_TRUE(has_converged({{1e-4, 1e-7}}, p));
-  EXPECT_EQ(absolute_too({1, 2e-5}, p), ", the absolute one 2.00e-05 (1.0e-06)");
-  p.both = false;
-  EXPECT_EQ(absolute_too({1, 2e-5}, p), "");
-}
-
 }  // namespace couplet::accelerator_test
