@@ -228,15 +228,13 @@ void fill(const Flat& f, const coupling::Interface& other, const std::vector<Ind
 
 }  // namespace
 
-ConjugateMap::ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface,
-                           MappingParameters::Type type)
+ConjugateMap::ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface)
     : comm_(comm), structure_(&structure), surface_(&surface) {
   const Surroundings theirs(comm, structure.interface), ours(comm, surface.interface);
   const bool corners = theirs.has_corners() && ours.has_corners();
-  if (type == MappingParameters::Type::projection) require_corners(corners);
   to_faces_ = vertices_to_faces(comm, structure.interface);
   to_surface_faces_ = vertices_to_faces(comm, surface.interface);
-  across_ = corners ? faces_to_vertices(comm, structure.interface, surface.interface, type)
+  across_ = corners ? faces_to_vertices(comm, structure.interface, surface.interface)
                     : without_corners(comm, theirs, ours.vertices(), structure.interface.dim);
 }
 

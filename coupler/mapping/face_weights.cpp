@@ -85,20 +85,11 @@ void meet(const Vec3& centre, const std::vector<Vec3>& at, std::vector<double>& 
 
 }  // namespace
 
-Slopes::Slopes(const coupling::Interface& surface, MappingParameters::Type type)
-    : surface_(surface),
-      radial_(type == MappingParameters::Type::rbf || surface.face_offset.empty()),
-      known_(surface.face_centres.size()) {
-  if (radial_) {
-    centres_ = std::make_unique<base::PointTree>(surface.face_centres);
-    return;
-  }
+Slopes::Slopes(const coupling::Interface& surface) : surface_(surface), known_(surface.face_centres.size()) {
   faces_of_.resize(surface.vertices.size());
   for (Index f = 0; f < Index(known_.size()); ++f)
     for (const Index v : corners(surface, f)) faces_of_[std::size_t(v)].push_back(f);
 }
-
-Slopes::~Slopes() = default;
 
 std::vector<Index> Slopes::touching(Index face, std::size_t shared, double least_cosine) const {
   std::vector<Index> all, result;
@@ -152,36 +143,9 @@ Slope Slopes::least_squares(Index face, const std::vector<Index>& neighbours, bo
   return slope;
 }
 
-Slope Slopes::radial(Index face) const {
-  const std::size_t k = looks_at(surface_.dim) / 4;
-  const Vec3& centre = surface_.face_centres[face];
-  const Vec3 normal = surface_.face_areas[face].normalized();
-  Slope slope;
-  for (const Index s : centres_->nearest(centre, looks_at(surface_.dim)))
-    if (slope.around.size() < k && alike(surface_, face, s, same_way)) slope.around.push_back(s);
-  slope.weights = Eigen::Matrix3Xd::Zero(3, Eigen::Index(slope.around.size()));
-  if (slope.around.size() < 2) {  // alone on its side
-    slope.around = centres_->nearest(centre, std::size_t(surface_.dim) + 1);
-    std::erase_if(slope.around, [&](Index s) { return !alike(surface_, face, s, not_against); });
-    slope.weights = Eigen::Matrix3Xd::Zero(3, Eigen::Index(slope.around.size()));
-  }
-  const double area = surface_.face_areas[face].norm(),
-               half = 0.5 * (surface_.dim == 2 ? area : std::sqrt(area));
-  const Vec3 first = surface_.dim == 2 ? Vec3(-normal.y(), normal.x(), 0) : normal.unitOrthogonal();
-  for (const Vec3& along : {first, Vec3(normal.cross(first))}) {
-    if (surface_.dim == 2 && std::abs(along.z()) > 0.5) continue;
-    const auto low = local_weights(surface_.face_centres, slope.around, centre - half * along),
-               high = local_weights(surface_.face_centres, slope.around, centre + half * along);
-    for (std::size_t i = 0; i < low.size(); ++i)
-      slope.weights.col(Eigen::Index(i)) += along * ((high[i] - low[i]) / (2 * half));
-  }
-  return slope;
-}
-
 const Slope& Slopes::at(Index face) {
   Slope& slope = known_[std::size_t(face)];
   if (!slope.around.empty()) return slope;
-  if (radial_) return slope = radial(face);
   bool spans = false;
   slope = least_squares(face, touching(face, std::size_t(surface_.dim - 1), same_way), spans);
   if (!spans) slope = least_squares(face, touching(face, 1, same_way), spans);
@@ -233,10 +197,10 @@ std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const coupling::In
 
 using Eigen::MatrixXd;
 
-FaceIntegrals::FaceIntegrals(const coupling::Interface& structure, MappingParameters::Type type)
+FaceIntegrals::FaceIntegrals(const coupling::Interface& structure)
     : structure_(structure),
       tree_(structure.face_centres),
-      slopes_(structure, type),
+      slopes_(structure),
       place_(structure.face_centres.size(), -1) {
   means_.reserve(structure.face_centres.size());
   for (Index s = 0; s < Index(structure.face_centres.size()); ++s) {

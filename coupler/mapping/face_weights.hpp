@@ -3,18 +3,12 @@
 
 #include <Eigen/Core>
 
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "common/base/point_tree.hpp"
 #include "common/coupling/participant.hpp"
 #include "coupler/exchange/transfer.hpp"
-#include "coupler/parameters/parameters.hpp"
-
-namespace couplet::base {
-class PointTree;
-}
 
 namespace couplet::coupler {
 
@@ -26,27 +20,21 @@ struct Slope {
 };
 
 /// Slopes at the faces of a surface, each computed on first use. Only neighbors of similar orientation are
-/// used, so that no slope crosses a corner or a plate. `projection`: least squares over faces that share an
-/// edge (2-D: a vertex), if necessary a vertex, finally also around a corner. rbf, and without corners: local
-/// interpolant through the nearest 5 (2-D) or 10 faces, and its rise over the face.
+/// used, so that no slope crosses a corner or a plate: least squares over faces that share an edge (2-D: a
+/// vertex), if necessary a vertex, finally also around a corner.
 class Slopes {
  public:
-  Slopes(const coupling::Interface& surface, MappingParameters::Type type);
-  ~Slopes();
+  /// `surface`: with corners.
+  explicit Slopes(const coupling::Interface& surface);
   const Slope& at(Index face);
-  /// Number of nearest faces considered for a radial slope.
-  static std::size_t looks_at(int dim) { return dim == 2 ? 20 : 40; }
 
  private:
   Slope least_squares(Index face, const std::vector<Index>& neighbours, bool& spans) const;
-  Slope radial(Index face) const;
   std::vector<Index> touching(Index face, std::size_t shared, double least_cosine) const;
 
   const coupling::Interface& surface_;
-  bool radial_;
   std::vector<std::vector<Index>> faces_of_;  // by vertex
   std::vector<Slope> known_;
-  std::unique_ptr<base::PointTree> centres_;
 };
 
 /// Corners of a face, as positions in the surface's own list of vertices.
@@ -73,7 +61,7 @@ struct Weights {
 /// Integrals over a face of its corner functions and their duals times the structure's field.
 class FaceIntegrals {
  public:
-  FaceIntegrals(const coupling::Interface& structure, MappingParameters::Type type);
+  explicit FaceIntegrals(const coupling::Interface& structure);
   /// Position at which the mean over a face of the structure equals the value of a linear field.
   const Vec3& mean(Index s) const { return means_[std::size_t(s)]; }
 
@@ -101,11 +89,10 @@ class FaceIntegrals {
 /// (dual Lagrange multipliers, Wohlmuth 2000). Exact for linear fields; the transpose maps a uniform traction
 /// to a uniform one. Both: this rank's parts, with corners. Collective.
 std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const coupling::Interface& structure,
-                                               const coupling::Interface& surface,
-                                               MappingParameters::Type type);
+                                               const coupling::Interface& surface);
 
 /// Map to the means over the faces of `surface`, for amounts without a corresponding motion.
 std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const coupling::Interface& structure,
-                                            const coupling::Interface& surface, MappingParameters::Type type);
+                                            const coupling::Interface& surface);
 
 }  // namespace couplet::coupler

@@ -154,8 +154,7 @@ class WallMaps {
         sides_[surface].faces.back() == 0)
       return nullptr;
     const ConjugateMap& map =
-        maps_.try_emplace({structure, surface}, comm_, sides_[structure], sides_[surface], type_)
-            .first->second;
+        maps_.try_emplace({structure, surface}, comm_, sides_[structure], sides_[surface]).first->second;
     return std::make_shared<const Mapping>(
         comm_, from, to, load ? Mapping::Kind::conservative : Mapping::Kind::consistent,
         load ? map.load(from.place, to.place) : map.motion(from.place, to.place));

@@ -15,10 +15,9 @@ namespace couplet::coupler {
 /// reference configuration. Types of `coupling.mapping`:
 ///   matched     matching vertices and faces, weight 1
 ///   nearest     as below
-///   projection  at vertices: the value at the nearest point of the other surface; at faces, and where that has
-///               no faces: local interpolants through few neighbours
-///   rbf         local interpolants by compact radial functions through more neighbours
-/// Both of the latter carry linear fields exactly. Amounts go by the transpose of such a map the other way, so that
+///   projection  at vertices: the value at the nearest point of the other surface; at faces, and where corners are
+///               not listed: local interpolants by compact radial functions
+/// The latter carries linear fields exactly. Amounts go by the transpose of such a map the other way, so that
 /// their sum and their moment are kept: those at faces by that of means over faces, those at vertices by that of
 /// points. Motion and load of one wall go by ConjugateMap. A map of amounts is refused unless all that a place gives
 /// is taken. All calls are collective.

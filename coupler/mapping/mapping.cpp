@@ -91,7 +91,6 @@ std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const P
 std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, const PointSet& to) {
   std::vector<Transfer::Entry> entries;
   const Surroundings source(comm, *from.surface);
-  require_corners(source.has_corners());
   if (parallel::comm_size(comm) == 1) {
     add_projection(*from.surface, source.vertices().positions, to.points, to.positions, entries);
     return entries;
@@ -107,29 +106,28 @@ std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, cons
   return entries;
 }
 
-/// Projection and radial functions, chosen by where the values lie; amounts go by the transpose of the map of a field the other way.
-/// No rank sees more of the other surface than what lies about its own part.
+/// Projection, chosen by where the values lie; amounts go by the transpose of the map of a field the other way.
+/// Local interpolants where a surface does not list its corners, and at faces. No rank sees more of the other
+/// surface than what lies about its own part.
 std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
-                                          const PointSet& to, MappingParameters::Type type) {
-  const bool projection = type == MappingParameters::Type::projection,
-             amount = kind == Mapping::Kind::conservative;
+                                          const PointSet& to) {
+  const bool amount = kind == Mapping::Kind::conservative;
   const int dim = from.surface != nullptr ? from.surface->dim : 3;
-  const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
-  const PointSet &ask = amount ? from : to, &among = amount ? to : from;
+  const PointSet &wanted = amount ? from : to, &among = amount ? to : from;
   std::optional<Surroundings> known;
   if (!from.own_surface && !to.own_surface && among.surface) known.emplace(comm, *among.surface);
   const bool corners = known && known->has_corners();
   std::vector<Transfer::Entry> entries;
-  if (amount && corners && ask.place == Place::faces && ask.surface &&
-      Surroundings(comm, *ask.surface).has_corners()) {
-    entries = faces_to_faces(comm, *among.surface, *ask.surface, type);
+  if (amount && corners && wanted.place == Place::faces && wanted.surface &&
+      Surroundings(comm, *wanted.surface).has_corners()) {
+    entries = faces_to_faces(comm, *among.surface, *wanted.surface);
     if (among.place == Place::vertices)
       entries = product(comm, known->faces().starts, entries, vertices_to_faces(comm, *among.surface));
-  } else if (projection && among.place == Place::vertices &&
-             (corners || (!amount && known && known->faces().starts.back() > 0))) {
-    entries = projected(comm, among, ask);
+  } else if (among.place == Place::vertices && corners) {
+    entries = projected(comm, among, wanted);
   } else {
-    add_interpolation(comm, among, ask.points, ask.positions, k, entries);
+    const std::size_t k = corners ? (dim == 2 ? 3 : 5) : (dim == 2 ? 5 : 10);
+    add_interpolation(comm, among, wanted.points, wanted.positions, k, entries);
   }
   return amount ? transposed(std::move(entries)) : entries;
 }
@@ -202,7 +200,7 @@ Mapping::Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet&
   if (matched) require_twins(comm, from, to, forth, back, parameters);
   std::vector<Transfer::Entry> entries;
   if (!by_nearest)
-    entries = second_order(comm, kind, from, to, parameters.type);
+    entries = second_order(comm, kind, from, to);
   else if (kind == Kind::conservative)
     entries = shares(comm, from, to, forth, back);
   else

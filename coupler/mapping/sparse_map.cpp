@@ -120,13 +120,6 @@ std::vector<double> local_weights(const std::vector<Vec3>& points, std::span<con
   return {w.data(), w.data() + n};
 }
 
-void require_corners(bool known) {
-  if (!known)
-    throw Error(
-        "A mapping by projection needs the vertices of each face, but one participant does not list them: "
-        "use `coupling.mapping.type: rbf`.");
-}
-
 void add_projection(const coupling::Interface& surface, const std::vector<GlobalIndex>& vertices,
                     const std::vector<Vec3>& targets, const std::vector<GlobalIndex>& rows,
                     std::vector<Transfer::Entry>& entries) {

@@ -12,7 +12,6 @@
 #include "common/coupling/participant.hpp"
 #include "coupler/exchange/side.hpp"
 #include "coupler/exchange/transfer.hpp"
-#include "coupler/parameters/parameters.hpp"
 
 namespace couplet::coupler {
 
@@ -71,9 +70,6 @@ void add_projection(const coupling::Interface& surface, const std::vector<Global
                     const std::vector<Vec3>& targets, const std::vector<GlobalIndex>& rows,
                     std::vector<Transfer::Entry>& entries);
 
-/// Throws Error with advice if the corners of the faces are not `known`.
-void require_corners(bool known);
-
 /// The faces that add_projection looks at: the nearest face touches one of so many nearest vertices, or is large and
 /// has its centre among so many nearest ones.
 inline constexpr std::size_t projection_vertices = 3, projection_faces = 4;
@@ -94,7 +90,7 @@ void check_corners(const coupling::Interface& surface, const std::string& name, 
 /// Map between a structure and a surface that moves with it and gives its load, used in both directions:
 ///   motion: B N A,   load: transpose of B N
 /// A takes means of the motion over the structure's faces, N maps these to the surface's vertices, and B
-/// takes means over the surface's faces. The work of the load on the mean motion is then equal on both sides
+/// takes means over the surface's faces. Without listed corners, N takes local interpolants. The work of the load on the mean motion is then equal on both sides
 /// to round-off for any meshes. N is exact for linear fields, so the load keeps its force and moment. A is
 /// omitted for motion given at faces, B for a load given at vertices. A load taken at vertices uses the
 /// transpose of A. Collective; both sides must outlive it.
@@ -102,7 +98,7 @@ class ConjugateMap {
  public:
   using Place = coupling::Interface::Place;
   using Entries = std::vector<Transfer::Entry>;
-  ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface, MappingParameters::Type type);
+  ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface);
   /// Motion from the structure to the surface.
   Entries motion(Place from, Place to) const;
   /// Load from the surface to the structure.

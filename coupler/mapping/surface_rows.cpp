@@ -28,17 +28,13 @@ std::vector<GlobalIndex> sorted(std::vector<GlobalIndex> list) {
 
 /// Faces of the structure that may cover those of `mine`, and the neighbors needed for their slopes.
 SurfacePart around(MPI_Comm comm, const Surroundings& structure, const coupling::Interface& mine,
-                   double widest, MappingParameters::Type type) {
+                   double widest) {
   if (parallel::comm_size(comm) == 1) return structure.with(structure.faces().positions);
   std::vector<double> far;
   for (Index f = 0; f < Index(mine.face_centres.size()); ++f)
     far.push_back(reach(mine, f) / 2 + std::max(widest, reach(mine, f)) / 2);
   const PointSet near = nearby(comm, mine.face_centres, far, nearest_faces, structure.faces());
   std::vector<GlobalIndex> faces = near.positions;
-  if (type == MappingParameters::Type::rbf) {
-    const PointSet further = nearby(comm, near.points, {}, Slopes::looks_at(mine.dim), structure.faces());
-    faces.insert(faces.end(), further.positions.begin(), further.positions.end());
-  }
   const std::vector<GlobalIndex> touching = structure.faces_around(structure.with(near.positions).vertices);
   faces.insert(faces.end(), touching.begin(), touching.end());
   return structure.with(sorted(faces));
@@ -217,13 +213,12 @@ struct Targets {
 
 /// Finished rows go to `entries`, the others are returned.
 std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const SurfacePart& mine,
-                             MappingParameters::Type type, const Targets& targets,
-                             std::vector<Transfer::Entry>& entries) {
+                             const Targets& targets, std::vector<Transfer::Entry>& entries) {
   const std::vector<GlobalIndex>& list = targets.at_vertices ? mine.vertices : mine.faces;
   std::vector<char> whole =
       targets.at_vertices ? alone_at(comm, list, targets.points) : std::vector<char>(list.size(), 1);
   if (mine.faces.empty()) return {};
-  FaceIntegrals integrals(structure.surface, type);
+  FaceIntegrals integrals(structure.surface);
   std::vector<Index> faces_of(list.size(), targets.at_vertices ? 0 : 1);
   if (targets.at_vertices)
     for (const Index v : mine.surface.face_vertices) ++faces_of[v];
@@ -251,16 +246,15 @@ std::vector<Share> shares_of(MPI_Comm comm, const SurfacePart& structure, const 
 }
 
 std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& structure,
-                                  const coupling::Interface& surface, MappingParameters::Type type,
-                                  bool at_vertices) {
+                                  const coupling::Interface& surface, bool at_vertices) {
   const Surroundings theirs(comm, structure), ours(comm, surface);
   const PointSet vertices = ours.vertices(), faces = ours.faces();
   const SurfacePart mine = ours.with(faces.positions);
-  const SurfacePart near = around(comm, theirs, mine.surface, theirs.widest(), type);
+  const SurfacePart near = around(comm, theirs, mine.surface, theirs.widest());
   const PointSet& points = at_vertices ? vertices : faces;
   const Targets targets{points, at_vertices, points.starts[std::size_t(parallel::comm_rank(comm))]};
   std::vector<Transfer::Entry> entries;
-  std::vector<Share> shares = shares_of(comm, near, mine, type, targets, entries);
+  std::vector<Share> shares = shares_of(comm, near, mine, targets, entries);
   std::vector<char> has(points.points.size(), 0);
   for (const auto& e : entries) has[std::size_t(e.target - targets.first)] = 1;
   const std::vector<Share> known = shares_by_owner(comm, points.starts, std::move(shares));
@@ -278,15 +272,13 @@ std::vector<Transfer::Entry> rows(MPI_Comm comm, const coupling::Interface& stru
 }  // namespace
 
 std::vector<Transfer::Entry> faces_to_vertices(MPI_Comm comm, const coupling::Interface& structure,
-                                               const coupling::Interface& surface,
-                                               MappingParameters::Type type) {
-  return rows(comm, structure, surface, type, true);
+                                               const coupling::Interface& surface) {
+  return rows(comm, structure, surface, true);
 }
 
 std::vector<Transfer::Entry> faces_to_faces(MPI_Comm comm, const coupling::Interface& structure,
-                                            const coupling::Interface& surface,
-                                            MappingParameters::Type type) {
-  return rows(comm, structure, surface, type, false);
+                                            const coupling::Interface& surface) {
+  return rows(comm, structure, surface, false);
 }
 
 }  // namespace couplet::coupler

@@ -283,16 +283,12 @@ void declare(config::Section& section, MappingParameters& p) {
   using Type = MappingParameters::Type;
   section
       .choice("type", p.type,
-              {{"matched", Type::matched},
-               {"nearest", Type::nearest},
-               {"projection", Type::projection},
-               {"rbf", Type::rbf}})
+              {{"matched", Type::matched}, {"nearest", Type::nearest}, {"projection", Type::projection}})
       .doc(
           "matched: every vertex and face must match one on the other side. nearest: displacements from the "
           "nearest vertex, forces to the nearest face with their sum conserved, for faces that match or "
-          "nest. projection, rbf: for any faces: loads use the transpose of the motion's map, so work, "
-          "force and moment are conserved; surface slopes from neighboring faces (projection) or from a "
-          "local interpolant by compact radial functions through more faces (rbf)");
+          "nest. projection: for any faces: loads use the transpose of the motion's map, so work, force and "
+          "moment are conserved; local interpolants where the corners of faces are not known");
   section.value("tolerance", p.tolerance)
       .unit("m", 1e-15, 1)
       .positive()

@@ -29,7 +29,7 @@ struct ConvergenceParameters {
 };
 
 struct MappingParameters {
-  enum class Type { matched, nearest, projection, rbf } type = Type::matched;
+  enum class Type { matched, nearest, projection } type = Type::matched;
   std::optional<double> tolerance;  // [m]
 };
 

@@ -49,7 +49,7 @@ struct ForeignCase {
   ForeignCase() {
     spdlog::set_level(spdlog::level::off);
     coupling.scheme = coupling::Scheme::implicit;
-    coupling.mapping.type = coupler::MappingParameters::Type::rbf;
+    coupling.mapping.type = coupler::MappingParameters::Type::projection;
   }
   ~ForeignCase() { std::filesystem::remove_all(folder); }
 

@@ -10,7 +10,7 @@ import re
 from couplet import places
 from couplet.precice.elements import MAPPED, REFUSED, SILENT, WITHOUT_EFFECT, digest, listed
 
-KINDS = {"nearest-neighbor": ("nearest", 0), "nearest-projection": ("projection", 1), "rbf": ("rbf", 2)}
+KINDS = {"nearest-neighbor": ("nearest", 0), "nearest-projection": ("projection", 1), "rbf": ("projection", 1)}
 MEASURES = ("relative-convergence-measure", "absolute-convergence-measure", "absolute-or-relative-convergence-measure")
 ACCELERATIONS = {"constant": "constant", "aitken": "aitken", "IQN-ILS": "iqn-ils", "IQN-IMVJ": "iqn-ils"}
 

@@ -102,7 +102,7 @@ SILENT |= {"mapping:nearest-neighbor-gradient", "mapping:axial-geometric-multisc
 WITHOUT_EFFECT = {
     "export:": "every program writes its own fields, and `coupling.watch` has integrals",
     "watch-point": "no watch at a point: `coupling.watch` has integrals", "watch-integral": "`coupling.watch` has integrals over interfaces",
-    "preconditioner": "data of several kinds are scaled once by their first size", "basis-function:": "`rbf` takes a local interpolant through the nearest vertices",
+    "preconditioner": "data of several kinds are scaled once by their first size", "basis-function:": "`projection` takes a local interpolant where a mesh has no faces",
 }
 # Elements that the library and the coupler do not support.
 REFUSED = {

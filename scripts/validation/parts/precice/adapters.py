@@ -18,14 +18,14 @@ COUPLING = """coupling:
   fluid: {participant: fluid}
   structure: {participant: Solid, displacement: Displacement, load: Force}
   mesh: {participant: mover}
-  mapping: {type: rbf}
+  mapping: {type: projection}
   convergence: {relative: 1e-4, max-iterations: 30}
 """
 UNDER_OPENFOAM = """coupling:
   scheme: implicit
   fluid: {participant: Fluid, displacement: Displacement, load: Force}
   structure: {participant: solid}
-  mapping: {type: rbf}
+  mapping: {type: projection}
   convergence: {relative: 1e-4, max-iterations: 30}
 """
 
