@@ -166,7 +166,10 @@ class ElementParticipant final : public coupling::Participant {
                            {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
   }
   coupling::Interface initialise() override {
-    return parallel::comm_rank(comm_) == 0 ? accepted_.describe() : coupling::Interface{};
+    coupling::Interface all = accepted_.describe();
+    if (parallel::comm_rank(comm_) != 0)
+      all.face_centres.clear(), all.face_areas.clear();  // all take the same
+    return all;
   }
   void begin_step(const coupling::Step& step) override { step_ = step; }
   coupling::Exchange solve(const coupling::Exchange& in) override {

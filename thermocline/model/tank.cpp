@@ -96,19 +96,21 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
 
 coupling::Interface Tank::initialise() {
   const TankParameters& p = accepted_.setup().parameters;
-  if (parallel::comm_rank(comm_) != 0 || (!p.external_wall && !p.elsewhere)) return {};
   constexpr auto faces = coupling::Interface::Place::faces;
   coupling::Interface interface;
-  if (wall_) {
+  if (!p.external_wall && !p.elsewhere) return interface;
+  const bool has_places = parallel::comm_rank(comm_) == 0;  // all ranks take the same data
+  if (has_places && wall_) {
     interface = wall_->describe();
-  } else {
+  } else if (has_places) {
     interface.face_centres = {{0, 0, 0}};
     interface.face_areas = {{0, 0, -accepted_.bed().area()}};
   }
   if (p.external_wall) interface.takes = {{"displacement", "m", coupling::Interface::Place::vertices}};
   if (p.elsewhere && p.elsewhere->insulation) interface.takes.push_back({"wall-heat", "W", faces, 1});
   if (p.elsewhere && p.elsewhere->ground) interface.takes.push_back({"bottom-heat", "W", faces, 1});
-  for (const Given& one : given()) interface.gives.push_back({one.name, one.unit, faces, 1});
+  if (has_places)
+    for (const Given& one : given()) interface.gives.push_back({one.name, one.unit, faces, 1});
   return interface;
 }
 

@@ -15,7 +15,7 @@ from checks import mpmd, said  # noqa: E402
 
 project, programs, mpirun = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
 # Without the gas: the roof's blanket belongs to the tank.
-same = ["--set=participants.tank.ullage=", "--set=simulation.end-time=24 h", "--set=simulation.time-step=5 min"]
+same = ["--set=participants.tank.ullage=", "--set=simulation.end-time=24 h"]
 height = "--set=participants.blanket.height=12.76 m"
 
 
@@ -26,7 +26,7 @@ def last(folder, name):
 
 with tempfile.TemporaryDirectory(prefix="couplet-parts-") as folder:
     folder = pathlib.Path(folder)
-    said([programs / "thermocline", project / "configs/thermocline-solar-one/case.yaml", *same, f"--set=simulation.output.folder={folder}/alone"])
+    said([programs / "thermocline", project / "configs/thermocline-solar-one/case.yaml", *same, "--set=simulation.time-step=5 min", f"--set=simulation.output.folder={folder}/alone"])
     case = project / "configs/thermocline-solar-one-parts/case.yaml"
 
     def job(ranks, *words):
