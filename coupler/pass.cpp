@@ -60,7 +60,7 @@ void Pass::initialise(const CouplingParameters& parameters) {
   check_roles(parameters, sides_);
   links_.emplace(comm_, sides_, parameters.mapping);
   for (const std::string& note : links_->notes()) log::info("{}", note);
-  check_foreseen(sides_, *links_, schedule_, group_);
+  check_anticipation(sides_, *links_, schedule_, group_);
   check_places(comm_, sides_, *links_, parameters.mapping);
   compare_surfaces(comm_, sides_, *links_, schedule_);
 }

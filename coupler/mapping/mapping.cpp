@@ -24,23 +24,23 @@ GlobalIndex count(MPI_Comm comm, const PointSet& set) {
 /// place.
 std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<Neighbour>& to_other,
                          const PointSet& other, double tolerance) {
-  struct Lone {
+  struct UnmatchedPoint {
     Vec3 point;
     double distance;
   };
-  std::vector<Lone> lone;
+  std::vector<UnmatchedPoint> unmatched;
   GlobalIndex all = 0;
   for (std::size_t i = 0; i < set.points.size(); ++i) {
     if (to_other[i].distance <= tolerance) continue;
-    if (++all <= 5) lone.push_back({set.points[i], to_other[i].distance});
+    if (++all <= 5) unmatched.push_back({set.points[i], to_other[i].distance});
   }
   all = parallel::sum(comm, all);
   if (all == 0) return "";
-  lone = parallel::all_gather(comm, lone);
+  unmatched = parallel::all_gather(comm, unmatched);
   std::string list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(5, lone.size()); ++i)
-    list += fmt::format("\n  ({:.9g}, {:.9g}, {:.9g}): the nearest is {:.3g} m away", lone[i].point.x(),
-                        lone[i].point.y(), lone[i].point.z(), lone[i].distance);
+  for (std::size_t i = 0; i < std::min<std::size_t>(5, unmatched.size()); ++i)
+    list += fmt::format("\n  ({:.9g}, {:.9g}, {:.9g}): the nearest is {:.3g} m away", unmatched[i].point.x(),
+                        unmatched[i].point.y(), unmatched[i].point.z(), unmatched[i].distance);
   if (all > 5) list += fmt::format("\n  and {} more", all - 5);
   const GlobalIndex n = count(comm, set), m = count(comm, other);
   return fmt::format("{} of {} {} match none of the {} {} within {:.3g} m:{}", all, n, set.what, m,

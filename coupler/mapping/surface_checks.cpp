@@ -108,16 +108,17 @@ bool gives_load(const Side& side) {
 
 /// Participants that exchange load and motion, directly or indirectly, as positions in `sides`: givers and
 /// takers of the motion, without the mesh mover.
-struct Group {
+struct SurfaceGroup {
   std::set<std::size_t> givers, takers;
 };
-std::vector<Group> groups_of(const std::vector<Side>& sides, const Links& links, const Schedule& schedule) {
-  std::vector<Group> groups;
+std::vector<SurfaceGroup> groups_of(const std::vector<Side>& sides, const Links& links,
+                                    const Schedule& schedule) {
+  std::vector<SurfaceGroup> groups;
   for (const auto& link : links.all()) {
     if (link.datum.name != "displacement" || sides[link.taker].name == schedule.mover) continue;
     if (!gives_load(sides[link.taker])) continue;
-    Group joined{{link.giver}, {link.taker}};
-    std::erase_if(groups, [&](const Group& g) {
+    SurfaceGroup joined{{link.giver}, {link.taker}};
+    std::erase_if(groups, [&](const SurfaceGroup& g) {
       const bool shares = g.givers.contains(link.giver) || g.takers.contains(link.taker);
       if (shares) joined.givers.insert(g.givers.begin(), g.givers.end());
       if (shares) joined.takers.insert(g.takers.begin(), g.takers.end());
@@ -168,7 +169,7 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
 
 }  // namespace
 
-PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to, bool by_nearest) {
+PlaceReport compare_places(MPI_Comm comm, const Side& from, const Side& to, bool by_nearest) {
   PlaceReport report;
   // Lumped participants (points with areas) have no extent to compare.
   if (from.faces.back() < 2 || to.faces.back() < 2 || from.vertices.back() < 2 || to.vertices.back() < 2)
@@ -239,8 +240,8 @@ void require_finite(MPI_Comm comm, const coupling::Exchange& data, const couplin
   if (const std::string text = first_text(comm, problem); !text.empty()) throw SolveFailure("{}", text);
 }
 
-void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
-                    const std::vector<std::size_t>& group) {
+void check_anticipation(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
+                        const std::vector<std::size_t>& group) {
   const auto place = [&](std::size_t i) { return std::ranges::find(group, i) - group.begin(); };
   for (const auto& own : links.all()) {
     if (own.giver != own.taker) continue;
@@ -258,7 +259,7 @@ void check_foreseen(const std::vector<Side>& sides, const Links& links, const Sc
 
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping) {
-  std::set<std::pair<std::size_t, std::size_t>> judged;
+  std::set<std::pair<std::size_t, std::size_t>> compared;
   std::vector<int> givers(sides.size(), 0), fluids(sides.size(), 0);
   for (const auto& link : links.all()) {
     if (link.datum.name != "displacement") continue;
@@ -273,9 +274,9 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
     // body's. The matched map has its own check.
     if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1 || fluids[link.giver] > 1)
       continue;
-    if (!judged.insert({link.giver, link.taker}).second) continue;
+    if (!compared.insert({link.giver, link.taker}).second) continue;
     const bool by_nearest = mapping.type == MappingParameters::Type::nearest;
-    const PlaceReport report = judge_places(comm, from, to, by_nearest);
+    const PlaceReport report = compare_places(comm, from, to, by_nearest);
     if (!report.problem.empty()) throw Error("{}", report.problem);
     if (by_nearest && !report.nests && std::ranges::any_of(from.interface.takes, coupling::is_amount))
       throw Error("{}", not_nested(from.name, to.name));
@@ -335,7 +336,7 @@ std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double l
 void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                       const Schedule& schedule) {
   check_mover(comm, sides, schedule);
-  for (const Group& group : groups_of(sides, links, schedule)) {
+  for (const SurfaceGroup& group : groups_of(sides, links, schedule)) {
     const auto givers = chosen(sides, group.givers), takers = chosen(sides, group.takers);
     if (!has_size(givers) || !has_size(takers)) continue;
     const SurfaceFacts a = surface_facts(comm, givers), b = surface_facts(comm, takers);

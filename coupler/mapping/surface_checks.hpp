@@ -24,14 +24,14 @@ struct PlaceReport {
 /// `from` gives motion to `to`. Compares distances with the local face size of both sides, and the extents
 /// with each other. For a map by the nearest, also whether the vertices nest, and several that follow one (a
 /// staircase). Collective.
-PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to, bool by_nearest);
+PlaceReport compare_places(MPI_Comm comm, const Side& from, const Side& to, bool by_nearest);
 
 /// Throws Error if a fluid that predicts its walls' response (it takes its own data) precedes them. `group`:
 /// in the order of a pass.
-void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
-                    const std::vector<std::size_t>& group);
+void check_anticipation(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
+                        const std::vector<std::size_t>& group);
 
-/// Calls judge_places() before the first step for each giver of motion and its taker. Throws Error.
+/// Calls compare_places() before the first step for each giver of motion and its taker. Throws Error.
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping);
 

@@ -228,7 +228,8 @@ Interface line(int n, double length, double x = 0, double y = 0) {
 }
 
 PlaceReport judge(const Interface& solid, const Interface& fluid) {
-  return judge_places(MPI_COMM_SELF, {MPI_COMM_SELF, "solid", solid}, {MPI_COMM_SELF, "fluid", fluid}, true);
+  return compare_places(MPI_COMM_SELF, {MPI_COMM_SELF, "solid", solid}, {MPI_COMM_SELF, "fluid", fluid},
+                        true);
 }
 std::string problem(const Interface& solid, const Interface& fluid) { return judge(solid, fluid).problem; }
 TEST(Places, surfaces_elsewhere_or_of_another_size_are_refused) {
