@@ -129,44 +129,73 @@ void write() {
 
 using namespace couplet::scaling;
 
-// One line per call: its arguments, then those it uses by name.
-#define TYPES(...) (__VA_ARGS__)
-#define SENDS(NAME, GIVEN, ...)                \
-  extern "C" int MPI_##NAME GIVEN {            \
-    send(message_of(count, type, peer, comm)); \
-    return PMPI_##NAME(__VA_ARGS__);           \
-  }
-#define SENDS_LATER(NAME)                                                                        \
-  extern "C" int MPI_##NAME(const void* data, int count, MPI_Datatype type, int peer, int tag,   \
-                            MPI_Comm comm, MPI_Request* request) {                               \
-    return persistent(message_of(count, type, peer, comm), request,                              \
-                      [&] { return PMPI_##NAME(data, count, type, peer, tag, comm, request); }); \
-  }
-#define WAITS(NAME, GIVEN, ...)                                             \
-  extern "C" int MPI_##NAME GIVEN {                                         \
-    return timed(tally().waited, [&] { return PMPI_##NAME(__VA_ARGS__); }); \
-  }
-#define COLLECTIVE(NAME, KIND, GIVEN, ...)                                   \
-  extern "C" int MPI_##NAME GIVEN {                                          \
-    return collective(KIND, comm, [&] { return PMPI_##NAME(__VA_ARGS__); }); \
-  }
+extern "C" int MPI_Send(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Send(data, count, type, peer, tag, comm);
+}
 
-#define BLOCKING TYPES(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm)
-#define FLYING                                                                            \
-  TYPES(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm, \
-        MPI_Request* request)
-SENDS(Send, BLOCKING, data, count, type, peer, tag, comm)
-SENDS(Ssend, BLOCKING, data, count, type, peer, tag, comm)
-SENDS(Rsend, BLOCKING, data, count, type, peer, tag, comm)
-SENDS(Bsend, BLOCKING, data, count, type, peer, tag, comm)
-SENDS(Isend, FLYING, data, count, type, peer, tag, comm, request)
-SENDS(Issend, FLYING, data, count, type, peer, tag, comm, request)
-SENDS(Irsend, FLYING, data, count, type, peer, tag, comm, request)
-SENDS(Ibsend, FLYING, data, count, type, peer, tag, comm, request)
-SENDS_LATER(Send_init)
-SENDS_LATER(Ssend_init)
-SENDS_LATER(Rsend_init)
-SENDS_LATER(Bsend_init)
+extern "C" int MPI_Ssend(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Ssend(data, count, type, peer, tag, comm);
+}
+
+extern "C" int MPI_Rsend(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Rsend(data, count, type, peer, tag, comm);
+}
+
+extern "C" int MPI_Bsend(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Bsend(data, count, type, peer, tag, comm);
+}
+
+extern "C" int MPI_Isend(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm,
+                         MPI_Request* request) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Isend(data, count, type, peer, tag, comm, request);
+}
+
+extern "C" int MPI_Issend(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm,
+                          MPI_Request* request) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Issend(data, count, type, peer, tag, comm, request);
+}
+
+extern "C" int MPI_Irsend(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm,
+                          MPI_Request* request) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Irsend(data, count, type, peer, tag, comm, request);
+}
+
+extern "C" int MPI_Ibsend(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm,
+                          MPI_Request* request) {
+  send(message_of(count, type, peer, comm));
+  return PMPI_Ibsend(data, count, type, peer, tag, comm, request);
+}
+
+extern "C" int MPI_Send_init(const void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm,
+                             MPI_Request* request) {
+  return persistent(message_of(count, type, peer, comm), request,
+                    [&] { return PMPI_Send_init(data, count, type, peer, tag, comm, request); });
+}
+
+extern "C" int MPI_Ssend_init(const void* data, int count, MPI_Datatype type, int peer, int tag,
+                              MPI_Comm comm, MPI_Request* request) {
+  return persistent(message_of(count, type, peer, comm), request,
+                    [&] { return PMPI_Ssend_init(data, count, type, peer, tag, comm, request); });
+}
+
+extern "C" int MPI_Rsend_init(const void* data, int count, MPI_Datatype type, int peer, int tag,
+                              MPI_Comm comm, MPI_Request* request) {
+  return persistent(message_of(count, type, peer, comm), request,
+                    [&] { return PMPI_Rsend_init(data, count, type, peer, tag, comm, request); });
+}
+
+extern "C" int MPI_Bsend_init(const void* data, int count, MPI_Datatype type, int peer, int tag,
+                              MPI_Comm comm, MPI_Request* request) {
+  return persistent(message_of(count, type, peer, comm), request,
+                    [&] { return PMPI_Bsend_init(data, count, type, peer, tag, comm, request); });
+}
 
 extern "C" int MPI_Sendrecv(const void* data, int count, MPI_Datatype type, int peer, int tag, void* got,
                             int room, MPI_Datatype got_type, int source, int got_tag, MPI_Comm comm,
@@ -197,73 +226,166 @@ extern "C" int MPI_Comm_free(MPI_Comm* comm) {
   return PMPI_Comm_free(comm);
 }
 
-WAITS(Wait, TYPES(MPI_Request* request, MPI_Status* status), request, status)
-WAITS(Waitall, TYPES(int count, MPI_Request* requests, MPI_Status* statuses), count, requests, statuses)
-WAITS(Waitany, TYPES(int count, MPI_Request* requests, int* which, MPI_Status* status), count, requests,
-      which, status)
-WAITS(Waitsome, TYPES(int count, MPI_Request* requests, int* done, int* which, MPI_Status* statuses), count,
-      requests, done, which, statuses)
-WAITS(Recv,
-      TYPES(void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm, MPI_Status* status),
-      data, count, type, peer, tag, comm, status)
-WAITS(Probe, TYPES(int peer, int tag, MPI_Comm comm, MPI_Status* status), peer, tag, comm, status)
-WAITS(Mprobe, TYPES(int peer, int tag, MPI_Comm comm, MPI_Message* message, MPI_Status* status), peer, tag,
-      comm, message, status)
-WAITS(Mrecv, TYPES(void* data, int count, MPI_Datatype type, MPI_Message* message, MPI_Status* status), data,
-      count, type, message, status)
+extern "C" int MPI_Wait(MPI_Request* request, MPI_Status* status) {
+  return timed(tally().waited, [&] { return PMPI_Wait(request, status); });
+}
 
-#define ONE const void *data, void *got, int count, MPI_Datatype type
-COLLECTIVE(Allreduce, "allreduce", TYPES(ONE, MPI_Op op, MPI_Comm comm), data, got, count, type, op, comm)
-COLLECTIVE(Iallreduce, "allreduce", TYPES(ONE, MPI_Op op, MPI_Comm comm, MPI_Request* request), data, got,
-           count, type, op, comm, request)
-COLLECTIVE(Reduce, "reduce", TYPES(ONE, MPI_Op op, int root, MPI_Comm comm), data, got, count, type, op, root,
-           comm)
-COLLECTIVE(Scan, "scan", TYPES(ONE, MPI_Op op, MPI_Comm comm), data, got, count, type, op, comm)
-COLLECTIVE(Exscan, "scan", TYPES(ONE, MPI_Op op, MPI_Comm comm), data, got, count, type, op, comm)
-COLLECTIVE(Reduce_scatter_block, "reduce_scatter", TYPES(ONE, MPI_Op op, MPI_Comm comm), data, got, count,
-           type, op, comm)
-COLLECTIVE(Reduce_scatter, "reduce_scatter",
-           TYPES(const void* data, void* got, const int* counts, MPI_Datatype type, MPI_Op op, MPI_Comm comm),
-           data, got, counts, type, op, comm)
-COLLECTIVE(Barrier, "barrier", TYPES(MPI_Comm comm), comm)
-COLLECTIVE(Ibarrier, "barrier", TYPES(MPI_Comm comm, MPI_Request* request), comm, request)
-COLLECTIVE(Bcast, "bcast", TYPES(void* data, int count, MPI_Datatype type, int root, MPI_Comm comm), data,
-           count, type, root, comm)
-COLLECTIVE(Ibcast, "bcast",
-           TYPES(void* data, int count, MPI_Datatype type, int root, MPI_Comm comm, MPI_Request* request),
-           data, count, type, root, comm, request)
+extern "C" int MPI_Waitall(int count, MPI_Request* requests, MPI_Status* statuses) {
+  return timed(tally().waited, [&] { return PMPI_Waitall(count, requests, statuses); });
+}
 
-#define EACH const void *data, int count, MPI_Datatype type, void *got, int got_count, MPI_Datatype got_type
-#define MANY                                                                                       \
-  const void *data, int count, MPI_Datatype type, void *got, const int *counts, const int *places, \
-      MPI_Datatype got_type
-#define ALL                                                                             \
-  const void *data, const int *counts, const int *places, MPI_Datatype type, void *got, \
-      const int *got_counts, const int *got_places, MPI_Datatype got_type
-COLLECTIVE(Gather, "gather", TYPES(EACH, int root, MPI_Comm comm), data, count, type, got, got_count,
-           got_type, root, comm)
-COLLECTIVE(Igather, "gather", TYPES(EACH, int root, MPI_Comm comm, MPI_Request* r), data, count, type, got,
-           got_count, got_type, root, comm, r)
-COLLECTIVE(Gatherv, "gather", TYPES(MANY, int root, MPI_Comm comm), data, count, type, got, counts, places,
-           got_type, root, comm)
-COLLECTIVE(Igatherv, "gather", TYPES(MANY, int root, MPI_Comm comm, MPI_Request* r), data, count, type, got,
-           counts, places, got_type, root, comm, r)
-COLLECTIVE(Scatter, "scatter", TYPES(EACH, int root, MPI_Comm comm), data, count, type, got, got_count,
-           got_type, root, comm)
-COLLECTIVE(Scatterv, "scatter",
-           TYPES(const void* data, const int* counts, const int* places, MPI_Datatype type, void* got,
-                 int count, MPI_Datatype got_type, int root, MPI_Comm comm),
-           data, counts, places, type, got, count, got_type, root, comm)
-COLLECTIVE(Allgather, "allgather", TYPES(EACH, MPI_Comm comm), data, count, type, got, got_count, got_type,
-           comm)
-COLLECTIVE(Allgatherv, "allgather", TYPES(MANY, MPI_Comm comm), data, count, type, got, counts, places,
-           got_type, comm)
-COLLECTIVE(Alltoall, "alltoall", TYPES(EACH, MPI_Comm comm), data, count, type, got, got_count, got_type,
-           comm)
-COLLECTIVE(Alltoallv, "alltoall", TYPES(ALL, MPI_Comm comm), data, counts, places, type, got, got_counts,
-           got_places, got_type, comm)
-COLLECTIVE(Neighbor_alltoallv, "neighbour", TYPES(ALL, MPI_Comm comm), data, counts, places, type, got,
-           got_counts, got_places, got_type, comm)
+extern "C" int MPI_Waitany(int count, MPI_Request* requests, int* which, MPI_Status* status) {
+  return timed(tally().waited, [&] { return PMPI_Waitany(count, requests, which, status); });
+}
+
+extern "C" int MPI_Waitsome(int count, MPI_Request* requests, int* done, int* which, MPI_Status* statuses) {
+  return timed(tally().waited, [&] { return PMPI_Waitsome(count, requests, done, which, statuses); });
+}
+
+extern "C" int MPI_Recv(void* data, int count, MPI_Datatype type, int peer, int tag, MPI_Comm comm,
+                        MPI_Status* status) {
+  return timed(tally().waited, [&] { return PMPI_Recv(data, count, type, peer, tag, comm, status); });
+}
+
+extern "C" int MPI_Probe(int peer, int tag, MPI_Comm comm, MPI_Status* status) {
+  return timed(tally().waited, [&] { return PMPI_Probe(peer, tag, comm, status); });
+}
+
+extern "C" int MPI_Mprobe(int peer, int tag, MPI_Comm comm, MPI_Message* message, MPI_Status* status) {
+  return timed(tally().waited, [&] { return PMPI_Mprobe(peer, tag, comm, message, status); });
+}
+
+extern "C" int MPI_Mrecv(void* data, int count, MPI_Datatype type, MPI_Message* message, MPI_Status* status) {
+  return timed(tally().waited, [&] { return PMPI_Mrecv(data, count, type, message, status); });
+}
+
+extern "C" int MPI_Allreduce(const void* data, void* got, int count, MPI_Datatype type, MPI_Op op,
+                             MPI_Comm comm) {
+  return collective("allreduce", comm, [&] { return PMPI_Allreduce(data, got, count, type, op, comm); });
+}
+
+extern "C" int MPI_Iallreduce(const void* data, void* got, int count, MPI_Datatype type, MPI_Op op,
+                              MPI_Comm comm, MPI_Request* request) {
+  return collective("allreduce", comm,
+                    [&] { return PMPI_Iallreduce(data, got, count, type, op, comm, request); });
+}
+
+extern "C" int MPI_Reduce(const void* data, void* got, int count, MPI_Datatype type, MPI_Op op, int root,
+                          MPI_Comm comm) {
+  return collective("reduce", comm, [&] { return PMPI_Reduce(data, got, count, type, op, root, comm); });
+}
+
+extern "C" int MPI_Scan(const void* data, void* got, int count, MPI_Datatype type, MPI_Op op, MPI_Comm comm) {
+  return collective("scan", comm, [&] { return PMPI_Scan(data, got, count, type, op, comm); });
+}
+
+extern "C" int MPI_Exscan(const void* data, void* got, int count, MPI_Datatype type, MPI_Op op,
+                          MPI_Comm comm) {
+  return collective("scan", comm, [&] { return PMPI_Exscan(data, got, count, type, op, comm); });
+}
+
+extern "C" int MPI_Reduce_scatter_block(const void* data, void* got, int count, MPI_Datatype type, MPI_Op op,
+                                        MPI_Comm comm) {
+  return collective("reduce_scatter", comm,
+                    [&] { return PMPI_Reduce_scatter_block(data, got, count, type, op, comm); });
+}
+
+extern "C" int MPI_Reduce_scatter(const void* data, void* got, const int* counts, MPI_Datatype type,
+                                  MPI_Op op, MPI_Comm comm) {
+  return collective("reduce_scatter", comm,
+                    [&] { return PMPI_Reduce_scatter(data, got, counts, type, op, comm); });
+}
+
+extern "C" int MPI_Barrier(MPI_Comm comm) {
+  return collective("barrier", comm, [&] { return PMPI_Barrier(comm); });
+}
+
+extern "C" int MPI_Ibarrier(MPI_Comm comm, MPI_Request* request) {
+  return collective("barrier", comm, [&] { return PMPI_Ibarrier(comm, request); });
+}
+
+extern "C" int MPI_Bcast(void* data, int count, MPI_Datatype type, int root, MPI_Comm comm) {
+  return collective("bcast", comm, [&] { return PMPI_Bcast(data, count, type, root, comm); });
+}
+
+extern "C" int MPI_Ibcast(void* data, int count, MPI_Datatype type, int root, MPI_Comm comm,
+                          MPI_Request* request) {
+  return collective("bcast", comm, [&] { return PMPI_Ibcast(data, count, type, root, comm, request); });
+}
+
+extern "C" int MPI_Gather(const void* data, int count, MPI_Datatype type, void* got, int got_count,
+                          MPI_Datatype got_type, int root, MPI_Comm comm) {
+  return collective("gather", comm,
+                    [&] { return PMPI_Gather(data, count, type, got, got_count, got_type, root, comm); });
+}
+
+extern "C" int MPI_Igather(const void* data, int count, MPI_Datatype type, void* got, int got_count,
+                           MPI_Datatype got_type, int root, MPI_Comm comm, MPI_Request* r) {
+  return collective("gather", comm,
+                    [&] { return PMPI_Igather(data, count, type, got, got_count, got_type, root, comm, r); });
+}
+
+extern "C" int MPI_Gatherv(const void* data, int count, MPI_Datatype type, void* got, const int* counts,
+                           const int* places, MPI_Datatype got_type, int root, MPI_Comm comm) {
+  return collective("gather", comm, [&] {
+    return PMPI_Gatherv(data, count, type, got, counts, places, got_type, root, comm);
+  });
+}
+
+extern "C" int MPI_Igatherv(const void* data, int count, MPI_Datatype type, void* got, const int* counts,
+                            const int* places, MPI_Datatype got_type, int root, MPI_Comm comm,
+                            MPI_Request* r) {
+  return collective("gather", comm, [&] {
+    return PMPI_Igatherv(data, count, type, got, counts, places, got_type, root, comm, r);
+  });
+}
+
+extern "C" int MPI_Scatter(const void* data, int count, MPI_Datatype type, void* got, int got_count,
+                           MPI_Datatype got_type, int root, MPI_Comm comm) {
+  return collective("scatter", comm,
+                    [&] { return PMPI_Scatter(data, count, type, got, got_count, got_type, root, comm); });
+}
+
+extern "C" int MPI_Scatterv(const void* data, const int* counts, const int* places, MPI_Datatype type,
+                            void* got, int count, MPI_Datatype got_type, int root, MPI_Comm comm) {
+  return collective("scatter", comm, [&] {
+    return PMPI_Scatterv(data, counts, places, type, got, count, got_type, root, comm);
+  });
+}
+
+extern "C" int MPI_Allgather(const void* data, int count, MPI_Datatype type, void* got, int got_count,
+                             MPI_Datatype got_type, MPI_Comm comm) {
+  return collective("allgather", comm,
+                    [&] { return PMPI_Allgather(data, count, type, got, got_count, got_type, comm); });
+}
+
+extern "C" int MPI_Allgatherv(const void* data, int count, MPI_Datatype type, void* got, const int* counts,
+                              const int* places, MPI_Datatype got_type, MPI_Comm comm) {
+  return collective("allgather", comm,
+                    [&] { return PMPI_Allgatherv(data, count, type, got, counts, places, got_type, comm); });
+}
+
+extern "C" int MPI_Alltoall(const void* data, int count, MPI_Datatype type, void* got, int got_count,
+                            MPI_Datatype got_type, MPI_Comm comm) {
+  return collective("alltoall", comm,
+                    [&] { return PMPI_Alltoall(data, count, type, got, got_count, got_type, comm); });
+}
+
+extern "C" int MPI_Alltoallv(const void* data, const int* counts, const int* places, MPI_Datatype type,
+                             void* got, const int* got_counts, const int* got_places, MPI_Datatype got_type,
+                             MPI_Comm comm) {
+  return collective("alltoall", comm, [&] {
+    return PMPI_Alltoallv(data, counts, places, type, got, got_counts, got_places, got_type, comm);
+  });
+}
+
+extern "C" int MPI_Neighbor_alltoallv(const void* data, const int* counts, const int* places,
+                                      MPI_Datatype type, void* got, const int* got_counts,
+                                      const int* got_places, MPI_Datatype got_type, MPI_Comm comm) {
+  return collective("neighbour", comm, [&] {
+    return PMPI_Neighbor_alltoallv(data, counts, places, type, got, got_counts, got_places, got_type, comm);
+  });
+}
 
 extern "C" int MPI_Finalize() {
   write();
