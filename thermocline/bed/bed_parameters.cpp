@@ -23,12 +23,6 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
       .unit("W/(m K)", 1e-3, 1e4)
       .not_negative()
       .doc("conductivity, with conduction: constant");
-  s.choice("wall-film", p.wall_film,
-           {{"beek", WallFilm::beek}, {"yagi-wakao", WallFilm::yagi_wakao}, {"constant", WallFilm::constant}})
-      .doc("heat transfer between fluid and wall; the correlations add to 2 k0/d of the stagnant bed");
-  as_film(s.value("wall-coefficient", p.wall_coefficient))
-      .not_negative()
-      .doc("wall film coefficient, with wall-film: constant");
   as_film(s.value("film-coefficient", p.film_coefficient))
       .not_negative()
       .doc("film between fluid and grains; 0 means Nu = 2 + 1.1 Pr^(1/3) Re^0.6");

@@ -39,11 +39,7 @@ double stagnant_conductivity(const Fluid& fluid, const Filler& filler, double po
 }
 
 MassFlux::MassFlux(double g_abs)
-    : g(g_abs),
-      g_film(std::pow(g_abs, 0.6)),
-      g_third(std::cbrt(g_abs)),
-      g_wall(std::pow(g_abs, 0.8)),
-      g_half(std::sqrt(g_abs)) {}
+    : g(g_abs), g_film(std::pow(g_abs, 0.6)), g_third(std::cbrt(g_abs)), g_wall(std::pow(g_abs, 0.8)) {}
 
 LayerClosure::LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler,
                            double porosity, double diameter)
@@ -77,20 +73,11 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
       n.conduction_still = parameters_.conductivity;
       break;
   }
-  // Beek 1962: (k/d) [0.203 (Re Pr)^(1/3) + 0.220 Re^0.8 Pr^0.4]. Yagi and Wakao 1959: Nu = 0.6 Pr^(1/3)
-  // Re^(1/2) up to Re = 40, 0.2 Pr^(1/3) Re^0.8 beyond. At least 2 k0/d of the stagnant bed, because grains
-  // at the wall conduct also in a slow flow.
+  // Beek 1962: (k/d) [0.203 (Re Pr)^(1/3) + 0.220 Re^0.8 Pr^0.4]. At least 2 k0/d of the stagnant bed, because
+  // grains at the wall conduct also in a slow flow.
   n.wall_still = 2 * stagnant / d;
-  if (parameters_.wall_film == WallFilm::beek) {
-    n.wall_third = 0.203 * k / d * std::cbrt(re * pr);
-    n.wall_flow = 0.220 * k / d * std::pow(re, 0.8) * std::pow(pr, 0.4);
-  } else if (parameters_.wall_film == WallFilm::yagi_wakao) {
-    n.wall_half = 0.6 * k / d * std::cbrt(pr) * std::sqrt(re);
-    n.wall_flow = 0.2 * k / d * std::cbrt(pr) * std::pow(re, 0.8);
-    n.wall_switch = 40 / re;
-  } else {
-    n.wall_still = parameters_.wall_coefficient;
-  }
+  n.wall_third = 0.203 * k / d * std::cbrt(re * pr);
+  n.wall_flow = 0.220 * k / d * std::pow(re, 0.8) * std::pow(pr, 0.4);
   return n;
 }
 
@@ -104,7 +91,6 @@ void LayerClosure::fill(std::span<const double> temperature, const MassFlux& flu
                         double* conductivity, double* wall) const {
   const bool disperses = parameters_.conduction != Conduction::constant;
   const double dispersion = disperses ? 0.5 * fluid_.specific_heat * diameter_ * flux.g : 0;  // 0.5 Re Pr k
-  const WallFilm kind = parameters_.wall_film;
   const Node* const nodes = nodes_.data();
   for (std::size_t k = 0; k < temperature.size(); ++k) {
     const double place = std::clamp((temperature[k] - first_) * inverse_spacing_, 0.0, double(n_nodes - 2));
@@ -114,12 +100,7 @@ void LayerClosure::fill(std::span<const double> temperature, const MassFlux& flu
     const auto mix = [&](double Node::*member) { return a.*member + w * (b.*member - a.*member); };
     film[k] = mix(&Node::film_still) + mix(&Node::film_flow) * flux.g_film;
     conductivity[k] = mix(&Node::conduction_still) + dispersion;
-    double moving = 0;
-    if (kind == WallFilm::beek)
-      moving = mix(&Node::wall_third) * flux.g_third + mix(&Node::wall_flow) * flux.g_wall;
-    else if (kind == WallFilm::yagi_wakao)
-      moving = flux.g < mix(&Node::wall_switch) ? mix(&Node::wall_half) * flux.g_half
-                                                : mix(&Node::wall_flow) * flux.g_wall;
+    const double moving = mix(&Node::wall_third) * flux.g_third + mix(&Node::wall_flow) * flux.g_wall;
     wall[k] = std::max(mix(&Node::wall_still), moving);
   }
 }

@@ -14,14 +14,10 @@ enum class Conduction {
   wakao,     ///< 0.7 eps k + 0.5 Re Pr k: the fluid alone, as in the thesis
   constant,  ///< prescribed value
 };
-/// Correlation between fluid and wall; at least that of the stagnant bed, 2 k0/d.
-enum class WallFilm { beek, yagi_wakao, constant };
 
 struct ClosureParameters {
   Conduction conduction = Conduction::stagnant;
-  double conductivity = 0;  ///< [W/(m K)], for Conduction::constant
-  WallFilm wall_film = WallFilm::beek;
-  double wall_coefficient = 0;  ///< [W/(m^2 K)], for WallFilm::constant
+  double conductivity = 0;      ///< [W/(m K)], for Conduction::constant
   double film_coefficient = 0;  ///< between fluid and grains [W/(m^2 K)]; 0 means Wakao's correlation
 };
 
@@ -42,7 +38,7 @@ struct Closure {
 /// Powers of the mass flux G = |m|/S, used by all cells of a step.
 struct MassFlux {
   explicit MassFlux(double g);
-  double g, g_film, g_third, g_wall, g_half;
+  double g, g_film, g_third, g_wall;
 };
 
 /// Closures of one layer of the bed (porosity, grain diameter). Temperature-dependent parts are tabulated
@@ -61,7 +57,7 @@ class LayerClosure {
 
  private:
   struct Node {
-    double film_still, film_flow, conduction_still, wall_still, wall_third, wall_flow, wall_half, wall_switch;
+    double film_still, film_flow, conduction_still, wall_still, wall_third, wall_flow;
   };
   Node node_at(double temperature) const;
 

@@ -56,7 +56,7 @@ class NeglectedLosses final : public TankDiagnostic {
     for (int i = 0; i < rings.size(); ++i)
       area += rings.surface(i), sum += rings.surface(i) * view_.model.shell()->temperature()[i];
     const double wall = sum / area, height = rings.z.back() + rings.dz.back() / 2;
-    const Film film = side_film({}, wall, p.diameter, height, view_.weather.at(view_.time()));
+    const Film film = side_film(wall, p.diameter, height, view_.weather.at(view_.time()));
     report.sentences.push_back(fmt::format("the bare side, at {:.0f} degC now, would lose {:.3g} MW",
                                            celsius(wall),
                                            1e-6 * area * film.coefficient * (wall - film.reference)));

@@ -133,13 +133,8 @@ Fluid make_fluid(const FluidParameters& p) {
     known.real_density = p.real_density;
     return known;
   }
-  Fluid own{"fluid",
-            p.density,
-            p.specific_heat,
-            Table(p.temperature, p.conductivity),
-            Table(p.temperature, p.viscosity),
-            p.lowest,
-            p.highest};
+  Fluid own{"fluid", p.density, p.specific_heat, Table(p.temperature, p.conductivity),
+            Table(p.temperature, p.viscosity)};
   if (p.temperature.size() > 1) own.known_from = p.temperature.front(), own.known_to = p.temperature.back();
   return own;
 }
@@ -150,7 +145,7 @@ Steel make_steel(const SteelParameters& p) {
   if (p.type == Type::a387) return steel_a387();
   if (p.type == Type::n06022) return nickel_n06022();
   Steel made = steel("shell metal", p.density, p.temperature, p.specific_heat, p.conductivity,
-                     p.youngs_modulus, p.expansion, p.yield_strength, p.highest);
+                     p.youngs_modulus, p.expansion, p.yield_strength, p.temperature.back());
   made.poissons_ratio = p.poissons_ratio;
   return made;
 }
@@ -260,10 +255,6 @@ void declare_custom(config::Section& s, FluidParameters& p) {
   as_temperature(s.value("temperature", p.temperature)).required().doc("temperatures of the following lists");
   declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
   declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
-  as_temperature(s.value("lowest", p.lowest)).doc("freezing point, below which the run warns");
-  s.value("highest", p.highest)
-      .unit("K", 70, 1e4)
-      .doc("boiling or decomposition point, above which the run warns");
 }
 
 }  // namespace
@@ -348,9 +339,6 @@ void declare(config::Section& section, SteelParameters& p) {
   const auto custom = [&p](config::Section& s) {
     as_density(s.value("density", p.density)).positive().doc("density");
     s.value("poissons-ratio", p.poissons_ratio).range(0, 0.499).doc("Poisson's ratio");
-    s.value("highest", p.highest)
-        .unit("K", 70, 1e4)
-        .doc("maximum service temperature of the metal, above which the run warns");
     as_temperature(s.value("temperature", p.temperature))
         .required()
         .doc("temperatures of the following lists");

@@ -149,7 +149,6 @@ struct FluidParameters {
   bool real_density = false;
   double density = 0, specific_heat = 0;
   std::vector<double> temperature, conductivity, viscosity;
-  double lowest = 0, highest = 1e4;
 };
 void declare(config::Section& section, FluidParameters& parameters);
 Fluid make_fluid(const FluidParameters& parameters);
@@ -165,7 +164,7 @@ Filler make_filler(const FillerParameters& parameters);
 
 struct SteelParameters {
   enum class Type { a537, a387, n06022, custom } type = Type::a537;
-  double density = 7850, poissons_ratio = 0.3, highest = 1e4;
+  double density = 7850, poissons_ratio = 0.3;
   std::vector<double> temperature, specific_heat, conductivity, youngs_modulus, expansion, yield_strength;
 };
 void declare(config::Section& section, SteelParameters& parameters);

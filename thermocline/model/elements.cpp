@@ -39,7 +39,7 @@ class GroundModel {
  public:
   GroundModel(const GroundElementParameters& p, const Weather& weather)
       : p_(p),
-        deep_(p.ground.deep_temperature.value_or(weather.mean_temperature())),
+        deep_(weather.mean_temperature()),
         column_(ground_layers(p.ground), 0.25 * std::numbers::pi * p.diameter * p.diameter) {
     column_.set_steady(p.initial_temperature, deep_);
     start_ = column_.energy(deep_);
@@ -94,7 +94,6 @@ class BlanketModel {
         wall_(p.sections, p.initial_temperature),
         heat_(p.sections, 0.0),
         blanket_(p.insulation, dz_, p.diameter / 2) {
-    require_sun(p.insulation.outside.solar_absorptance, weather, "insulation.solar-absorptance");
     air_ = weather.at(0).temperature;
     blanket_.set_steady(wall_, air_);
     start_ = blanket_.energy(air_);
@@ -124,7 +123,7 @@ class BlanketModel {
     if (const auto* wall = find(in, "wall-temperature")) wall_ = *wall;
     const Ambient air = weather.at(step.time + step.dt / 2);
     const double outer = p_.diameter + 2 * p_.insulation.thickness;
-    const Film film = side_film_on(blanket_, p_.insulation.outside, outer, p_.height, air);
+    const Film film = side_film_on(blanket_, outer, p_.height, air);
     passed_ += blanket_.step(step.dt, wall_, film, heat_);
     for (const double q : heat_) taken_ += q * step.dt;
     return {{"wall-heat", heat_}};
@@ -199,24 +198,15 @@ class ElementParticipant final : public coupling::Participant {
   std::string name_;
 };
 
-void look_at_weather(const WeatherParameters& ambient, const std::optional<InsulationParameters>& blanket,
-                     const std::filesystem::path& folder, std::vector<app::ProblemOfKey>& all) {
+void check_weather(const WeatherParameters& ambient, const std::filesystem::path& folder,
+                   std::vector<app::ProblemOfKey>& all) {
   const char* const key = ambient.kind == WeatherKind::file                                   ? "ambient.file"
                           : ambient.kind == WeatherKind::smooth_days && !ambient.file.empty() ? "ambient.air"
                                                                                               : "ambient";
-  std::unique_ptr<Weather> weather;
   try {
-    weather = make_weather(ambient, folder);
+    make_weather(ambient, folder);
   } catch (const Error& error) {
     all.push_back({key, error.what()});
-    return;
-  }
-  if (!blanket) return;
-  const std::string absorptance = "insulation.solar-absorptance";
-  try {
-    require_sun(blanket->outside.solar_absorptance, *weather, absorptance);
-  } catch (const Error& error) {
-    all.push_back({absorptance, std::string(error.what()).substr(absorptance.size() + 2)});
   }
 }
 
@@ -274,7 +264,7 @@ std::vector<app::ProblemOfKey> problems_of_files(const ElementParameters& p,
   std::vector<app::ProblemOfKey> all;
   switch (p.type) {
     case ElementParameters::Type::tank:
-      look_at_weather(p.tank.ambient, p.tank.insulation, folder, all);
+      check_weather(p.tank.ambient, folder, all);
       try {
         (void)with_files(p.tank, folder);
       } catch (const Error& error) {
@@ -282,10 +272,10 @@ std::vector<app::ProblemOfKey> problems_of_files(const ElementParameters& p,
       }
       break;
     case ElementParameters::Type::ground:
-      look_at_weather(p.ground.ambient, {}, folder, all);
+      check_weather(p.ground.ambient, folder, all);
       break;
     case ElementParameters::Type::insulation:
-      look_at_weather(p.blanket.ambient, p.blanket.insulation, folder, all);
+      check_weather(p.blanket.ambient, folder, all);
       break;
   }
   return all;

@@ -29,7 +29,7 @@ TankSetup::TankSetup(const TankParameters& p)
   if (!p.shell) return;
   steel = make_steel(p.shell->material);
   rings.emplace(*p.shell, grid, p.diameter, p.ullage ? p.ullage->height : 0);
-  pressure = inner_pressure(*rings, grid, fluid, filler, p.ullage ? p.ullage->gas.gauge_pressure : 0);
+  pressure = inner_pressure(*rings, grid, fluid, filler, p.ullage ? p.ullage->gauge_pressure : 0);
 }
 
 TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weather)
@@ -61,7 +61,7 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weat
     update_stress();
   }
   if (p.ullage) {
-    ullage_.emplace(p.ullage->gas, p.diameter, p.ullage->height);
+    ullage_.emplace(p.ullage->gauge_pressure, p.diameter, p.ullage->height);
     ullage_->set_gas(bed_.top());
     if (p.insulation) {
       roof_.emplace(std::vector<ColumnLayer>{{make_insulator(p.insulation->material), p.insulation->thickness,
@@ -71,7 +71,7 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const Weather& weat
     }
   }
   if (p.ground) {
-    deep_temperature_ = p.ground->deep_temperature.value_or(weather.mean_temperature());
+    deep_temperature_ = weather.mean_temperature();
     ground_.emplace(ground_layers(*p.ground), bed_.area());
     ground_->set_steady(bed_.bottom(), deep_temperature_);
   }
@@ -132,7 +132,7 @@ void TankModel::update_pressure() {
   if (!bed_.has_real_density()) return;
   const TankParameters& p = setup_->parameters;
   wall_->pressure = inner_pressure(*setup_->rings, bed_.grid(), setup_->fluid, setup_->filler,
-                                   p.ullage ? p.ullage->gas.gauge_pressure : 0, bed_.fluid());
+                                   p.ullage ? p.ullage->gauge_pressure : 0, bed_.fluid());
   if (wall_->filler) wall_->filler->load(*wall_->pressure);
 }
 
@@ -140,8 +140,8 @@ void TankModel::update_stress() {
   if (!wall_) return;
   std::vector<double> active;
   if (!wall_->filler) active = active_hoop(*setup_->rings, setup_->filler, pressure());
-  wall_stress(*setup_->rings, *setup_->steel, pressure(), setup_->parameters.shell->roof_pressure,
-              wall_->filler ? wall_->filler->hoop() : active, wall_->shell.temperature(), wall_->stress);
+  wall_stress(*setup_->rings, *setup_->steel, pressure(), wall_->filler ? wall_->filler->hoop() : active,
+              wall_->shell.temperature(), wall_->stress);
 }
 
 void TankModel::record_fluid(double t, TankStep& step) const {

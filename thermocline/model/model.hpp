@@ -175,8 +175,4 @@ std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, c
 /// Why the seasons of the plant's calendar have no dates; empty if they have. Constant weather has none.
 std::string season_without_dates(const TankParameters& parameters);
 
-/// Throws Error if the cover absorbs sunlight (`absorptance` > 0) but the sun's position is unknown. `key`:
-/// full name of the key.
-void require_sun(double absorptance, const Weather& weather, const std::string& key);
-
 }  // namespace couplet::thermocline

@@ -79,7 +79,7 @@ void TankModel::step_insulation(double t, double h, const Ambient& air) {
   const Rings& rings = *setup_->rings;
   const double height = rings.z.back() + rings.dz.back() / 2;
   const double outer = p.diameter + 2 * (rings.thickness.front() + p.insulation->thickness);
-  const Film film = side_film_on(*insulation_, p.insulation->outside, outer, height, air);
+  const Film film = side_film_on(*insulation_, outer, height, air);
   const double lost = insulation_->step(step, wall_->shell.temperature(), film, into_blanket_);
   side_ = {t + step, 0, lost / step};
   for (const double q : into_blanket_) side_.in += q;
@@ -123,8 +123,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     double roof_cell = roof_ ? roof_->inner_temperature() : 0;
     double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
     if (light) {
-      const Film answer =
-          roof_->inner_response(h, roof_film_on(*roof_, p.insulation->outside, p.diameter, air));
+      const Film answer = roof_->inner_response(h, roof_film_on(*roof_, p.diameter, air));
       roof_cell = answer.reference, conductance = answer.coefficient * roof_->area();
     }
     const Ullage::Heat heat =
@@ -133,7 +132,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     gas_heat_.from_wall += heat.from_wall / parts;
     gas_heat_.wall_coefficient += heat.wall_coefficient / parts;
     if (!roof_) continue;
-    const Film film = roof_film_on(*roof_, p.insulation->outside, p.diameter, air);
+    const Film film = roof_film_on(*roof_, p.diameter, air);
     const double lost = roof_->step(h / parts, heat.into_roof, film).outer;
     ledger_.roof += lost;
     ledger_.turnover += std::abs(lost);

@@ -65,16 +65,12 @@ void declare(config::Section& section, GroundParameters& p) {
             },
             "material");
       },
-      "layers from the tank downwards");
+      "layers from the tank downwards, above soil at the annual mean temperature of the air");
   section.value("cell", p.cell)
       .unit("m", 1e-3, 10)
       .positive()
       .doc("maximum height of a cell next to the tank");
   as_step(section.value("step", p.step)).positive().doc("time step of the ground");
-  section.value("deep-temperature", p.deep_temperature)
-      .unit("K")
-      .range(200, 600)
-      .doc("temperature below the layers; default: the air's annual mean");
   section.check([&p] { return p.layers.empty() ? "at least one layer is needed" : ""; }, "layers");
 }
 
@@ -97,7 +93,7 @@ void declare_elements(config::Section& section, TankParameters& p) {
       "ullage", p.ullage,
       [](config::Section& s, UllageSpace& v) {
         as_length(s.value("height", v.height)).positive().required().doc("between bed and roof");
-        declare(s, v.gas);
+        s.value("gauge-pressure", v.gauge_pressure).unit("Pa", 1, 1e6).doc("gauge pressure of the gas");
       },
       "gas and radiation between the bed and the roof");
   declare_section(section, "ground", p.ground, "foundation and soil under the tank");

@@ -17,8 +17,8 @@
 namespace couplet::thermocline {
 
 struct UllageSpace {
-  double height = 0;  ///< between bed and roof [m]
-  UllageParameters gas;
+  double height = 0;          ///< between bed and roof [m]
+  double gauge_pressure = 0;  ///< of the gas [Pa]
 };
 
 struct GroundLayer {
@@ -26,10 +26,9 @@ struct GroundLayer {
   double thickness = 0;  ///< [m]
 };
 struct GroundParameters {
-  std::vector<GroundLayer> layers;         ///< from the tank downward
-  double cell = 0.05;                      ///< largest cell height near the tank [m]
-  double step = 900;                       ///< time step of the ground [s]
-  std::optional<double> deep_temperature;  ///< [K]; default: annual mean of the air
+  std::vector<GroundLayer> layers;  ///< from the tank downward
+  double cell = 0.05;               ///< largest cell height near the tank [m]
+  double step = 900;                ///< time step of the ground [s]
 };
 
 /// Section that is present in the YAML file although all its keys have defaults.

@@ -60,7 +60,7 @@ std::string forgotten_unit_of_flow(const TankParameters& p) {
 
 std::string missing_weather(const TankParameters& p) {
   const bool plant = p.flow.type == FlowParameters::Type::plant;
-  const bool deep = p.ground && !p.ground->deep_temperature;
+  const bool deep = p.ground.has_value();
   if (p.ambient_given || !(p.insulation || p.ullage || deep || plant)) return "";
   return fmt::format("the section 'ambient' is missing: {} see still air of 20 degC{}.",
                      plant ? "plant and tank" : "the surroundings of the tank",
@@ -84,8 +84,7 @@ std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const 
   };
   look("steel", p.steel, i.steel, "the tank has no section 'shell'");
   look("insulation", p.insulation, i.insulated, "the tank has no sections 'shell' and 'insulation'");
-  look("filler", p.filler, i.filler + (p.capsules ? 0 : i.capsules), "no layer contains grains");
-  look("capsules", p.capsules.value_or(0), i.capsules, "no layer melts");
+  look("filler", p.filler, i.filler, "no layer contains grains");
   look("pump", p.pump, pump ? 1 : 0, "the tank has no section 'pump'");
   return all;
 }
@@ -99,15 +98,6 @@ std::string season_without_dates(const TankParameters& p) {
           "dates, or remove 'from' and 'to'",
           i);
   return "";
-}
-
-void require_sun(double absorptance, const Weather& weather, const std::string& key) {
-  if (absorptance <= 0 || weather.has_site()) return;
-  throw Error(
-      "{}: solar heating of the cover needs the sun's height, but {} does not specify the location. Add "
-      "'site: {{latitude, longitude, time-zone}}' to the section 'ambient', or leave solar-absorptance "
-      "at 0.",
-      key, weather.source());
 }
 
 }  // namespace couplet::thermocline

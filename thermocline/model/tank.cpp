@@ -27,7 +27,7 @@ Inventory inventory_of(const TankSetup& setup) {
   for (const auto& layer : p.bed.layers) {
     const double density = layer.filler ? layer.filler->density : setup.filler.density;
     all.fluid += area * layer.height * layer.porosity * setup.fluid.density;
-    (layer.melting ? all.capsules : all.filler) += area * layer.height * (1 - layer.porosity) * density;
+    all.filler += area * layer.height * (1 - layer.porosity) * density;
   }
   all.foundation = area;
   if (!setup.rings) return all;
@@ -70,9 +70,6 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
   const int rank = parallel::comm_rank(context.comm);
   if (rank == 0)
     files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
-  if (p.insulation)
-    require_sun(p.insulation->outside.solar_absorptance, *weather_,
-                fmt::format("participants.{}.insulation.solar-absorptance", context.name));
   const auto report = [&](const char* id, const std::vector<std::string>& sentences) {
     for (const std::string& sentence : sentences)
       if (!sentence.empty())

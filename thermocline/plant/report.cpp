@@ -101,29 +101,17 @@ void declare(config::Section& s, ReportParameters& p) {
       .doc(
           "the thermocline is the region between the cold temperature plus this margin and the hot "
           "temperature minus it");
-  as_difference(s.value("outlet-margin", p.outlet_margin))
-      .positive()
-      .doc("counts the time in which the tank's outlet is within this difference of its design temperature");
   declare_section(
       s, "economics", p.economics,
       "prices, in any currency: the summary then includes capital and levelised cost of electricity");
-  s.value("dead-state", p.dead_state)
-      .unit("K", 200, 400)
-      .positive()
-      .doc("reference temperature of the exergy");
-  s.check(
-      [&p]() -> std::string {
-        if (p.dead_state >= 200) return "";
-        return fmt::format(
-            "{:g} K is {:.0f} degC, below any ambient temperature; write '{:g} degC' if that is intended",
-            p.dead_state, celsius(p.dead_state), p.dead_state);
-      },
-      "dead-state");
 }
 
 void ReportSums::add(const ReportSums& other) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other.sum[i];
 }
+
+constexpr double outlet_margin = 5;    // tolerance of outlets "near the design temperature" [K]
+constexpr double dead_state = 318.15;  // T_ref of (5.29) [K]
 
 /// Records a step of the bed. Returns the heat that the flow brought into it [J].
 double DayReport::add_step(const BedStep& step) {
@@ -157,17 +145,17 @@ double DayReport::add_step(const BedStep& step) {
   const double inlet = step.flow.inlet_temperature;
   if (mode == PlantMode::charge) {
     day_[Sums::charging] += dt;
-    if (outlet < plant.cold + p_.outlet_margin) day_[Sums::cold_outlet] += dt;
+    if (outlet < plant.cold + outlet_margin) day_[Sums::cold_outlet] += dt;
     return mass * c * (inlet - outlet);
   }
   const double delivered = mass * c * (outlet - plant.cold);
   day_[Sums::discharging] += dt;
-  if (outlet > plant.hot - p_.outlet_margin) day_[Sums::hot_outlet] += dt;
+  if (outlet > plant.hot - outlet_margin) day_[Sums::hot_outlet] += dt;
   day_[Sums::delivered] += delivered;
   sell(delivered);
   day_[Sums::lacking] -= delivered;
   // (5.29)
-  day_[Sums::exergy] += delivered - mass * c * p_.dead_state * std::log(outlet / plant.cold);
+  day_[Sums::exergy] += delivered - mass * c * dead_state * std::log(outlet / plant.cold);
   return mass * c * (inlet - outlet);
 }
 

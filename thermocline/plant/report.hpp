@@ -122,7 +122,6 @@ struct EconomicsParameters {
   double block = 0;                         ///< per kilowatt of the power block's electric output [1/kW]
   double fixed = 0;                         ///< independent of the size of the plant
   double steel = 0, filler = 0, fluid = 0;  ///< [1/kg]
-  std::optional<double> capsules;           ///< of melting layers; default: that of the filler [1/kg]
   double pump = 0;                          ///< per kilowatt of the pump's or fan's largest power [1/kW]
   double insulation = 0, foundation = 0;    ///< per square meter of wall and roof, of ground [1/m^2]
   double operation = 0.02;                  ///< per year, share of the capital
@@ -134,9 +133,8 @@ void declare(config::Section& section, EconomicsParameters& parameters);
 /// Parts of tank and plant with a price.
 struct Inventory {
   double field_area = 0, block_power = 0;   ///< [m^2], electric [W]
-  double steel = 0, filler = 0, fluid = 0;  ///< [kg]
+  double steel = 0, filler = 0, fluid = 0;  ///< filler: grains and capsules [kg]
   double insulated = 0, foundation = 0;     ///< [m^2]
-  double capsules = 0;                      ///< not included in filler [kg]
   double pump_power = 0;                    ///< largest of the run [W]
 };
 
@@ -158,9 +156,7 @@ struct ReportParameters {
   double run_in = 0;  ///< days before the first counted day
   /// Margins of the critical temperatures of the thermocline's thickness (5.30) [K].
   double thickness_margin = 15;
-  double outlet_margin = 5;           ///< tolerance of outlets "near the design temperature" [K]
   std::optional<double> profile_day;  ///< days from the start; its profiles are written hourly
-  double dead_state = 318.15;         ///< T_ref of the exergy (5.29) [K]
   std::optional<EconomicsParameters> economics;
 };
 void declare(config::Section& section, ReportParameters& parameters);

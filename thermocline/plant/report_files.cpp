@@ -101,9 +101,6 @@ void declare(config::Section& s, EconomicsParameters& p) {
   s.value("fixed", p.fixed).not_negative().doc("fixed cost, independent of the plant's size");
   s.value("steel", p.steel).not_negative().doc("price per kilogram of the tank's wall");
   s.value("filler", p.filler).not_negative().doc("price per kilogram of the grains");
-  s.value("capsules", p.capsules)
-      .not_negative()
-      .doc("price per kilogram of capsules, the grains of phase-change layers; default: that of filler");
   s.value("pump", p.pump)
       .not_negative()
       .doc("price per kilowatt of pump or fan, by the largest power in the run");
@@ -115,8 +112,8 @@ void declare(config::Section& s, EconomicsParameters& p) {
   s.value("lifetime", p.lifetime).range(1, 200).doc("lifetime in years");
   s.check(
       [&] {
-        return p.field + p.block + p.fixed + p.steel + p.filler + p.capsules.value_or(0) + p.pump + p.fluid +
-                           p.insulation + p.foundation >
+        return p.field + p.block + p.fixed + p.steel + p.filler + p.pump + p.fluid + p.insulation +
+                           p.foundation >
                        0
                    ? ""
                    : "all prices are 0: the levelised cost is undefined";
@@ -126,9 +123,8 @@ void declare(config::Section& s, EconomicsParameters& p) {
 
 LevelisedCost levelised_cost(const EconomicsParameters& p, const Inventory& i, double electricity) {
   LevelisedCost cost;
-  cost.storage = p.steel * i.steel + p.filler * i.filler + p.capsules.value_or(p.filler) * i.capsules +
-                 p.fluid * i.fluid + p.insulation * i.insulated + p.foundation * i.foundation +
-                 p.pump * i.pump_power / 1000;
+  cost.storage = p.steel * i.steel + p.filler * i.filler + p.fluid * i.fluid + p.insulation * i.insulated +
+                 p.foundation * i.foundation + p.pump * i.pump_power / 1000;
   cost.capital = p.fixed + p.field * i.field_area + p.block * i.block_power / 1000 + cost.storage;
   const double grown = std::pow(1 + p.interest, p.lifetime);
   cost.annuity = p.interest > 0 ? p.interest * grown / (grown - 1) : 1 / p.lifetime;

@@ -177,15 +177,14 @@ double Insulation::step(double dt, std::span<const double> inside, const Film& o
   return advance(dt, inside, std::numeric_limits<double>::infinity(), 0, outside, from_rings);
 }
 
-Film side_film_on(const Insulation& blanket, const OutsideParameters& p, double diameter, double height,
-                  const Ambient& air) {
-  const Film first = side_film(p, air.temperature + 5, diameter, height, air);
-  return side_film(p, blanket.outer_surface(first), diameter, height, air);
+Film side_film_on(const Insulation& blanket, double diameter, double height, const Ambient& air) {
+  const Film first = side_film(air.temperature + 5, diameter, height, air);
+  return side_film(blanket.outer_surface(first), diameter, height, air);
 }
 
-Film roof_film_on(const Column& roof, const OutsideParameters& p, double diameter, const Ambient& air) {
-  const Film first = roof_film(p, air.temperature + 5, diameter, air);
-  return roof_film(p, roof.outer_surface(first), diameter, air);
+Film roof_film_on(const Column& roof, double diameter, const Ambient& air) {
+  const Film first = roof_film(air.temperature + 5, diameter, air);
+  return roof_film(roof.outer_surface(first), diameter, air);
 }
 
 void declare(config::Section& section, InsulationParameters& p) {
@@ -196,10 +195,6 @@ void declare(config::Section& section, InsulationParameters& p) {
       .doc("thickness on the side, and on the roof above an ullage");
   section.value("cells", p.cells).range(1, 200).doc("number of cells through the thickness");
   as_step(section.value("step", p.step)).positive().doc("time step of the insulation");
-  section.value("cover-emissivity", p.outside.emissivity).range(0, 1).doc("emissivity of the metal cover");
-  section.value("solar-absorptance", p.outside.solar_absorptance)
-      .range(0, 1)
-      .doc("solar absorptance of the cover; 0 neglects the sun");
 }
 
 }  // namespace couplet::thermocline

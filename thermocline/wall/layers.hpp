@@ -88,7 +88,6 @@ struct InsulationParameters {
   double thickness = 0.4;  ///< [m], equal on side and roof
   int cells = 8;
   double step = 300;  ///< time step of the insulation [s]
-  OutsideParameters outside;
 };
 
 /// Insulation around the tank, with a strip per ring of the wall.
@@ -106,8 +105,7 @@ void declare(config::Section& section, InsulationParameters& parameters);
 
 // Films on the surfaces of these layers at the surface temperature. One correction suffices for so weak a
 // dependence.
-Film side_film_on(const Insulation& blanket, const OutsideParameters& p, double diameter, double height,
-                  const Ambient& air);
-Film roof_film_on(const Column& roof, const OutsideParameters& p, double diameter, const Ambient& air);
+Film side_film_on(const Insulation& blanket, double diameter, double height, const Ambient& air);
+Film roof_film_on(const Column& roof, double diameter, const Ambient& air);
 
 }  // namespace couplet::thermocline

@@ -111,11 +111,11 @@ std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const 
   return hoop;
 }
 
-void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure, double roof_pressure,
+void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure,
                  std::span<const double> hoop, std::span<const double> temperature, WallStress& out) {
   const int n = rings.size();
   for (auto* v : {&out.hoop, &out.axial, &out.radial, &out.equivalent, &out.yield}) v->resize(n);
-  double above = roof_pressure * rings.diameter / 4;  // weight above over the circumference [N/m]
+  double above = 0;  // weight above over the circumference [N/m]
   for (int i = n - 1; i >= 0; --i) {
     const double own = steel.density * gravity * rings.thickness[i] * rings.dz[i];
     const double t = hoop[i], r = -pressure.fluid[i], z = -(above + own / 2) / rings.thickness[i];

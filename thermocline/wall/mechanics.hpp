@@ -84,7 +84,7 @@ std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const 
 double rankine_active(const Filler& filler);
 
 /// Computes all stresses from the hoop stress and temperature of the rings.
-void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure, double roof_pressure,
+void wall_stress(const Rings& rings, const Steel& steel, const InnerPressure& pressure,
                  std::span<const double> hoop, std::span<const double> temperature, WallStress& out);
 
 /// Stresses of the rings with bending. The wall is a thin axisymmetric shell [timoshenko1959, chapter 15]

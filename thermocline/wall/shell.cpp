@@ -172,10 +172,6 @@ void declare(config::Section& section, ShellParameters& p) {
         s.value("thickness", l.thickness).unit("m", 1e-4, 1).positive().required().doc("thickness");
       },
       "from the bottom up; the last one continues to the top");
-  section.value("roof-pressure", p.roof_pressure)
-      .unit("Pa", 1, 1e6)
-      .not_negative()
-      .doc("weight of the roof per roof area");
   section.check([&p] { return p.plates.empty() ? "at least one plate is needed" : ""; }, "plates");
 }
 

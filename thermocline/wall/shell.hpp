@@ -18,7 +18,6 @@ struct Plate {
 struct ShellParameters {
   SteelParameters material;
   std::vector<Plate> plates;  ///< from the bottom up; the last one continues to the top
-  double roof_pressure = 0;   ///< weight of the roof per area of the roof [Pa]
 };
 
 /// Geometry of the wall: one ring per cell of the bed, and further ones around the ullage.

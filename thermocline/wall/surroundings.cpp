@@ -11,14 +11,15 @@
 namespace couplet::thermocline {
 namespace {
 
-Film combine(double convection, double emissivity, double surface, double surroundings4, double gain,
-             const Ambient& air) {
+constexpr double cover_emissivity = 0.2;
+
+Film combine(double convection, double surface, double surroundings4, const Ambient& air) {
   // eps sigma (T^4 - T_env^4), linearized about the surface temperature.
-  const double radiation = 4 * emissivity * stefan_boltzmann * std::pow(surface, 3);
-  const double offset = emissivity * stefan_boltzmann * (3 * std::pow(surface, 4) + surroundings4);
+  const double radiation = 4 * cover_emissivity * stefan_boltzmann * std::pow(surface, 3);
+  const double offset = cover_emissivity * stefan_boltzmann * (3 * std::pow(surface, 4) + surroundings4);
   Film film;
   film.coefficient = convection + radiation;
-  film.reference = (convection * air.temperature + offset + gain) / film.coefficient;
+  film.reference = (convection * air.temperature + offset) / film.coefficient;
   return film;
 }
 
@@ -54,8 +55,7 @@ double hot_plate_up_nusselt(double ra) { return ra < 1e7 ? 0.54 * std::pow(ra, 0
 
 double sky_temperature(double air) { return 0.0552 * std::pow(air, 1.5); }
 
-Film side_film(const OutsideParameters& p, double surface, double diameter, double height,
-               const Ambient& air) {
+Film side_film(double surface, double diameter, double height, const Ambient& air) {
   const Air film(0.5 * (surface + air.temperature), air.pressure);
   const double re = film.density * air.wind * diameter / film.viscosity;
   const double forced = cross_flow_nusselt(re, film.prandtl) * film.conductivity / diameter;
@@ -64,13 +64,10 @@ Film side_film(const OutsideParameters& p, double surface, double diameter, doub
       film.conductivity / height;
   const double around =
       0.5 * std::pow(sky_temperature(air.temperature), 4) + 0.5 * std::pow(air.temperature, 4);
-  // The sun sees the projected area D H of the side's area pi D H.
-  const double across = std::sqrt(std::max(0.0, 1 - air.sun_height * air.sun_height));
-  const double gain = air.sun_height > 0 ? p.solar_absorptance * air.dni * across / std::numbers::pi : 0;
-  return combine(cubes(forced, still), p.emissivity, surface, around, gain, air);
+  return combine(cubes(forced, still), surface, around, air);
 }
 
-Film roof_film(const OutsideParameters& p, double surface, double diameter, const Ambient& air) {
+Film roof_film(double surface, double diameter, const Ambient& air) {
   const Air film(0.5 * (surface + air.temperature), air.pressure);
   const double re = film.density * air.wind * diameter / film.viscosity;
   const double forced = 0.037 * std::pow(re, 0.8) * std::cbrt(film.prandtl) * film.conductivity / diameter;
@@ -78,18 +75,17 @@ Film roof_film(const OutsideParameters& p, double surface, double diameter, cons
   const double still =
       hot_plate_up_nusselt(film.rayleigh(surface - air.temperature, length)) * film.conductivity / length;
   const double sky = std::pow(sky_temperature(air.temperature), 4);
-  const double gain = p.solar_absorptance * air.dni * std::max(0.0, air.sun_height);
-  return combine(cubes(forced, still), p.emissivity, surface, sky, gain, air);
+  return combine(cubes(forced, still), surface, sky, air);
 }
 
-Enclosure::Enclosure(const UllageParameters& p, double radius, double height) {
+Enclosure::Enclosure(double radius, double height, const std::array<double, 3>& emissivities) {
   const double x = 1 + 0.5 * std::pow(height / radius, 2);
   disc_to_disc = x - std::sqrt(x * x - 1);
   const double disc = std::numbers::pi * radius * radius, side = 2 * std::numbers::pi * radius * height;
   const double to_side = 1 - disc_to_disc, from_side = to_side * disc / side;
   Eigen::Matrix3d view;
   view << 0, disc_to_disc, to_side, disc_to_disc, 0, to_side, from_side, from_side, 1 - 2 * from_side;
-  const Eigen::Vector3d emissivity(p.emissivity_liquid, p.emissivity_roof, p.emissivity_wall);
+  const Eigen::Vector3d emissivity(emissivities.data());
   const Eigen::Vector3d area(disc, disc, side);
   // Radiosities J = eps sigma T^4 + (1 - eps) F J; net loss Q = A (J - F J).
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
@@ -106,18 +102,18 @@ Enclosure::Enclosure(const UllageParameters& p, double radius, double height) {
   }
 }
 
-Ullage::Ullage(const UllageParameters& p, double diameter, double height)
-    : parameters_(p), enclosure_(p, diameter / 2, height), height_(height) {
+Ullage::Ullage(double gauge_pressure, double diameter, double height, const std::array<double, 3>& emissivity)
+    : gauge_pressure_(gauge_pressure), enclosure_(diameter / 2, height, emissivity), height_(height) {
   area_ = 0.25 * std::numbers::pi * diameter * diameter;
   side_ = std::numbers::pi * diameter * height;
-  const Air air(500, 101325 + p.gauge_pressure);
+  const Air air(500, 101325 + gauge_pressure);
   capacity_ = air.density * air.specific_heat * area_ * height;
 }
 
 Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cell, double roof_conductance,
                           double air_pressure) {
   const auto& x = enclosure_.exchange;
-  const double pressure = air_pressure + parameters_.gauge_pressure;
+  const double pressure = air_pressure + gauge_pressure_;
   const double store = capacity_ / dt, before = gas_;
   const auto fourth = [](double t) { return stefan_boltzmann * t * t * t * t; };
   double disc = 0, side = 0;  // film times area, surface to gas [W/K]
@@ -153,19 +149,6 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
   // The heat of the liquid closes the balance; it equals that of films and radiation to the tolerance.
   heat.from_liquid = heat.into_roof + store * (gas_ - before) - heat.from_wall;
   return heat;
-}
-
-void declare(config::Section& section, UllageParameters& p) {
-  section.value("gauge-pressure", p.gauge_pressure).unit("Pa", 1, 1e6).doc("gauge pressure of the gas");
-  section.value("emissivity-liquid", p.emissivity_liquid)
-      .range(0.01, 1)
-      .doc("emissivity of the liquid's surface");
-  section.value("emissivity-roof", p.emissivity_roof)
-      .range(0.01, 1)
-      .doc("emissivity of the roof's inner surface");
-  section.value("emissivity-wall", p.emissivity_wall)
-      .range(0.01, 1)
-      .doc("emissivity of the wall above the liquid");
 }
 
 }  // namespace couplet::thermocline

@@ -35,29 +35,21 @@ struct Film {
   double coefficient = 0, reference = 0;
 };
 
-struct OutsideParameters {
-  double emissivity = 0.2;       ///< of the cover
-  double solar_absorptance = 0;  ///< of the cover; 0 to neglect the sun
-};
-
-/// Side of a tank of height H and diameter D: cubic combination of natural and forced convection; half the
+/// Side of a tank of height H and diameter D with a metal cover in the shade: cubic combination of natural and forced convection; half the
 /// view is sky and half is ground (at air temperature).
-Film side_film(const OutsideParameters& p, double surface, double diameter, double height,
-               const Ambient& air);
+Film side_film(double surface, double diameter, double height, const Ambient& air);
 /// Roof: turbulent plate of length D in the wind, hot plate facing up; the whole view is sky.
-Film roof_film(const OutsideParameters& p, double surface, double diameter, const Ambient& air);
+Film roof_film(double surface, double diameter, const Ambient& air);
 
-struct UllageParameters {
-  double gauge_pressure = 0;  ///< [Pa]
-  double emissivity_liquid = 0.95, emissivity_roof = 0.8, emissivity_wall = 0.8;
-};
+/// Emissivities of liquid, roof and wall, in the order of Enclosure::Surface.
+inline constexpr std::array<double, 3> ullage_emissivity{0.95, 0.8, 0.8};
 
 /// Gray diffuse radiation between liquid, roof and side wall of the ullage. Coaxial equal discs: F = X -
 /// sqrt(X^2 - 1), X = 1 + (H/R)^2/2. Net heat from surface i: Q_i = sum_j exchange(i, j) sigma T_j^4. Rows
 /// sum to zero (no exchange at equal temperatures), and so do columns (conservation).
 struct Enclosure {
   enum Surface { liquid, roof, wall };
-  Enclosure(const UllageParameters& parameters, double radius, double height);
+  Enclosure(double radius, double height, const std::array<double, 3>& emissivity = ullage_emissivity);
   std::array<std::array<double, 3>, 3> exchange{};  // [m^2]
   double disc_to_disc = 0;                          // view factor
 };
@@ -66,7 +58,9 @@ struct Enclosure {
 /// inner surface has no mass; its temperature follows from the balance with the roof's first cell.
 class Ullage {
  public:
-  Ullage(const UllageParameters& parameters, double diameter, double height);
+  /// `gauge_pressure` of the gas [Pa].
+  Ullage(double gauge_pressure, double diameter, double height,
+         const std::array<double, 3>& emissivity = ullage_emissivity);
 
   struct Heat {
     double from_liquid = 0, from_wall = 0, into_roof = 0;  // [W]
@@ -87,13 +81,11 @@ class Ullage {
   }
 
  private:
-  UllageParameters parameters_;
+  double gauge_pressure_;  // [Pa]
   Enclosure enclosure_;
   double area_, side_, height_;
   double gas_ = 293.15, roof_ = 293.15;
   double capacity_;  // of the gas at 500 K and normal air pressure, constant [J/K]
 };
-
-void declare(config::Section& section, UllageParameters& parameters);
 
 }  // namespace couplet::thermocline

@@ -79,10 +79,8 @@ WeatherHours clear_sky_year(const ClearSky& site) {
     for (int i = 0; i < parts; ++i) sum += clear_sky_irradiance(site, day, clock + (i + 0.5) / parts);
     year.dni.push_back(sum / parts);
     const double phase = 2 * pi * (clock + 0.5 - 15) / hours_a_day;
-    year.temperature.push_back(celsius((site.coldest + site.warmest) / 2) +
-                               (site.warmest - site.coldest) / 2 * std::cos(phase));
+    year.temperature.push_back(celsius(site.temperature) + 8 * std::cos(phase));
     year.wind.push_back(site.wind);
-    year.humidity.push_back(site.humidity);
     year.pressure.push_back(pressure);
   }
   return year;

@@ -11,12 +11,10 @@ namespace couplet::thermocline {
 
 /// Year of cloudless days; a new site requires only its latitude.
 struct ClearSky {
-  double latitude = 0;      ///< [deg], north positive
-  double altitude = 0;      ///< above the sea [m], below 2500
-  double coldest = 285.15;  ///< daily minimum of the air [K]
-  double warmest = 301.15;  ///< daily maximum, reached at 15:00 [K]
-  double wind = 2;          ///< [m/s]
-  double humidity = 0.5;    ///< relative
+  double latitude = 0;          ///< [deg], north positive
+  double altitude = 0;          ///< above the sea [m], below 2500
+  double temperature = 293.15;  ///< mean of the air; 8 K more at 15:00, 8 K less at 03:00 [K]
+  double wind = 2;              ///< [m/s]
 };
 
 /// Sine of the sun's height at solar time `hour` (12 is noon) of `day` (0 for 01-01); negative at night.

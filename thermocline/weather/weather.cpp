@@ -30,8 +30,8 @@ double sun_over(const WeatherHours::Site& site, int first_day, double clock) {
                             (solar - whole_days * seconds_a_day) / seconds_an_hour);
 }
 
-/// Hour of the record for each hour of the period. A shift moves the record to a later clock time.
-std::vector<std::size_t> chosen_hours(const WeatherHours& record, const WeatherPeriod& period, int shift) {
+/// Hour of the record for each hour of the period.
+std::vector<std::size_t> chosen_hours(const WeatherHours& record, const WeatherPeriod& period) {
   const int first = record.first_day, days = record.days();
   const bool whole_year = days == days_a_year;
   const int begin = period.from;
@@ -46,46 +46,27 @@ std::vector<std::size_t> chosen_hours(const WeatherHours& record, const WeatherP
   const int n = days * hours_a_day;
   std::vector<std::size_t> chosen;
   for (int h = 0; h < count * hours_a_day; ++h) {
-    const int in_year = (begin * hours_a_day + h) % (days_a_year * hours_a_day) - first * hours_a_day - shift;
+    const int in_year = (begin * hours_a_day + h) % (days_a_year * hours_a_day) - first * hours_a_day;
     chosen.push_back(static_cast<std::size_t>((in_year % n + n) % n));
   }
   return chosen;
 }
 
-}  // namespace
-
-WeatherHours with_mean_days(WeatherHours record) {
-  std::array<std::array<double, hours_a_day>, 12> sum{};
-  std::array<double, 12> days{};
-  const auto month = [&](int day) { return static_cast<std::size_t>(month_of_day(record.first_day + day)); };
-  for (int d = 0; d < record.days(); ++d) {
-    for (std::size_t h = 0; h < hours_a_day; ++h)
-      sum[month(d)][h] += record.dni[std::size_t(d) * hours_a_day + h];
-    ++days[month(d)];
-  }
-  for (int d = 0; d < record.days(); ++d)
-    for (std::size_t h = 0; h < hours_a_day; ++h)
-      record.dni[std::size_t(d) * hours_a_day + h] = sum[month(d)][h] / days[month(d)];
-  return record;
-}
-
-namespace {
-
 /// Doubt about a record without a site. With the angle of the clock from noon, the irradiance has the mean exp(i angle) = R exp(i off).
 /// Days of equal sun over the length T have R = sin(x)/x with x = pi T/24: 0.64 for 12 h, 0.3 for 18 h, 0 for 24 h.
-std::vector<std::string> sun_at_night(const WeatherHours& record, int shift_hours) {
+std::vector<std::string> sun_at_night(const WeatherHours& record) {
   constexpr double least = 0.3;
   std::complex<double> sum = 0;
   double total = 0;
   for (std::size_t h = 0; h < record.dni.size(); ++h) {
-    const double from_noon = double(h % hours_a_day) + 0.5 + shift_hours - 12;
+    const double from_noon = double(h % hours_a_day) + 0.5 - 12;
     sum += std::polar(record.dni[h], from_noon * std::numbers::pi / 12);
     total += record.dni[h];
   }
   if (total == 0 || (std::abs(sum) >= least * total && sum.real() > 0)) return {};
   return {fmt::format(
-      "{}: the sun shines at night, with irradiance in {} of {} hours{}. Check the column dni_W_m2, set 'shift' if the clock "
-      "is that of another time zone, or add the 'site'",
+      "{}: the sun shines at night, with irradiance in {} of {} hours{}. Check the column dni_W_m2, and that the clock "
+      "is that of the place; the lines latitude, longitude and time-zone let the run judge better",
       record.source, std::ranges::count_if(record.dni, [](double dni) { return dni > 0; }), record.dni.size(),
       std::abs(sum) < least * total
           ? ""
@@ -94,11 +75,11 @@ std::vector<std::string> sun_at_night(const WeatherHours& record, int shift_hour
 
 }  // namespace
 
-std::vector<std::string> doubts_about_sun(const WeatherHours& record, int shift_hours) {
+std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   constexpr std::size_t fortnight = 14 * hours_a_day;
   if (record.dni.size() >= fortnight && *std::max_element(record.dni.begin(), record.dni.end()) <= 0)
     return {fmt::format("{}: no direct irradiance in any of its {} days", record.source, record.days())};
-  if (!record.site) return sun_at_night(record, shift_hours);
+  if (!record.site) return sun_at_night(record);
   constexpr double hour = 3600;         // [s]
   constexpr double farthest_clock = 3;  // [h]: 45 degrees
   // A degree below the horizon: refraction and the size of the sun's disc.
@@ -128,9 +109,8 @@ std::vector<std::string> doubts_about_sun(const WeatherHours& record, int shift_
   return all;
 }
 
-Weather::Weather(const WeatherHours& record, const WeatherPeriod& period, int shift_hours)
-    : first_day_(period.from), shift_hours_(shift_hours) {
-  const std::vector<std::size_t> chosen = chosen_hours(record, period, shift_hours);
+Weather::Weather(const WeatherHours& record, const WeatherPeriod& period) : first_day_(period.from) {
+  const std::vector<std::size_t> chosen = chosen_hours(record, period);
   hours_.source = record.source;
   hours_.state_offset = record.state_offset;
   hours_.site = record.site;
@@ -138,7 +118,8 @@ Weather::Weather(const WeatherHours& record, const WeatherPeriod& period, int sh
   hours_.doubts = record.doubts;
   mean_temperature_ = kelvin(std::accumulate(record.temperature.begin(), record.temperature.end(), 0.) /
                              double(record.temperature.size()));
-  for (const auto quantity : weather_quantities)
+  for (const auto quantity :
+       {&WeatherHours::dni, &WeatherHours::temperature, &WeatherHours::wind, &WeatherHours::pressure})
     for (const std::size_t h : chosen) (hours_.*quantity).push_back((record.*quantity)[h]);
   const std::vector<double>& dni = hours_.dni;
   const std::size_t n = dni.size();
@@ -170,15 +151,8 @@ Ambient Weather::at(double t) const {
   ambient.dni = hours_.dni[h] + slope_[h] * (position - double(h) - 0.5);
   ambient.temperature = kelvin(state(hours_.temperature, t));
   ambient.wind = state(hours_.wind, t);
-  ambient.humidity = state(hours_.humidity, t);
   ambient.pressure = state(hours_.pressure, t);
-  ambient.sun_height = sun_height(t);
   return ambient;
-}
-
-double Weather::sun_height(double t) const {
-  if (!hours_.site) return 0;
-  return std::max(0., sun_over(*hours_.site, first_day_, t - shift_hours_ * seconds_an_hour));
 }
 
 /// Within the first period: integral of the line mean + slope (x - 1/2), x the elapsed share of the hour.
@@ -228,26 +202,16 @@ void declare_file(config::Section& s, WeatherParameters& p) {
           "hourly weather: a CSV, plain or compressed, with the columns hour (of the year, from 0), "
           "dni_W_m2 (mean of the hour), T_degC, wind_m_s, rh_pct, p_Pa; 'couplet weather FILE' makes it "
           "of EPW, SAM, NSRDB, TMY3, PVGIS and other tables");
-  s.value("shift", p.shift_hours)
-      .range(-12, 12)
-      .doc("whole hours by which the simulation's clock is ahead of the file's");
-  s.check([&p] { return p.shift_hours == std::floor(p.shift_hours) ? "" : "is a whole number of hours"; },
-          "shift");
-  s.choice("days", p.mean_days, {{"as-recorded", false}, {"monthly-mean", true}})
-      .doc(
-          "monthly-mean: each hour has the mean irradiance of that hour in its month, as in tables of "
-          "average days");
-  declare_section(s, "site", p.site,
-                  "for files without a location, to determine the sun's height (solar-absorptance)");
   declare_period(s, p);
 }
 
 void declare_air(config::Section& s, ClearSky& sky) {
   s.value("altitude", sky.altitude).unit("m").range(0, 2500).doc("altitude of the site");
-  s.value("coldest", sky.coldest).unit("K").range(200, 340).doc("temperature of the air at 03:00");
-  s.value("warmest", sky.warmest).unit("K").range(200, 340).doc("temperature of the air at 15:00");
+  s.value("temperature", sky.temperature)
+      .unit("K")
+      .range(200, 340)
+      .doc("mean temperature of the air, which is 8 K warmer at 15:00 and colder at 03:00");
   s.value("wind", sky.wind).unit("m/s").range(0, 80).doc("wind speed");
-  s.value("humidity", sky.humidity).range(0, 1).doc("relative humidity of the air");
 }
 
 void declare_smooth_days(config::Section& s, WeatherParameters& p) {
@@ -272,8 +236,7 @@ void declare_smooth_days(config::Section& s, WeatherParameters& p) {
           return about == name ? problem : "";
         },
         name);
-  s.value("air", p.file)
-      .doc("a weather file for air, wind, humidity and pressure; default: the following keys");
+  s.value("air", p.file).doc("a weather file for air, wind and pressure; default: the following keys");
   declare_air(s, p.sky);
   declare_period(s, p);
 }
@@ -293,7 +256,6 @@ void declare_constant(config::Section& s, WeatherParameters& p) {
   s.value("dni", a.dni).unit("W/m^2").range(0, 1412).doc("direct normal irradiance, day and night");
   s.value("temperature", a.temperature).unit("K").range(200, 340).doc("temperature of the air");
   s.value("wind", a.wind).unit("m/s").range(0, 80).doc("wind speed");
-  s.value("humidity", a.humidity).range(0, 1).doc("relative humidity of the air");
   s.value("pressure", a.pressure).unit("Pa").range(40000, 110000).doc("pressure of the air");
 }
 
@@ -305,7 +267,6 @@ WeatherHours constant_year(const WeatherParameters& p) {
   year.dni.assign(n, p.constant.dni);
   year.temperature.assign(n, celsius(p.constant.temperature));
   year.wind.assign(n, p.constant.wind);
-  year.humidity.assign(n, p.constant.humidity);
   year.pressure.assign(n, p.constant.pressure);
   return year;
 }
@@ -313,22 +274,8 @@ WeatherHours constant_year(const WeatherParameters& p) {
 WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& case_folder) {
   if (p.kind == WeatherKind::file) {
     WeatherHours record = read_weather(case_folder / p.file);
-    constexpr double hour = 3600;
-    if (p.site) {
-      const WeatherHours::Site given = site_of(p.site->latitude, p.site->longitude, p.site->time_zone);
-      constexpr double close = 0.1, close_time = 360;  // [deg], [s]
-      if (record.site && (std::abs(given.latitude - record.site->latitude) > close ||
-                          std::abs(given.solar_ahead - record.site->solar_ahead) > close_time))
-        record.doubts.push_back(fmt::format(
-            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) replaces the file's "
-            "own (latitude {:g} deg, {:+.2f} h)",
-            record.source, given.latitude, given.solar_ahead / hour, record.site->latitude,
-            record.site->solar_ahead / hour));
-      record.site = given;
-    }
-    for (const std::string& doubt : doubts_about_sun(record, int(p.shift_hours)))
-      record.doubts.push_back(doubt);
-    return p.mean_days ? with_mean_days(std::move(record)) : record;
+    for (const std::string& doubt : doubts_about_sun(record)) record.doubts.push_back(doubt);
+    return record;
   }
   if (p.kind == WeatherKind::smooth_days) {
     ClearSky sky = p.sky;
@@ -343,15 +290,6 @@ WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& 
 
 }  // namespace
 
-void declare(config::Section& s, SiteParameters& p) {
-  s.value("latitude", p.latitude).unit("deg").range(-90, 90).required().doc("north positive");
-  s.value("longitude", p.longitude).unit("deg").range(-180, 180).required().doc("east positive");
-  s.value("time-zone", p.time_zone)
-      .range(-14, 14)
-      .required()
-      .doc("hours by which the file's clock is ahead of Greenwich");
-}
-
 void declare(config::Section& section, WeatherParameters& p) {
   section.variant<WeatherKind>(
       "type", p.kind,
@@ -365,7 +303,7 @@ void declare(config::Section& section, WeatherParameters& p) {
 std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {
   WeatherPeriod period{day_of_year(p.from), {}};
   if (!p.to.empty()) period.to = day_of_year(p.to);
-  return std::make_unique<Weather>(record_of(p, case_folder), period, int(p.shift_hours));
+  return std::make_unique<Weather>(record_of(p, case_folder), period);
 }
 
 }  // namespace couplet::thermocline

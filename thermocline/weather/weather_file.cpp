@@ -30,6 +30,10 @@ struct Quantity {
   double lowest, highest;
   double factor;  ///< from the unit of the CSV
 };
+/// Quantities of a record in the order of the CSV columns.
+constexpr std::vector<double> WeatherHours::*weather_quantities[] = {
+    &WeatherHours::dni, &WeatherHours::temperature, &WeatherHours::wind, &WeatherHours::humidity,
+    &WeatherHours::pressure};
 constexpr std::size_t n_quantities = std::size(weather_quantities);
 const std::array<Quantity, n_quantities> quantities{{
     // The solar constant with the eccentricity of the orbit bounds what reaches the ground.

@@ -32,17 +32,12 @@ struct WeatherHours {
   std::vector<double> dni;          ///< direct normal irradiance [W/m^2]
   std::vector<double> temperature;  ///< of the air [degC]
   std::vector<double> wind;         ///< [m/s]
-  std::vector<double> humidity;     ///< relative, 0 to 1
+  std::vector<double> humidity;     ///< relative, 0 to 1; read and checked, but no balance needs it
   std::vector<double> pressure;     ///< [Pa]
   std::vector<std::string> warnings;
   std::vector<std::string> doubts;  ///< reasons to doubt the data
   int days() const { return static_cast<int>(dni.size()) / hours_a_day; }
 };
-
-/// Quantities of a record in the order of the CSV columns.
-constexpr std::vector<double> WeatherHours::*weather_quantities[] = {
-    &WeatherHours::dni, &WeatherHours::temperature, &WeatherHours::wind, &WeatherHours::humidity,
-    &WeatherHours::pressure};
 
 /// Site from latitude and longitude [deg] and the hours by which the clock is ahead of Greenwich.
 WeatherHours::Site site_of(double latitude, double longitude, double time_zone);

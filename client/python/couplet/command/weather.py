@@ -251,7 +251,7 @@ def pvgis(source, first, head):
     zone = int(math.copysign(math.floor(abs(site[1]) / 15 + 0.5), site[1]))
     begin = hours[0][0]
     hours = [[begin + k, hours[(k - zone) % len(hours)][1]] for k in range(len(hours))]
-    print(f"the clock of {source.file.name} is UTC; that of the result is {zone:+d} h ahead, the standard time of its longitude ('shift: {-zone}' in the case gives UTC)")
+    print(f"the clock of {source.file.name} is UTC; that of the result is {zone:+d} h ahead, the standard time of its longitude")
     return hours, [*site[:2], float(zone)], 60.0 * minutes[0]
 
 
@@ -312,5 +312,5 @@ def run(arguments):
     lines += [",".join([str(hour), *map(text_of, values)]) for hour, values in hours]
     text = ("\n".join(lines) + "\n").encode()
     files.write(output.parent, output.name, gzip.compress(text) if output.suffix == ".gz" else text)
-    print(f"{kind}: {len(hours)} hours written to {shlex.quote(str(output))}" + ("" if site else "; it has no location: a case that needs the sun's height gives 'site'"))
+    print(f"{kind}: {len(hours)} hours written to {shlex.quote(str(output))}" + ("" if site else "; it has no location, so a run cannot compare its clock with the sun"))
     return 0

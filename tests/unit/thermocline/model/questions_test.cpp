@@ -93,40 +93,9 @@ TEST(Questions, prices_for_what_is_not_there_are_said) {
   EXPECT_TRUE(prices_for_nothing(prices, {.steel = 1, .filler = 1, .insulated = 1}, false).empty());
   EXPECT_TRUE(prices_for_nothing({}, nothing, false).empty());
   EconomicsParameters more;
-  more.pump = 600, more.capsules = 2;
-  EXPECT_EQ(prices_for_nothing(more, nothing, false).size(), 2u);
-  EXPECT_THAT(prices_for_nothing(more, {.capsules = 1}, false).at(0),
-              HasSubstr("report.economics.pump is 600"));
-  EXPECT_TRUE(prices_for_nothing(more, {.capsules = 1}, true).empty());
-}
-
-TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {
-  WeatherParameters constant;
-  constant.constant.dni = 800;
-  const auto nowhere = make_weather(constant, ".");
-  EXPECT_FALSE(nowhere->has_site());
-  EXPECT_NO_THROW(require_sun(0, *nowhere, "x"));
-  EXPECT_THAT(
-      support::error_of(
-          [&] { require_sun(0.4, *nowhere, "participants.tank.insulation.solar-absorptance"); }),
-      HasSubstr(
-          "participants.tank.insulation.solar-absorptance: solar heating of the cover needs the sun's height"));
-  WeatherParameters file;
-  file.kind = WeatherKind::file;
-  file.file = std::string(WEATHER_FOLDER) + "/granada_aldeire_surrogate.csv.gz";
-  EXPECT_FALSE(make_weather(file, ".")->has_site());
-  file.site = SiteParameters{37.2, -3.1, 0};
-  const auto somewhere = make_weather(file, ".");
-  EXPECT_NO_THROW(require_sun(0.4, *somewhere, "x"));
-  // And it shines: noon of 21 June, the sun at 90 - 37.2 + 23.45 degrees; solar time is 12 minutes behind
-  // Greenwich.
-  const double noon = (171 * 24 + 12) * 3600 + 3.1 * 240;
-  EXPECT_NEAR(somewhere->at(noon).sun_height, std::sin((90 - 37.2 + 23.45) * 3.14159265358979 / 180), 1e-4);
-  EXPECT_EQ(somewhere->at(noon - 12 * 3600).sun_height, 0);
-  const OutsideParameters dark, sunny{0.2, 0.6};
-  const Ambient air = somewhere->at(noon);
-  EXPECT_GT(air.dni, 0);
-  EXPECT_GT(roof_film(sunny, 300, 20, air).reference, roof_film(dark, 300, 20, air).reference + 1);
+  more.pump = 600;
+  EXPECT_THAT(prices_for_nothing(more, nothing, false).at(0), HasSubstr("report.economics.pump is 600"));
+  EXPECT_TRUE(prices_for_nothing(more, nothing, true).empty());
 }
 
 }  // namespace couplet::thermocline::questions_test

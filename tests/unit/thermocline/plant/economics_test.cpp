@@ -20,13 +20,11 @@ TEST(Economics, levelised_cost_is_that_by_hand) {
   // 0.07 * 1.07^25/(1.07^25 - 1), 1.07^25 = 5.427432640116...
   EXPECT_NEAR(c.annuity, 0.0858105172206615, 1e-12);
   EXPECT_NEAR(c.per_energy, (0.0858105172206615 + 0.02) * 168070300 / 158000, 1e-6 * c.per_energy);
-  // Capsules at the filler's price, then at their own; a pump by its largest power.
+  // A pump by its largest power.
   Inventory more = i;
-  more.capsules = 1e6, more.pump_power = 250e3;
+  more.pump_power = 250e3;
   p.pump = 600;
-  EXPECT_NEAR(levelised_cost(p, more, 158000).storage, 11046300 + 50e3 + 150e3, 1e-6);
-  p.capsules = 2.5;
-  EXPECT_NEAR(levelised_cost(p, more, 158000).storage, 11046300 + 2.5e6 + 150e3, 1e-6);
+  EXPECT_NEAR(levelised_cost(p, more, 158000).storage, 11046300 + 150e3, 1e-6);
   p.interest = 0;
   EXPECT_NEAR(levelised_cost(p, i, 1).annuity, 0.04, 1e-15);
   EXPECT_TRUE(std::isinf(levelised_cost(p, i, 0).per_energy));

@@ -192,10 +192,9 @@ TEST_F(WeatherFile, a_year_may_begin_in_july) {
 
 /// Two days of a winter near Boulder, with sun from 9 to 15.
 TEST_F(WeatherFile, a_sun_at_night_is_doubted) {
-  const auto doubts = [&](const std::string& zone, std::optional<SiteParameters> site = {}) {
+  const auto doubts = [&](const std::string& zone) {
     WeatherParameters p;
     p.kind = WeatherKind::file;
-    p.site = site;
     p.file = write("w.csv", "# latitude: 40.01\n# longitude: -105.26\n# time-zone: " + zone + "\n" +
                                 csv(
                                     [](int h, std::string) {
@@ -211,10 +210,6 @@ TEST_F(WeatherFile, a_sun_at_night_is_doubted) {
   EXPECT_THAT(other[0], testing::HasSubstr("solar time of its longitude is 12.0 h behind its time zone"));
   EXPECT_THAT(other[1],
               testing::HasSubstr("100 % of the irradiation is in hours with the sun below the horizon"));
-  EXPECT_THAT(doubts("-7", SiteParameters{40.01, -105.26, -7}), testing::IsEmpty());
-  const auto moved = doubts("-7", SiteParameters{37, -105.26, -7});
-  ASSERT_EQ(moved.size(), 1u);
-  EXPECT_THAT(moved[0], testing::HasSubstr("'site' (latitude 37 deg"));
 }
 
 TEST_F(WeatherFile, other_units_and_separators_are_told_by_what_they_give) {

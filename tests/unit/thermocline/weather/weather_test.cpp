@@ -102,27 +102,6 @@ TEST(Weather, a_day_that_the_record_lacks_is_refused) {
               testing::HasSubstr(std::string("this file has no weather for 10-28") + holds));
 }
 
-TEST(Weather, the_clock_can_be_shifted) {
-  const WeatherHours record = invented(0, 365);
-  const Weather weather(record, {}, 2);
-  EXPECT_NEAR(weather.irradiation(14 * hour, 15 * hour), record.dni[12] * hour, 1e-5);
-}
-
-TEST(Weather, mean_days_keep_the_energy_of_every_month) {
-  const WeatherHours record = invented(0, 365), mean = with_mean_days(record);
-  for (int month = 0; month < 12; ++month) {
-    double before = 0, after = 0;
-    for (int d = 0; d < 365; ++d)
-      for (int h = 0; h < 24 && month_of_day(d) == month; ++h) {
-        before += record.dni[std::size_t(24 * d + h)];
-        after += mean.dni[std::size_t(24 * d + h)];
-      }
-    EXPECT_NEAR(before, after, 1e-6);
-  }
-  EXPECT_EQ(mean.dni[24 * 40 + 12], mean.dni[24 * 50 + 12]);
-  EXPECT_NE(record.dni[24 * 40 + 12], record.dni[24 * 50 + 12]);
-}
-
 TEST(WeatherDate, days_and_dates_are_inverse) {
   for (int d = 0; d < 365; ++d) EXPECT_EQ(day_of_year(date_of_day(d)), d);
   EXPECT_EQ(day_of_year("01-01"), 0);
@@ -172,11 +151,11 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Weather, sun_at_night_is_doubted_without_a_site) {
-  const auto doubts = [](int first, int hours, int shift = 0) {
+  const auto doubts = [](int first, int hours) {
     WeatherHours record;
     for (int d = 0; d < 10; ++d)
       for (int h = 0; h < 24; ++h) record.dni.push_back((h - first + 24) % 24 < hours ? 800 : 0);
-    return doubts_about_sun(record, shift).size();
+    return doubts_about_sun(record).size();
   };
   EXPECT_EQ(doubts(6, 12), 0u);
   EXPECT_EQ(doubts(4, 17), 0u) << "a summer far in the north";
@@ -184,7 +163,6 @@ TEST(Weather, sun_at_night_is_doubted_without_a_site) {
   EXPECT_EQ(doubts(0, 24), 1u);
   EXPECT_EQ(doubts(2, 20), 1u);
   EXPECT_EQ(doubts(21, 12), 1u) << "the clock of Greenwich in Japan";
-  EXPECT_EQ(doubts(21, 12, 9), 0u) << "with its shift";
   EXPECT_EQ(doubts(0, 0), 0u);
 }
 
