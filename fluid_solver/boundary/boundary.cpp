@@ -160,13 +160,6 @@ double ramp_factor(const BoundaryParameters& b, double t) {
   return t <= 0 ? 0 : 0.5 * (1 - std::cos(std::numbers::pi * t / *b.ramp));
 }
 
-bool prescribes_flow(const BoundaryParameters& b, const std::string& where, int dim) {
-  if (b.table) return true;
-  if (b.mean_speed) return !fv::Expression(*b.mean_speed, where + ".mean-speed").is_zero();
-  return !std::ranges::all_of(fv::make_expressions(b.velocity, dim, where + ".velocity"),
-                              &fv::Expression::is_zero);
-}
-
 void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   std::vector<std::string> patches, missing;
   for (const mesh::Patch& patch : mesh.patches) {
@@ -297,40 +290,23 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   interface_.assign(rows_.pressure.size(), 0);
   convective_ = interface_;
   for (const mesh::Patch& patch : mesh.patches) add_patch(mesh, geometry, patch, parameters.boundaries);
-  add_openings(mesh, geometry, parameters);
+  add_openings(mesh, parameters);
   rows_.sort();
 }
 
-/// Adds absorbing patches and inlets with a volume or line upstream, for a compressible fluid.
+/// Adds absorbing patches and inlets with a volume upstream, for a compressible fluid.
 template <int D>
-void Boundary<D>::add_openings(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                               const FluidParameters& parameters) {
+void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();
-  const bool has_line = compressible && parameters.compressibility->upstream_line;
-  const bool has_upstream = has_line || (compressible && parameters.compressibility->upstream_volume > 0);
-  // The fluid accelerates from Q/A in a line, from rest in a volume: it loses rho/2 (u^2 - (Q/A)^2) of the pressure.
-  double inflow = 0.5;
-  if (has_line) {
-    double area = 0;
-    for (const mesh::Patch& patch : mesh.patches)
-      if (condition_of(parameters.boundaries.at(patch.name)).passage == Passage::in)
-        for (Index f = patch.first; f < patch.first + patch.count; ++f) area += geometry.face_area[f].norm();
-    const double ratio = parallel::sum(comm_, area) / parameters.compressibility->upstream_line->area;
-    inflow = 0.5 * (1 + std::min(1.0, ratio * ratio));
-  }
+  const bool has_upstream = compressible && parameters.compressibility->upstream_volume > 0;
   for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     const FaceRange faces{patch.first - mesh.n_interior, patch.count};
     const bool inlet = condition_of(b).passage == Passage::in;
     if (b.absorbing) absorbing_patches_.push_back({faces, inlet});
     if (!has_upstream || !inlet) continue;
-    if (has_line && parameters.compressibility->upstream_line->end == UpstreamLineParameters::End::open &&
-        prescribes_flow(b, "boundaries." + patch.name, D))
-      throw Error(
-          "boundaries.{}.velocity: at an open end of 'upstream-line' the reservoir's pressure drives the flow; give zero here, or "
-          "another 'end'.",
-          patch.name);
-    rows_.set(faces, {.pressure = 1, .friction = 0, .inflow = inflow}, false);
+    // The fluid accelerates from rest in the volume: it loses rho/2 u^2 of the pressure.
+    rows_.set(faces, {.pressure = 1, .friction = 0, .inflow = 0.5}, false);
     upstream_patches_.push_back(faces);
     closed_ = false;
   }

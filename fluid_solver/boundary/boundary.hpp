@@ -179,8 +179,7 @@ class Boundary {
   void add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                  const std::map<std::string, BoundaryParameters>& boundaries);
   void add_interface(const mesh::Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
-  void add_openings(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                    const FluidParameters& parameters);
+  void add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters);
   MPI_Comm comm_;
   FaceRows rows_;
   std::vector<char> interface_, convective_;

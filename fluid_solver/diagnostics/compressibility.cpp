@@ -58,7 +58,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
         }
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
     const auto& known = view_.parameters().compressibility;
-    if (sums[3] > 0) sums[1] += (known ? known->unmeshed() : 0) * sums[2] / sums[3];
+    if (sums[3] > 0) sums[1] += (known ? known->upstream_volume : 0) * sums[2] / sums[3];
     means_.add(view_.step.dt, swept, {sums[0], sums[1]});
   }
   void look(diagnostics::Report& report) override {

@@ -313,12 +313,10 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   /// Volume of a compressible fluid that waves leave in a second through absorbing boundaries of this rank [m^3/s].
   double waves_out() const {
     const FluidParameters& p = view_.parameters();
-    const auto& line = p.compressibility->upstream_line;
-    const bool line_absorbs = line && line->end == UpstreamLineParameters::End::absorbing;
     double area = 0;
     for (const mesh::Patch& patch : view_.mesh.patches) {
       const BoundaryParameters& b = p.boundaries.at(patch.name);
-      if (!b.absorbing && !(line_absorbs && b.type == BoundaryType::inlet)) continue;
+      if (!b.absorbing) continue;
       for (Index f = patch.first; f < patch.first + patch.count; ++f)
         area += view_.fluid.state().placement->area[f].norm();
     }

@@ -43,8 +43,8 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
     // A moving wall may draw fluid in through an outlet.
     const bool at_rest = !view.has_mover && !view.is_prescribed && !view.has_interface;
     const auto& waves = view.parameters().compressibility;
-    // Fluid may flow back into a volume or line behind the inlets.
-    const bool prescribed = !waves || (!(waves->upstream_volume > 0) && !waves->upstream_line);
+    // Fluid may flow back into a volume behind the inlets.
+    const bool prescribed = !waves || !(waves->upstream_volume > 0);
     for (const mesh::Patch& patch : view.mesh.patches) {
       const BoundaryParameters& b = view.parameters().boundaries.at(patch.name);
       const bool inlet = condition_of(b).passage == Passage::in;

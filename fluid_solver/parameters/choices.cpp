@@ -52,8 +52,7 @@ diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::Mes
   };
   const auto sound = sound_of({}, p.density, p.viscosity);
   if (!sound) return without("a model fluid, whose sound is not known");
-  if (!p.bodies.empty() || p.rotating_frame || p.scheme == ExplicitScheme::runge_kutta ||
-      velocity_by(GivenBy::flow))
+  if (!p.bodies.empty() || p.rotating_frame || velocity_by(GivenBy::flow))
     return without("not available with another of the case's keys");
   if (!p.gaps.empty() && has([](const auto& b) { return condition_of(b).passage == Passage::in; }))
     return with("inflow compresses a part that 'gaps' shut off");
@@ -133,11 +132,8 @@ diagnostics::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFact
   const double convection = speed > 0 ? 0.5 * h / speed : std::numeric_limits<double>::infinity();
   const bool implicit = diffusion < 0.5 * convection && !std::isinf(diffusion);
   const char* word = implicit ? "implicit" : "explicit";
-  const bool rungs = p.scheme == ExplicitScheme::runge_kutta;
-  return {"viscous", rungs ? "explicit" : word, rungs ? "explicit" : word,
-          rungs ? "'scheme: runge-kutta' is explicit"
-                : fmt::format("diffusion allows steps of {:.2g} s, convection of {:.2g} s", diffusion,
-                              convection)};
+  return {"viscous", word, word,
+          fmt::format("diffusion allows steps of {:.2g} s, convection of {:.2g} s", diffusion, convection)};
 }
 
 diagnostics::EffectChoice mesh_motion(const FluidParameters& p, const diagnostics::CaseScene& scene) {

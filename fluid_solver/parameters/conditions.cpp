@@ -228,10 +228,8 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
 }
 
 void declare_levels(config::Section& s, const FluidParameters& p) {
-  const bool waves = p.is_compressible(), line = waves && p.compressibility->upstream_line,
-             upstream = line || (waves && p.compressibility->upstream_volume > 0),
+  const bool waves = p.is_compressible(), upstream = waves && p.compressibility->upstream_volume > 0,
              held = p.volume_level == VolumeLevelBy::structure;
-  const std::string behind = line ? "upstream-line" : "upstream-volume";
   const auto refuse = [&s](bool applies, const std::string& key, const std::string& message) {
     s.check([told = applies ? message : ""] { return told; }, key);
   };
@@ -247,14 +245,13 @@ void declare_levels(config::Section& s, const FluidParameters& p) {
         b.absorbing && !waves, where + ".absorbing",
         "an incompressible fluid has no pressure waves to let out; add 'compressibility', or remove the key");
     refuse(b.absorbing && enters && upstream, where + ".absorbing",
-           fmt::format("the '{}' behind this inlet already responds to the waves; remove one of the two",
-                       behind));
+           "the 'upstream-volume' behind this inlet already responds to the waves; remove one of the two");
     refuse(
         waves && flows, where + ".type",
         "a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' with "
         "'absorbing: true'");
   }
-  refuse(upstream && !inlet, "compressibility." + behind, "this fluid has no inlet; remove the key");
+  refuse(upstream && !inlet, "compressibility.upstream-volume", "this fluid has no inlet; remove the key");
   refuse(!p.gaps.empty() && !given && !waves, "gaps",
          "a fluid with closing gaps needs an outlet, because its blocked cells retain their fluid");
   refuse(held && waves, "volume-level",

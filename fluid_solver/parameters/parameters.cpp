@@ -217,12 +217,6 @@ void declare_start(config::Section& s, FluidParameters& p) {
 
 /// Declares time schemes.
 void declare_schemes(config::Section& s, FluidParameters& p) {
-  s.choice(
-       "scheme", p.scheme,
-       {{"adams-bashforth", ExplicitScheme::adams_bashforth}, {"runge-kutta", ExplicitScheme::runge_kutta}})
-      .doc(
-          "time scheme of the explicit terms. runge-kutta: three stages with a projection each, 2.5 times "
-          "longer steps at three times the work, explicit viscous term, mesh at rest");
   s.choice("face-values", p.face_values,
            {{"second-order", FaceValues::second_order},
             {"fourth-order", FaceValues::fourth_order},
@@ -240,11 +234,10 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
           "save. Absent: explicit convection limits the sub-steps everywhere");
   s.check(
       [&p] {
-        const bool is_explicit = p.viscous == ViscousTreatment::explicit_ ||
-                                 p.scheme == ExplicitScheme::runge_kutta || !p.bodies.empty();
+        const bool is_explicit = p.viscous == ViscousTreatment::explicit_ || !p.bodies.empty();
         if (p.courant && is_explicit)
-          return "it makes convection implicit beside the viscous term, which 'viscous: explicit', 'scheme: runge-kutta' "
-                 "and 'bodies' make explicit; remove it";
+          return "it makes convection implicit beside the viscous term, which 'viscous: explicit' and "
+                 "'bodies' make explicit; remove it";
         if (p.courant && p.time_step) return "'time-step' gives the sub-steps; remove one of the two";
         if (p.courant && p.face_values != FaceValues::second_order)
           return "convection of fourth order is explicit; remove it or 'face-values'";
@@ -332,8 +325,6 @@ void declare_models(config::Section& s, FluidParameters& p) {
       [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
       "weakly compressible fluid: pressure waves travel at the speed of sound, closed parts compress; default: "
       "incompressible, judged by the speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
-  s.check([&p] { return p.compressibility ? misfit_of(*p.compressibility, p.density) : ""; },
-          "compressibility");
 }
 
 /// Describes an error in the patches of output.flow-areas; empty if there is none.
@@ -413,9 +404,8 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
 /// Rules for what no scheme combines.
 void declare_conflicts(config::Section& s, const FluidParameters& p) {
   const bool bodies = !p.bodies.empty(), gaps = !p.gaps.empty(), frame = p.rotating_frame.has_value(),
-             waves = p.is_compressible(), stages = p.scheme == ExplicitScheme::runge_kutta,
-             implicit = p.viscous == ViscousTreatment::implicit, motion = p.motion.has_value(),
-             fourth = p.face_values == FaceValues::fourth_order;
+             waves = p.is_compressible(), implicit = p.viscous == ViscousTreatment::implicit,
+             motion = p.motion.has_value(), fourth = p.face_values == FaceValues::fourth_order;
   const bool coupled = std::ranges::any_of(
       p.boundaries, [](const auto& b) { return b.second.type == BoundaryType::interface; });
   const struct {
@@ -424,26 +414,18 @@ void declare_conflicts(config::Section& s, const FluidParameters& p) {
     const char* message;
   } refused[] = {
       {"rotating-frame", frame && bodies, "immersed bodies do not support it; remove 'bodies'"},
-      {"rotating-frame", frame && stages,
-       "its forces are extrapolated from step to step: use 'scheme: adams-bashforth'"},
       {"rotating-frame", frame && motion,
        "the mesh is at rest in the frame; move the rotation to 'motion' (angle), or remove 'motion'"},
       {"rotating-frame", frame && coupled,
        "no structure supports it: boundaries of type interface are not allowed"},
       {"gaps", bodies && gaps, "not supported together with immersed bodies; remove 'gaps' or 'bodies'"},
       {"viscous", bodies && implicit, "immersed bodies act on the explicit step; use 'explicit'"},
-      {"viscous", stages && implicit,
-       "runge-kutta treats the viscous term explicitly; use 'explicit' or 'scheme: adams-bashforth'"},
-      {"scheme", stages && motion,
-       "runge-kutta needs a mesh at rest; use 'adams-bashforth', or remove 'motion'"},
       {"face-values", fourth && (bodies || gaps || motion),
        "fourth-order is not supported together with 'bodies', 'gaps' or 'motion'; use second-order"},
       {"compressibility", waves && bodies,
        "not supported together with immersed bodies; remove 'bodies', or set 'scheme: none'"},
       {"compressibility", waves && frame,
-       "not supported together with a rotating frame; remove 'rotating-frame', or set 'scheme: none'"},
-      {"compressibility", waves && stages,
-       "not supported together with the stages of runge-kutta; remove 'scheme: runge-kutta', or set 'scheme: none'"}};
+       "not supported together with a rotating frame; remove 'rotating-frame', or set 'scheme: none'"}};
   for (const auto& [key, applies, message] : refused)
     s.check([told = applies ? message : ""] { return told; }, key);
 }

@@ -118,42 +118,19 @@ void declare_rotation(config::Section& section, RotationParameters& rotation);
 /// Time scheme of the pressure waves of a weakly compressible fluid.
 enum class WaveScheme { none, three_level, trapezoidal };
 
-/// Tube behind the inlets that is not meshed.
-struct UpstreamLineParameters {
-  enum class End { closed, open, absorbing };
-  double length = 0, area = 0;  // [m], [m^2]
-  End end = End::closed;
-  double pressure = 0;  // [Pa], at an open end or of the wave that comes from an absorbing one
-};
-
 /// Compressibility of a fluid. With `none`, it is only used to check that neglecting it was justified.
 struct CompressibilityParameters {
   WaveScheme scheme = WaveScheme::three_level;
   std::optional<double> mean_time;       // [s], of the means at absorbing boundaries
   std::optional<double> speed_of_sound;  // [m/s]
-  std::string substance;                 // one of substances(); empty if not given
-  std::optional<double> temperature;     // [K], of the substance
-  std::optional<double> pressure;        // [Pa], absolute; with the density: c^2 = gamma p / rho
-  std::optional<double> heat_capacity_ratio;
-  double upstream_volume = 0;  // [m^3], before the inlets, not in the mesh
-  std::optional<UpstreamLineParameters> upstream_line;
-  /// Volume of the fluid that is not meshed [m^3].
-  double unmeshed() const {
-    return upstream_volume + (upstream_line ? upstream_line->length * upstream_line->area : 0);
-  }
+  double upstream_volume = 0;            // [m^3], before the inlets, not in the mesh
   bool is_solved() const { return scheme != WaveScheme::none; }
 };
 void declare(config::Section& section, CompressibilityParameters& parameters);
 
-/// Known gases (by molar mass and ratio of heat capacities) and liquids (by speed of sound).
-std::vector<std::string> substances();
-
-/// Why a fluid of this density [kg/m^3] cannot be the named substance; empty if it can or none is named.
-std::string misfit_of(const CompressibilityParameters& parameters, double density);
-
 struct Sound {
   double speed = 0;  ///< [m/s]
-  std::string of;    ///< substance, for example "sf6 at 20 degC"
+  std::string of;    ///< substance, for example "water"
 };
 /// Speed of sound from the keys, else from density [kg/m^3] and viscosity [Pa s] if they match a gas at 1 atm
 /// or a liquid. Empty for a model fluid, such as one of 1 kg/m^3 and 1 Pa s.
@@ -165,8 +142,6 @@ double solved_sound(const std::optional<CompressibilityParameters>& parameters, 
                     double viscosity);
 
 enum class ViscousTreatment { automatic, explicit_, implicit };
-/// Scheme of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
-enum class ExplicitScheme { adams_bashforth, runge_kutta };
 
 /// Order of the operators along lines of hexahedra and quadrilaterals.
 enum class FaceValues { second_order, fourth_order, automatic };
@@ -277,7 +252,6 @@ struct FluidParameters {
   std::map<std::string, GapParameters> gaps;
   std::optional<fv::MotionParameters> motion;        // of the mesh; absent if it is at rest
   std::optional<RotationParameters> rotating_frame;  // frame of mesh and velocities; absent if it is inertial
-  ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   FaceValues face_values = FaceValues::second_order;
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
   std::optional<CompressibilityParameters> compressibility;  // absent if neglected, which the density checks

@@ -7,7 +7,6 @@
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/pressure/pressure.hpp"
-#include "fluid_solver/pressure/upstream_line.hpp"
 
 namespace couplet::fluid {
 
@@ -107,8 +106,8 @@ constexpr double response_tolerance = 1e-10;
 constexpr double least_answer = 1e-9;
 
 /// Volume V_0 at rest behind the inlets at one pressure: dp/dt = rho c^2 (q - q_out)/V_0 with prescribed
-/// inflow q and flow q_out into the mesh, or an UpstreamLine. Its pressure is that of the inlet faces:
-///   rate p + past = stiffness (q - q_out),   of a line without q
+/// inflow q and flow q_out into the mesh. Its pressure is that of the inlet faces:
+///   rate p + past = stiffness (q - q_out)
 /// It is solved together with the cells: with A y = G for the conductance G of its faces, A p = b + G p_0 gives
 /// G.p = y.(b + G p_0) before p is known, because A is symmetric.
 template <int D>
@@ -117,19 +116,15 @@ class Upstream final : public Term<D> {
   Upstream(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
       : Term<D>(scene, step, prediction),
         trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal) {
-    const CompressibilityParameters& p = *scene.parameters.compressibility;
-    if (p.upstream_line) line_.emplace(*p.upstream_line, scene.fluid.rho, scene.fluid.sound);
-    stiffness_ = line_ ? 0 : scene.fluid.rho * scene.fluid.sound * scene.fluid.sound / p.upstream_volume;
+    stiffness_ = scene.fluid.rho * scene.fluid.sound * scene.fluid.sound /
+                 scene.parameters.compressibility->upstream_volume;
   }
 
   void prepare(const State<D>& from) override {
     rate_ = wave_rate(step_, trapezoidal_);
     past_ = pressure_ = 0;
-    weight_ = middle_weights(step_.dt, step_.by.dt_old);
-    if (line_) stiffness_ = 1;  // without an earlier pressure the flow is the given one
     if (!(rate_ > 0)) return;
     pressure_ = step_.by.pressure[0]->upstream;
-    if (line_) return set_line(from);
     if (!trapezoidal_) {
       const WaveRule rule = wave_rule(step_);
       for (std::size_t k = 0; k < rule.past.size(); ++k)
@@ -165,12 +160,11 @@ class Upstream final : public Term<D> {
   void before(Projected<D>& out, RightSide& side) override {
     const Placement<D>& at = *step_.to;
     const double factor = step_.dt / scene_.fluid.rho;
-    const bool relative = !line_ || rate_ == 0;
     double flux = 0;  // into the volume, but for what its pressure drives
     for (const auto& [first, count] : scene_.boundary.upstream_patches())
       for (Index b = first; b < first + count; ++b) {
         const Index f = mesh_.n_interior + b;
-        flux += out.phi[f] - (relative ? out.w[b].dot(at.area[f]) : 0);
+        flux += out.phi[f] - out.w[b].dot(at.area[f]);
       }
     for (std::size_t c = 0; c < side.b.size(); ++c) flux += factor * response_[c] * side.b[c];
     flux = parallel::sum(mesh_.comm, flux);
@@ -193,16 +187,6 @@ class Upstream final : public Term<D> {
   void complete(PressureLevel<D>& level) const override {
     level.upstream = pressure_;
     if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
-  }
-  /// Continues the past of the line.
-  void commit(const Projected<D>& out, State<D>& s) const override {
-    if (!line_) return;
-    const double last = given(*s.placement, s.w), next = given(*step_.to, out.w), now = flow(out.phi);
-    std::vector<LineRow> past = past_of(s);
-    const double middle = weight_[0] * now + from_past(past);
-    past.push_back({step_.middle(), line_->wave_out(pressure_, middle), 0.5 * (last + next), now});
-    line_->forget(past, step_.middle());
-    s.openings.line = std::move(past);
   }
   /// Uses the pressure of its faces.
   void start(const Placement<D>& at, PressureLevel<D>& level) const override {
@@ -245,28 +229,8 @@ class Upstream final : public Term<D> {
       for (Index b = first; b < first + count; ++b) sum -= w[b].dot(at.area[mesh_.n_interior + b]);
     return parallel::sum(mesh_.comm, sum);
   }
-  /// Past of the line, of which the first step has only its beginning. Collective.
-  std::vector<LineRow> past_of(const State<D>& s) const {
-    if (!s.openings.line.empty()) return s.openings.line;
-    const double p = step_.by.pressure[0] ? step_.by.pressure[0]->upstream : pressure_, now = flow(s.phi);
-    return {{step_.begin(), line_->wave_out(p, now), given(*s.placement, s.w), now}};
-  }
-  /// Part of t^n and t^{n-1} in the flow at t^{n+1/2}.
-  double from_past(const std::vector<LineRow>& past) const {
-    return weight_[1] * past.back().flow + weight_[2] * past[past.size() > 1 ? past.size() - 2 : 0].flow;
-  }
-  /// p + Z Q = f at t^{n+1/2}, with Q by middle_weights().
-  void set_line(const State<D>& from) {
-    const std::vector<LineRow> past = past_of(from);
-    rate_ = 1;
-    stiffness_ = line_->impedance() * weight_[0];
-    past_ = line_->impedance() * from_past(past) - line_->wave_in(past, step_.middle());
-  }
-
   bool trapezoidal_;
-  std::optional<UpstreamLine> line_;
-  std::array<double, 3> weight_{1, 0, 0};  // of the line's flow at t^{n+1}, t^n, t^{n-1}
-  double stiffness_ = 0;                   // rho c^2/V_0 [Pa/m^3], or that of the line
+  double stiffness_ = 0;  // rho c^2/V_0 [Pa/m^3]
   double rate_ = 0, past_ = 0, pressure_ = 0;
   std::vector<double> response_, accepted_;  // y per local cell
   double faces_ = 0, answer_ = 0;            // sum G, y.G [m]

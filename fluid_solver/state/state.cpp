@@ -220,7 +220,7 @@ void visit(State<D>& s, bool moving, io::Archive archive) {
   std::size_t levels = 0;
   while (levels < s.pressure.size() && s.pressure[levels]) ++levels;
   archive.common("state", s.time, s.dt_old, s.implicit, s.start, s.ledger, s.largest_speed, s.turns, levels,
-                 s.openings.mean, s.openings.line);
+                 s.openings.mean);
   field(archive, Entries::cells, "velocity", s.u);
   field(archive, Entries::owned_boundary, "wall-turn", s.turn);
   field(archive, Entries::owned_boundary, "given-velocity", s.w);

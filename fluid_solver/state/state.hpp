@@ -181,24 +181,11 @@ struct PressureLevel {
   double taken_up = 0;
 };
 
-/// Mouth of the line behind the inlets in one step.
-struct LineRow {
-  double time = 0;   ///< t^{n+1/2} [s]
-  double wave = 0;   ///< p - Z Q, which leaves the mesh [Pa]
-  double given = 0;  ///< flow that the inlets prescribe [m^3/s]
-  double flow = 0;   ///< Q into the mesh at t^{n+1} [m^3/s]
-  template <class Numbers>
-  void visit(Numbers& numbers) {
-    numbers(time, wave, given, flow);
-  }
-};
-
 /// Outflow beyond the given one at absorbing boundaries, per boundary face: phi/S of outlets and (w -
 /// given).n of inlets [m/s], at t^n and t^{n-1}. Per absorbing patch its mean, or the mean pressure of an
 /// inlet [Pa].
 struct OpeningsState {
   std::vector<double> now, old, mean;
-  std::vector<LineRow> line;  ///< past of the line behind the inlets
 };
 
 /// Start of a flow. A fluid at rest starts with an impulse, whose pressure does not predict later ones.
@@ -273,8 +260,6 @@ struct SubStep {
   std::shared_ptr<const Placement<D>> to;  ///< of the points at t^{n+1}
   std::vector<double> swept;               ///< dV_f per flux face [m^3]; empty if the mesh is at rest
   std::vector<Vec3> points;                ///< at t^{n+1}; empty if the mesh is at rest
-  Vectors<D> rate{};                       ///< mean of R over the step; empty with Adams-Bashforth
-  Vectors<D> shear{};                      ///< with `rate`: mean viscous force on the boundary faces [N]
   bool yields = false;                     ///< walls of known mass respond to the pressure (Robin condition)
   /// 1 in cells whose convection is implicit, else 0, per local cell; empty if there are none on any rank.
   std::vector<double> fast{};

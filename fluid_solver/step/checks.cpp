@@ -21,8 +21,7 @@ namespace {
 /// Refuses what no scheme combines with this mesh or its motion. The first one that applies is told.
 template <int D>
 void check_effects(const mesh::Mesh& mesh, const FluidParameters& parameters, bool moving) {
-  const bool frame = parameters.rotating_frame.has_value(),
-             stages = parameters.scheme == ExplicitScheme::runge_kutta;
+  const bool frame = parameters.rotating_frame.has_value();
   bool across = false;
   const Vec3 axis =
       frame && D == 3 ? Vec3(parameters.rotating_frame->axis.normalized()) : Vec3(Vec3::UnitZ());
@@ -36,8 +35,7 @@ void check_effects(const mesh::Mesh& mesh, const FluidParameters& parameters, bo
        "rotating-frame: the mesh is at rest in the frame. Move the rotation to 'motion' (angle), or remove 'motion' and the "
        "mesh mover."},
       {frame && parallel::any(mesh.comm, across),
-       "rotating-frame: the centrifugal force differs between periodic patches that are not shifted along the axis."},
-      {stages && moving, "scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover."}};
+       "rotating-frame: the centrifugal force differs between periodic patches that are not shifted along the axis."}};
   for (const auto& [applies, message] : refused)
     if (applies) throw Error("{}", message);
 }
@@ -108,9 +106,8 @@ void check_together(const mesh::Mesh& mesh, const Boundary<D>& boundary, FluidPa
   check_parts(mesh, boundary);
   check_effects<D>(mesh, parameters, moving);
   if (parameters.face_values != FaceValues::second_order) check_order(parameters, moving);
-  // Bodies act on the explicit step, and the stages are explicit.
-  const bool is_explicit = !parameters.bodies.empty() || parameters.scheme == ExplicitScheme::runge_kutta;
-  if (is_explicit) parameters.viscous = ViscousTreatment::explicit_;
+  // Bodies act on the explicit step.
+  if (!parameters.bodies.empty()) parameters.viscous = ViscousTreatment::explicit_;
 }
 
 template void check_together<2>(const mesh::Mesh&, const Boundary<2>&, FluidParameters&, bool);

@@ -30,32 +30,6 @@ Fluid<D>::Fluid(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const Fl
   start(geometry, start_time);
 }
 
-/// First two stages of Heun's scheme, each a step from level n with its own pressure:
-///   u' = P(u^n + dt/3 R(u^n)),  u'' = P(u^n + 2/3 dt R(u')),  u^{n+1} = P(u^n + dt [R(u^n) + 3 R(u'')]/4).
-/// `done`: time within the coupling step at the start of the sub-step.
-template <int D>
-void Fluid<D>::run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity) {
-  Vectors<D> rate, shear;
-  step_.rates(level(), rate, shear);
-  step.rate = rate;
-  step.shear = shear;
-  for (const double share : {1.0 / 3, 2.0 / 3}) {
-    SubStep<D> part;
-    part.dt = share * step.dt;
-    part.to = step.to;
-    part.rate = rate;
-    part.shear = shear;
-    State<D> stage = level();
-    const Vectors<D> w = wall_velocity_at(done + part.dt, wall_velocity, part);
-    step_.predict(stage, history_, std::move(part), w);
-    step_.project(stage, w);
-    step_.commit(stage);
-    step_.rates(stage, rate, shear);
-  }
-  for (std::size_t c = 0; c < rate.size(); ++c) step.rate[c] = 0.25 * step.rate[c] + 0.75 * rate[c];
-  for (std::size_t b = 0; b < shear.size(); ++b) step.shear[b] = 0.25 * step.shear[b] + 0.75 * shear[b];
-}
-
 template <int D>
 void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
@@ -153,7 +127,6 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
       history_.start = Start::flowing;
     }
     if ((history_.implicit || step_.oblique()) && !history_.pressure[0]) start_pressure(sub_step, last_w_);
-    if (parameters_.scheme == ExplicitScheme::runge_kutta) run_stages(sub_step, end - dt, wall_velocity);
     sub_step.yields = last && yields_;
     step_.predict(level(), history_, std::move(sub_step), last_w_);
     ++statistics_.sub_steps;

@@ -127,7 +127,6 @@ class Fluid {
  private:
   /// State from which the current sub-step starts.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
-  void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(const mesh::Geometry& geometry, double time);
   void check_wall_velocity() const;
   std::optional<State<D>> moved_by_boundaries() const;

@@ -145,13 +145,6 @@ void FractionalStep<D>::predict_from_guess(const State<D>& from) {
 }
 
 template <int D>
-void FractionalStep<D>::rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear) {
-  predictor_.set_rates(of, false);
-  rate = prediction_.rates.rate;
-  shear = prediction_.shear;
-}
-
-template <int D>
 void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w, double answer) {
   level_.reset();
   projection_.project(from, w, flux_.phi(), answer);

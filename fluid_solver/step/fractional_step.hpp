@@ -52,8 +52,6 @@ class FractionalStep {
   /// `by`: how the step sees the level it starts from. `w`: given velocity per boundary face at t^{n+1}, as
   /// far as it is known. Collective.
   void predict(const State<D>& from, const History<D>& by, SubStep<D> step, const Vectors<D>& w);
-  /// R of a state, explicit, and its viscous force on the boundary faces. Collective.
-  void rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear);
   /// May be called again with another w after one predict(). Collective.
   void project(const State<D>& from, const Vectors<D>& w, double answer = 0);
   /// Computes and checks level n+1 of the last project(), for the same w, beside level n. Where the splitting error asks for it, prediction

@@ -130,13 +130,12 @@ void Predictor<D>::predict(const State<D>& from, const Vectors<D>& turned) {
   const double dt = step_.dt, ratio = step_.ratio();
   const double e0 = 1 + ratio / 2, e1 = -ratio / 2;
 
-  const bool given = !step_.rate.empty();
-  if (!given) set_rates(from, implicit);
+  set_rates(from, implicit);
   side_.resize(from.u.size());
   out_.u.resize(from.u.size());
   out_.viscous_flux.resize(out_.w.size());
   const bool forced = std::ranges::any_of(scene_.forces, [](const auto& force) { return force->acts(); });
-  if (!moving && !implicit && !given && !forced) {
+  if (!moving && !implicit && !forced) {
     explicit_pass<D>(std::span(from.placement->volume).first(mesh_.cells.n_owned()), from.u, dt * e0,
                      out_.rates.rate.data(), dt * e1, ratio > 0 ? from.rates_old.rate.data() : nullptr,
                      out_.u);
@@ -144,8 +143,8 @@ void Predictor<D>::predict(const State<D>& from, const Vectors<D>& turned) {
   }
   const std::vector<double>& volume = from.placement->volume;
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
-    side_[c] = volume[c] * from.u[c] + (given ? dt * step_.rate[c] : dt * e0 * out_.rates.rate[c]);
-  if (ratio > 0 && !given)
+    side_[c] = volume[c] * from.u[c] + dt * e0 * out_.rates.rate[c];
+  if (ratio > 0)
     for (Index c = 0; c < mesh_.cells.n_local(); ++c) side_[c] += dt * e1 * from.rates_old.rate[c];
   if (forced) add_forces(from, turned, e0, e1);
   if (moving) add_swept(from, e0, e1);
@@ -170,10 +169,6 @@ void Predictor<D>::predict(const State<D>& from, const Vectors<D>& turned) {
 template <int D>
 void Predictor<D>::set_explicit_friction(const State<D>& from, double e0, double e1) {
   out_.weight = 0;
-  if (!step_.rate.empty()) {
-    out_.viscous_flux = step_.shear;
-    return;
-  }
   for (std::size_t b = 0; b < out_.shear.size(); ++b)
     out_.viscous_flux[b] = e1 != 0 ? Vec<D>(e0 * out_.shear[b] + e1 * from.shear_old[b]) : out_.shear[b];
 }

@@ -80,14 +80,10 @@ const LimitTable& implicit_table() {
   return table;
 }
 constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90},
-    adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25}, runge_kutta{2.51, 2.37, 2.5, 2.4, 2.1, 1.73};
+    adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25};
 
 /// Lower bound of the limit. Cells for which it is not decisive are skipped without computing the angle.
-double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) {
-  const bool rk = scheme == ExplicitScheme::runge_kutta;
-  if (convection <= diffusion) return rk ? 2.37 : 0.96;
-  return rk ? 1.73 : 0.25;
-}
+double lowest_limit(double convection, double diffusion) { return convection <= diffusion ? 0.96 : 0.25; }
 
 constexpr int most_sub_steps = 100000;
 // Relative cost of a sub-step with the implicit viscous term.
@@ -101,19 +97,19 @@ double parts(double dt, double limit) {
 
 double implicit_convective_limit(double q) { return implicit_table()(q); }
 
-double explicit_limit(double angle, ExplicitScheme scheme) {
-  const auto& limit = scheme == ExplicitScheme::runge_kutta ? runge_kutta : adams_bashforth;
+double explicit_limit(double angle) {
   const double a = angle * 180 / std::numbers::pi;
   for (std::size_t i = 1; i < degrees.size(); ++i)
     if (a <= degrees[i])
-      return limit[i - 1] + (a - degrees[i - 1]) / (degrees[i] - degrees[i - 1]) * (limit[i] - limit[i - 1]);
-  return limit.back();
+      return std::lerp(adams_bashforth[i - 1], adams_bashforth[i],
+                       (a - degrees[i - 1]) / (degrees[i] - degrees[i - 1]));
+  return adams_bashforth.back();
 }
 
 template <int D>
 StepSize<D>::StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
-                      const MomentumTerms<D>& terms, ExplicitScheme scheme)
-    : mesh_(mesh), boundary_(boundary), terms_(terms), nu_(kinematic_viscosity), scheme_(scheme) {
+                      const MomentumTerms<D>& terms)
+    : mesh_(mesh), boundary_(boundary), terms_(terms), nu_(kinematic_viscosity) {
   std::vector<int> faces(std::size_t(mesh.cells.n_local()), 0);
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     ++faces[mesh.owner[f]];
@@ -125,8 +121,7 @@ StepSize<D>::StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, doubl
 /// Limit of the implicit term by friction in a cell whose explicit rates have this angle and size.
 template <int D>
 double StepSize<D>::friction_limit(Index cell, double angle, double size) const {
-  return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle, scheme_) / size
-                                      : base::infinity;
+  return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle) / size : base::infinity;
 }
 
 /// Largest Courant number of a cell with an implicit viscous term.
@@ -184,7 +179,7 @@ void StepSize<D>::add_rates(const State<D>& s, bool peclet) {
 /// Limit by the Coriolis force on uniform motion, which friction does not damp.
 template <int D>
 double StepSize<D>::frame_limit() const {
-  return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : base::infinity;
+  return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2) / frame_rate_ : base::infinity;
 }
 
 /// Calls use(cell, convection, diffusion) with the rates [1/s] of each owned cell that is not blocked.
@@ -205,9 +200,9 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   double least[2] = {base::infinity, base::infinity};
   for_rates(s, [&](Index c, double convection, double diffusion) {
     const double size = std::sqrt(convection * convection + diffusion * diffusion),
-                 lowest = lowest_limit(convection, diffusion, scheme_);
+                 lowest = lowest_limit(convection, diffusion);
     if (lowest < least[0] * size)
-      least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion), scheme_) / size);
+      least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion)) / size);
     if (few_faces_[c] && longest_implicit * lowest < least[1] * size)
       least[1] = std::min(least[1], friction_limit(c, std::atan2(convection, diffusion), size));
     if (lowest_implicit < least[1] * convection)
@@ -224,7 +219,7 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
   StepLimiter found{base::infinity};
   for_rates(s, [&](Index c, double convection, double diffusion) {
     const double size = std::hypot(convection, diffusion), angle = std::atan2(convection, diffusion);
-    double limit = size > 0 ? explicit_limit(angle, scheme_) / size : base::infinity;
+    double limit = size > 0 ? explicit_limit(angle) / size : base::infinity;
     bool friction = diffusion > convection;
     if (implicit) {
       const double own = friction_limit(c, angle, size);
@@ -255,10 +250,7 @@ template class StepSize<3>;
 template <int D>
 SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
                             const FluidParameters& parameters, const MomentumTerms<D>& terms)
-    : parameters_(parameters), size_(mesh, boundary, parameters.properties().nu, terms, parameters.scheme) {
-  const auto& sound = parameters.compressibility;
-  if (sound && sound->upstream_line && sound->upstream_line->end != UpstreamLineParameters::End::absorbing)
-    echo_ = 2 * sound->upstream_line->length / parameters.properties().sound;
+    : parameters_(parameters), size_(mesh, boundary, parameters.properties().nu, terms) {
   size_.set_courant(parameters.courant.value_or(0) / parameters.safety_factor);
 }
 
@@ -310,15 +302,12 @@ double SubStepSize<D>::next(const State<D>& level, bool implicit, int done, doub
     const StepLimits limits = done == 0 || starts_ ? limits_ : size_.limits(level);
     limit = parameters_.safety_factor * (implicit ? implicit_limit(limits) : limits.explicit_viscous);
   }
-  const bool echo = echo_ < limit;
-  const double n = parts(remaining, std::min(limit, echo_));
+  const double n = parts(remaining, limit);
   if (!(n + done <= most_sub_steps))
     throw SolveFailure(
         "The fluid would need more than {} sub-steps of {:.3g} s for the step of {:.3g} s at t = {:.6g} s. {}",
-        most_sub_steps, std::min(limit, echo_), dt_, time_,
-        echo                    ? "It follows from the length of 'upstream-line'."
-        : parameters_.time_step ? " It follows from 'time-step'."
-                                : in_words(size_.limiter(level, implicit)));
+        most_sub_steps, limit, dt_, time_,
+        parameters_.time_step ? "It follows from 'time-step'." : in_words(size_.limiter(level, implicit)));
   last = n == 1;
   return remaining / n;
 }

@@ -42,7 +42,7 @@ class StepSize {
  public:
   /// `terms`: must outlive this.
   StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
-           const MomentumTerms<D>& terms, ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
+           const MomentumTerms<D>& terms);
   /// Largest rate of the Coriolis force [1/s]; 0 if there is none.
   void set_frame_rate(double rate) { frame_rate_ = rate; }
   void set_fourth(bool fourth) { fourth_ = fourth; }
@@ -65,7 +65,6 @@ class StepSize {
   const Boundary<D>& boundary_;
   const MomentumTerms<D>& terms_;
   double nu_, frame_rate_ = 0;
-  ExplicitScheme scheme_;
   bool fourth_ = false;                  // the operators are of fourth order
   double courant_ = 0;                   // largest Courant number of implicit convection; 0 if there is none
   std::vector<std::uint8_t> few_faces_;  // per owned cell: it has fewer faces than a box
@@ -77,7 +76,7 @@ class StepSize {
 /// cos(theta))/2.
 double implicit_convective_limit(double q);
 /// Largest |lambda| dt of the scheme at this angle of lambda from the negative real axis [rad].
-double explicit_limit(double angle, ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
+double explicit_limit(double angle);
 
 /// Chooses the sub-steps of a coupling step and their treatment of the viscous term.
 template <int D>
@@ -113,7 +112,6 @@ class SubStepSize {
   const FluidParameters& parameters_;
   StepSize<D> size_;
   double time_ = 0, dt_ = 0;
-  double echo_ = base::infinity;  // time after which a wave comes back from the end of an upstream line [s]
   StepLimits limits_;
   bool starts_ = false;
 };

@@ -82,20 +82,19 @@ double largest_speed(const FluidCase<2>& c) {
 
 /// Growth of noise in a viscous fluid at rest over 400 steps of a share of the limit. The fastest decay of
 /// even squares, 8 nu/h^2, is the bound itself.
-double growth_of_noise(double share_of_limit, ExplicitScheme scheme = ExplicitScheme::adams_bashforth) {
+double growth_of_noise(double share_of_limit) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 24, 1}, Vec3::Zero(), Vec3::Ones());
   raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
   const double noise = 1e-3;
   FluidParameters p = fluid_of(1, 0.1);
   p.viscous = ViscousTreatment::explicit_;
-  p.scheme = scheme;
   p.time_step = 1;  // the steps below are shorter: they are not cut
   p.pressure_tolerance = 1e-10;
   p.initial_velocity = {{"1e-3*sin(300*x+170*y)*cos(430*y)"}, {"1e-3*cos(290*x-410*y)"}};
   all_sides(p, 2, boundary(BoundaryType::periodic));
   FluidCase<2> c(MPI_COMM_WORLD, raw, p);
   const MomentumTerms<2> none;
-  StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density, none, scheme);
+  StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density, none);
   const double dt = share_of_limit * sizes.limits(c.state()).explicit_viscous;
   try {
     for (int i = 0; i < 400; ++i) c.step(dt);
@@ -108,8 +107,6 @@ double growth_of_noise(double share_of_limit, ExplicitScheme scheme = ExplicitSc
 TEST(StepLimit, of_explicit_diffusion_is_the_longest_stable_step) {
   EXPECT_LT(growth_of_noise(1), 1);
   EXPECT_GT(growth_of_noise(1.02), 10);
-  EXPECT_LT(growth_of_noise(1, ExplicitScheme::runge_kutta), 1);
-  EXPECT_GT(growth_of_noise(1.05, ExplicitScheme::runge_kutta), 10);
 }
 
 /// What a uniform eddy viscosity does not allow is what no fluid of that viscosity is allowed: nu + 2 nu_t, as the stress
@@ -179,11 +176,9 @@ TEST(SubSteps, are_those_of_the_flow_that_starts) {
 
 /// Lid-driven cavity, Re = 1000, that chooses its steps itself, first cautiously until the flow has developed
 /// near the lid: largest speed in the cells. The steady flow in them is slower than the lid.
-double speed_in_cavity(double safety_factor, ViscousTreatment viscous,
-                       ExplicitScheme scheme = ExplicitScheme::adams_bashforth) {
+double speed_in_cavity(double safety_factor, ViscousTreatment viscous) {
   FluidParameters p = fluid_of(1, 1e-3, 1e-5);
   p.viscous = viscous;
-  p.scheme = scheme;
   p.safety_factor = safety_factor;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
@@ -204,8 +199,6 @@ TEST(StepLimit, of_a_cavity_keeps_it_steady_and_leaves_less_than_a_third_unused)
   EXPECT_LT(steady, 0.9);
   EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::explicit_), steady, 0.01 * steady);
   EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::implicit), steady, 0.01 * steady);
-  EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::explicit_, ExplicitScheme::runge_kutta), steady,
-              0.01 * steady);
   EXPECT_GT(speed_in_cavity(1.3, ViscousTreatment::explicit_), 1.03 * steady);
 }
 

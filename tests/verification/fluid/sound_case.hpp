@@ -59,10 +59,6 @@ inline FluidParameters pulse(WaveScheme scheme) {
   return p;
 }
 
-inline UpstreamLineParameters line(double area, UpstreamLineParameters::End end) {
-  return {.length = 0.5, .area = area, .end = end};
-}
-
 /// Of p at a place of the cells over four periods.
 template <class Value>
 double period_of(FluidCase<2>& d, double expected, const Value& value) {

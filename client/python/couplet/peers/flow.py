@@ -13,7 +13,7 @@ from couplet.peers.values import depends_on_time, field, number, only, refuse, s
 PROGRAMS = ("icoFoam", "pimpleFoam")
 HERE = {"program", "mesh", "mesh-scale", "mesh-parameters", "dimension", "density", "viscosity", "boundaries", "initial-velocity", "initial-pressure",
         "compressibility", "probes", "output", "statistics",
-        "time-step", "safety-factor", "viscous", "implicit-stretch", "pressure-tolerance", "scheme"}  # these affect how it is solved, not what
+        "time-step", "safety-factor", "viscous", "implicit-stretch", "pressure-tolerance"}  # these affect how it is solved, not what
 MOVING = {"velocity", "ramp"}
 PATCHES = {"inlet": MOVING | {"mean-speed", "profile"}, "outlet": {"pressure", "backflow-stabilisation"}, "no-slip": set(), "moving-wall": MOVING,
            "slip": set(), "symmetry": set()}
