@@ -46,11 +46,6 @@ using MeshParameters = std::map<std::string, double>;
 /// corners, and the boundary in no group is the patch "rest". Throws Error with file and line.
 RawMesh read_msh(const std::filesystem::path& file);
 
-/// Reads the mesh of a CalculiX or Abaqus input deck (.inp): solid elements in two or three dimensions, of
-/// which second-order ones are reduced to their corners. *SURFACE and NSET name patches, *SOLID SECTION and
-/// ELSET zones. The remaining boundary is the patch "rest". Throws Error with file and line.
-RawMesh read_inp(const std::filesystem::path& file);
-
 /// Runs gmsh on a .geo unless its mesh is cached, and returns the path of the .msh. It depends on the .geo,
 /// the files it includes, `dim` and the parameters. Several programs
 /// may request the same file at once. `parameters` replace values in DefineConstant; an unknown name throws
@@ -63,7 +58,7 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
 /// boundary face belongs to one patch, "rest" if none is given; errors state the location. Collective.
 LoadedMesh distribute(MPI_Comm comm, const RawMesh& raw);
 
-/// Loads and distributes a mesh file (.msh, .inp, .geo, or as for convert_mesh()), with lengths multiplied by
+/// Loads and distributes a mesh file (.msh, .geo, or as for convert_mesh() and read_foreign()), with lengths multiplied by
 /// `scale`. `periodic`, `materials` and `find_wide_points` are as in RawMesh. `tie` joins parts that touch
 /// without sharing points. Collective; an error on rank 0 is thrown on every rank.
 LoadedMesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,

@@ -34,20 +34,6 @@ const std::vector<std::string> numbers{"0",
                                        "$PhysicalNames",
                                        "$Periodic"};
 
-const std::vector<std::string> decks{"*NODE",
-                                     "*ELEMENT, TYPE=C3D8",
-                                     "*ELEMENT, TYPE=C3D10, ELSET=body",
-                                     "*ELSET, ELSET=body, GENERATE",
-                                     "*NSET, NSET=low",
-                                     "*INCLUDE, INPUT=last.inp",
-                                     "*SURFACE, NAME=lid, TYPE=NODE",
-                                     "*SOLID SECTION, ELSET=top",
-                                     "1, 2147483647, 1",
-                                     "1, 1, 1, 1, 1, 1, 1, 1, 1",
-                                     "low, body, 1",
-                                     "*,",
-                                     "9999999999, 0, 0, 0"};
-
 /// Some words replaced, the rest as it is.
 std::string mutate_words(const std::string& text, Dice& dice) {
   std::string result = text;
@@ -92,11 +78,6 @@ TEST(Meshes, broken_ones_are_read_or_refused) {
     const RawMesh raw = read_msh(file);
     if (!raw.cell_type.empty()) distribute(MPI_COMM_SELF, raw);
   };
-  const std::string deck =
-      read_file(fs::path(COUPLET_SOURCE_DIR) / "tests/unit/mesh/data/groups.inp") +
-      "*NSET, NSET=low, GENERATE\n1, 8\n*NSET, NSET=foot\n1, 2, low\n*SURFACE, NAME=lid\nbody, S2\n"
-      "*SOLID SECTION, ELSET=body, MATERIAL=steel\n*STEP\n*END STEP\n";
-  const auto load_deck = [](const fs::path& file) { distribute(MPI_COMM_SELF, read_inp(file)); };
   const auto scan = [](const fs::path& file) { read_geo(file); };
   // What a parser that calls itself, or one that looks for the end of a bracket again and again, does not bear.
   for (const char c : {'[', '{', '(', '"', '/', ' '}) {
@@ -109,12 +90,6 @@ TEST(Meshes, broken_ones_are_read_or_refused) {
   for (std::size_t i = 0; i < count(); ++i) {
     if (dice.one_in(10)) {
       attempt("last.geo", mutate_bytes(dice.of(geometries), dice), scan);
-      continue;
-    }
-    if (dice.one_in(8)) {
-      std::string text = dice.one_in(2) ? mutate_words(deck, dice) : mutate_bytes(deck, dice);
-      if (dice.one_in(3)) text = mutate_lines(text, decks, dice);
-      attempt("last.inp", text, load_deck);
       continue;
     }
     std::string text = dice.of(texts);

@@ -52,8 +52,8 @@ class FileCheck {
       if (!io::is_cut_mesh(file) || !fs::exists(file, ignored)) mesh::check_mesh_file(file);
       if (file.extension() == ".msh") {
         if (!mesh::is_converted(file)) check_patches(mesh::read_msh(file).patches);
-      } else if (mesh::is_deck(file)) {
-        check_patches(mesh::read_deck(file).patches);
+      } else if (mesh::is_foreign(file.extension())) {
+        check_patches(mesh::read_foreign(file).patches);
       } else if (file.extension() == ".geo") {
         check_geo(mesh::read_geo(file));
       } else if (io::is_cut_mesh(file)) {

@@ -249,9 +249,11 @@ namespace {
 constexpr int no_module = 3;  // exit code of the script
 constexpr std::size_t most_complaints = 3;
 
-// Reads a mesh of another program and writes it as an input deck.
+// Reads a mesh of another program and writes it as a .msh.
 constexpr const char* script =
-#include "to_deck.inc"
+#include "deck.inc"
+#include "deck_mesh.inc"
+#include "to_msh.inc"
     ;
 
 bool is_note(const std::string& line) { return line.starts_with("info: ") || line.starts_with("warning: "); }
@@ -269,18 +271,21 @@ std::string complaint(std::vector<std::string> lines) {
 
 bool is_foreign(std::string extension) {
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  constexpr std::string_view all[] = {".unv", ".med", ".exo", ".e",   ".ex2",
+  constexpr std::string_view all[] = {".inp", ".unv", ".med", ".exo", ".e",  ".ex2",
                                       ".g",   ".gen", ".su2", ".bdf", ".nas"};
   return std::ranges::find(all, extension) != std::end(all);
 }
 
 RawMesh read_foreign(const fs::path& file) {
   const OwnFolder folder;
-  const fs::path deck = folder.path() / "mesh.inp", log = folder.path() / "python.log";
+  const fs::path msh = folder.path() / "mesh.msh", log = folder.path() / "python.log";
   log::info("reading {} with Python", file.string());
   const auto run = [&](const std::string& python) {
-    return run_in_sandbox({python, "-c", script, fs::absolute(file).string(), deck.string()}, folder.path(),
-                          log, {fs::canonical(file)});
+    // A deck may include files of its folder.
+    const fs::path whole = fs::canonical(file);
+    return run_in_sandbox({python, "-c", script, fs::absolute(file).string(), msh.string(), file.string()},
+                          folder.path(), log,
+                          {file.extension() == ".inp" ? whole.parent_path() : whole, whole});
   };
   ProgramEnd end = run("python3");
   // A python3 of the user's own may lack what that of the system has.
@@ -292,15 +297,16 @@ RawMesh read_foreign(const fs::path& file) {
         "The mesh '{}' is read with the Python module h5py, which python3 on the PATH lacks. Install it "
         "(Debian: apt install python3-h5py), or export the mesh in another format: {}.",
         file.string(), formats_with_names);
-  if (end.code != 0 || !fs::is_regular_file(fs::symlink_status(deck)))
-    throw Error(
-        "Cannot read the mesh '{}': {}.", file.string(),
-        end.signal != 0 ? fmt::format("python3 was ended by signal {}", end.signal) : complaint(lines));
+  if (end.code != 0 || !fs::is_regular_file(fs::symlink_status(msh)))
+    throw Error("{}", end.signal != 0
+                          ? fmt::format("Cannot read the mesh '{}': python3 was ended by signal {}.",
+                                        file.string(), end.signal)
+                          : complaint(lines));
   for (const std::string& line : lines)
     if (is_note(line))
-      line.starts_with("warning") ? log::warn("'{}': {}.", file.string(), line.substr(line.find(' ') + 1))
-                                  : log::info("'{}': {}.", file.string(), line.substr(line.find(' ') + 1));
-  return read_inp(deck);
+      line.starts_with("warning") ? log::warn("{}", line.substr(line.find(' ') + 1))
+                                  : log::info("{}", line.substr(line.find(' ') + 1));
+  return read_msh(msh);
 }
 
 }  // namespace couplet::mesh

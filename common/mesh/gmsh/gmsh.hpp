@@ -63,7 +63,7 @@ MeshBlock read_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
 /// three-dimensional if it names a physical volume. Throws Error.
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
 
-/// Returns true for the formats of read_foreign(): universal files (.unv), MED, Exodus (.exo, .e, ...), SU2 and
+/// Returns true for the formats of read_foreign(): input decks of CalculiX and Abaqus (.inp), universal files (.unv), MED, Exodus (.exo, .e, ...), SU2 and
 /// Nastran (.bdf, .nas).
 bool is_foreign(std::string extension);
 
@@ -72,13 +72,10 @@ inline constexpr std::string_view formats_with_names =
     ".su2 (markers), .bdf (sets and properties), .unv, .med or .cgns (groups), .exo (sets of sides), .inp "
     "(surfaces and sets) or .msh of gmsh (physical groups)";
 
-/// Returns true if a file is an input deck or read as one, see read_foreign().
-bool is_deck(const std::filesystem::path& file);
-RawMesh read_deck(const std::filesystem::path& file);
-
-/// Reads a mesh of another program by a Python script in a sandbox, which passes it on as an input deck
-/// (read_inp). Groups of cells become zones, groups of faces, sets of sides and sets of nodes patches. What
-/// the script leaves out is logged. Throws Error with what is wrong, or what to install.
+/// Reads a mesh of another program by a Python script in a sandbox, which passes it on as a .msh. Groups of
+/// cells and sections of a deck become zones; groups of faces, surfaces, sets of sides and sets of nodes
+/// patches, and the remaining boundary the patch "rest". Elements of second order are reduced to their
+/// corners. What the script leaves out is logged. Throws Error with what is wrong, or what to install.
 RawMesh read_foreign(const std::filesystem::path& file);
 
 }  // namespace couplet::mesh

@@ -25,14 +25,14 @@ constexpr std::uintmax_t bytes_of_large_msh = std::uintmax_t(64) << 20;
 /// Reads this rank's block of a mesh. A .geo is meshed in `dim` dimensions. Collective.
 MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
                      const MeshParameters& parameters) {
-  RawMesh deck;
-  std::string msh;  // empty if the mesh is a deck
+  RawMesh foreign;
+  std::string msh;  // empty if the mesh is of another program
   int holders = 1;
   on_root(comm, [&] {
     if (file.extension() == ".geo")
       msh = mesh_geo(file, dim, parameters);
-    else if (is_deck(file))
-      deck = read_deck(file);
+    else if (is_foreign(file.extension()))
+      foreign = read_foreign(file);
     else
       msh = convert_mesh(file);
     if (!msh.empty() && std::filesystem::file_size(msh) >= bytes_of_large_msh)
@@ -40,7 +40,7 @@ MeshBlock read_block(MPI_Comm comm, const std::filesystem::path& file, int dim,
   });
   parallel::broadcast(comm, msh);
   MPI_Bcast(&holders, 1, MPI_INT, 0, comm);
-  if (msh.empty()) return block_of(comm, deck);
+  if (msh.empty()) return block_of(comm, foreign);
   try {
     return read_msh_block(comm, msh, holders);
   } catch (const Error& e) {
@@ -75,21 +75,12 @@ std::string unread_program(const std::filesystem::path& file) {
 
 }  // namespace
 
-bool is_deck(const std::filesystem::path& file) {
-  const std::string kind = file.extension().string();
-  return kind == ".inp" || is_foreign(kind);
-}
-
-RawMesh read_deck(const std::filesystem::path& file) {
-  return file.extension() == ".inp" ? read_inp(file) : read_foreign(file);
-}
-
 void check_mesh_file(const std::filesystem::path& file, const MeshParameters& parameters) {
   const std::string program = unread_program(file), kind = file.extension().string();
   if (!std::filesystem::exists(file) || (program.empty() && !std::filesystem::is_regular_file(file)))
     throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
-  if (!program.empty() || (kind != ".msh" && kind != ".geo" && kind != ".cgns" && !is_deck(file)))
+  if (!program.empty() || (kind != ".msh" && kind != ".geo" && kind != ".cgns" && !is_foreign(kind)))
     throw Error(
         "The mesh file '{}' is {}. Export the mesh from the program that made it, in a format that keeps the "
         "names of its parts: {}.",
@@ -152,7 +143,7 @@ MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters&
   const auto msh = [&] {
     return file.extension() == ".geo" ? mesh_geo(file, dim, parameters) : convert_mesh(file);
   };
-  MeshFacts facts = facts_of(is_deck(file) ? read_deck(file) : read_msh(msh()));
+  MeshFacts facts = facts_of(is_foreign(file.extension()) ? read_foreign(file) : read_msh(msh()));
   facts.scale(scale);
   return facts;
 }

@@ -2,6 +2,7 @@
 // Loads by their total: resultant force and moment to round-off on any mesh and any ranks, and what they do to a body.
 #include <Eigen/Geometry>
 
+#include "common/mesh/gmsh/gmsh.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing::loads_test {
@@ -224,7 +225,7 @@ TEST(SolidLoads, and_supports_on_a_mesh_of_calculix_reproduce_a_linear_field) {
     const auto file = std::filesystem::temp_directory_path() /
                       fmt::format("couplet-deck-{}-{}.inp", ::getpid(), parallel::comm_rank(MPI_COMM_WORLD));
     std::ofstream(file) << deck_of(distorted_box(cells));
-    const RawMesh raw = read_inp(file);
+    const RawMesh raw = read_foreign(file);
     std::filesystem::remove(file);
     const LinearField field = general_field(3);
     SolidParameters p = to_round_off(box_parameters(3), FaceGradient::symmetric);

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""to_deck.py MESH DECK writes a universal file (.unv), MED, Exodus, SU2 or Nastran file as an input deck. Part of the programs (gmsh.cpp), which run
-it in their sandbox; prints what it leaves out. Needs h5py for MED and for Exodus in HDF5 (netCDF-4), nothing otherwise."""
-import array, itertools, re, struct, sys
+"""MESH MSH NAME writes an input deck (.inp), universal file (.unv), MED, Exodus, SU2 or Nastran file as a .msh. Part of the programs (gmsh.cpp), which run
+deck.py, deck_mesh.py and this text as one script in their sandbox and call the file NAME in messages; prints what it leaves out. Needs h5py for MED and
+for Exodus in HDF5 (netCDF-4), nothing otherwise."""
+import array, re, struct
 # Cells: dimension and numbers of nodes by family, the first of which are the corners. Faces of Exodus, by corners from 0.
 SHAPES = {'C3D4': (3, 4, (4, 8, 10, 11, 14, 15), ((0, 1, 3), (1, 2, 3), (0, 3, 2), (0, 2, 1))),
           'C3D8': (3, 8, (8, 9, 20, 26, 27), ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 4, 7, 3), (0, 3, 2, 1), (4, 5, 6, 7))),
@@ -11,12 +12,8 @@ SHAPES = {'C3D4': (3, 4, (4, 8, 10, 11, 14, 15), ((0, 1, 3), (1, 2, 3), (0, 3, 2
           'T2D2': (1, 2, (2, 3), ())}
 NODES, CELLS, SETS, LEFT, second = {}, [], {}, {}, 0  # CELLS: family, corners, groups; LEFT: what is not read and how often
 BLOCKS = set()  # groups that name only faces that no set has: blocks of Exodus, properties of Nastran
-class Problem(Exception):
-    pass
 def leave(what, n=1):
     LEFT[what] = LEFT.get(what, 0) + n
-def say(text, kind='info'):
-    print(kind + ':', ' '.join(str(text).split()))
 def cell(family, nodes, groups):
     global second
     second += len(nodes) > SHAPES[family][1]
@@ -425,7 +422,8 @@ def read_bdf(name):
     if skipped:
         say('only the mesh is read; skipped: ' + ', '.join(sorted(skipped)))
 
-def write(name):
+def deck_of(name):
+    """The cells and groups that were read, as a deck."""
     if not CELLS:
         raise Problem('it has no elements that can be read')
     dim = max(SHAPES[family][0] for family, _, _ in CELLS)
@@ -437,9 +435,8 @@ def write(name):
             cells.append((family, corners, groups))
         else:
             known += [group for group in groups if group not in known]
-    CELLS[:] = cells
-    size, used, plain = {}, set(), {}
-    for _, _, groups in CELLS:
+    size, used, plain, deck = {}, set(), {}, Deck(name)
+    for _, _, groups in cells:
         for group in groups:
             size[group] = size.get(group, 0) + 1
     for group in sorted(set(size) | set(SETS), key=str):
@@ -449,22 +446,19 @@ def write(name):
         plain[group] = word
         if word != group:
             say("'%s' is called '%s' here" % (group, word))
-    with open(name, 'w', encoding='utf-8') as deck:
-        deck.write('*NODE\n')
-        for label, x in NODES.items():
-            deck.write('%d, %s\n' % (label, ', '.join(repr(float(v)) for v in x)))
-        before, kept = None, set()
-        for i, (family, corners, groups) in enumerate(CELLS):
-            is_face = SHAPES[family][0] < dim
-            group = min(groups, key=lambda g: (is_face and g in BLOCKS, size[g], g)) if groups else ''
-            kept.add(group)
-            if before != (family, group):
-                deck.write('*ELEMENT, TYPE=%s%s\n' % (family, ', ELSET=' + plain[group] if group else ''))
-                before = family, group
-            deck.write('%d, %s\n' % (i + 1, ', '.join(map(str, corners))))
-        for group, nodes in SETS.items():
-            deck.write('*NSET, NSET=%s\n' % plain[group])
-            deck.writelines('%d\n' % n for n in nodes)
+    deck.points = {label: [float(v) for v in x] + [0.0] * (3 - len(x)) for label, x in NODES.items()}
+    kept = set()
+    for number, (family, corners, groups) in enumerate(cells, 1):
+        is_face = SHAPES[family][0] < dim
+        group = min(groups, key=lambda g: (is_face and g in BLOCKS, size[g], g)) if groups else ''
+        kept.add(group)
+        deck.elements.append((number, '%s: element %d' % (name, number), family, corners, plain.get(group, '')))
+        if group:
+            deck.element_sets.at(plain[group]).add(number)
+    for group, nodes in SETS.items():
+        deck.node_sets[key_of(plain[group])] = one = Set(plain[group], True)
+        for node in nodes:
+            one.add(node)
     lost = sorted(group for group in size if group not in kept)
     if lost:
         say('all cells or faces of these groups are in sets or smaller groups, which name them: ' + ', '.join(lost))
@@ -472,14 +466,18 @@ def write(name):
         say('%d elements of second order are reduced to their corners; compensate with about half the element size' % second)
     for what, n in LEFT.items():
         say('%d %s' % (n, what), 'warning')
+    return deck
 
+FILE, RESULT, NAME = sys.argv[1:]
+sys.setrecursionlimit(4000)  # sets of sets
 try:
-    kind = sys.argv[1].rsplit('.', 1)[-1].lower()
-    {'unv': read_unv, 'med': read_med, 'su2': read_su2, 'bdf': read_bdf, 'nas': read_bdf}.get(kind, read_exodus)(sys.argv[1])
-    write(sys.argv[2])
+    kind = FILE.rsplit('.', 1)[-1].lower()
+    if kind != 'inp':
+        {'unv': read_unv, 'med': read_med, 'su2': read_su2, 'bdf': read_bdf, 'nas': read_bdf}.get(kind, read_exodus)(FILE)
+    Mesh(Reader(FILE, NAME).read() if kind == 'inp' else deck_of(NAME)).write(RESULT)
 except Problem as problem:
-    print(problem)
+    print(problem if problem.is_placed else "Cannot read the mesh '%s': %s." % (NAME, problem))
     sys.exit(1)
 except Exception as fault:
-    print('it is damaged or written in an unknown way (%s: %s)' % (type(fault).__name__, fault))
+    print("Cannot read the mesh '%s': it is damaged or written in an unknown way (%s: %s)." % (NAME, type(fault).__name__, fault))
     sys.exit(1)
