@@ -101,7 +101,8 @@ void add_model(const std::vector<Finding>& findings, ErrorParts& errors) {
 std::optional<Finding> finding_of(const EffectFinding& e) {
   if (std::isnan(e.number)) return {};
   Finding f{.number = e.number, .limit = e.limit, .sentence = {}, .advice = e.advice};
-  for (const char* c = e.effect; *c != '\0'; ++c) {
+  if (*e.id != '\0') f.id = e.id, f.subject = e.effect;
+  for (const char* c = e.effect; *e.id == '\0' && *c != '\0'; ++c) {
     if (std::isalnum(static_cast<unsigned char>(*c)))
       f.id += char(std::tolower(static_cast<unsigned char>(*c)));
     else if (!f.id.empty() && f.id.back() != '-')

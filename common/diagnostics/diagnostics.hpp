@@ -158,7 +158,8 @@ constexpr double no_verdict = std::numeric_limits<double>::infinity();
 
 /// Finding about an effect that a scene neglects or includes. Not reported if `number` is unknown.
 struct EffectFinding {
-  const char* effect = "";  ///< its name; the finding's id is the name in lower case with hyphens
+  const char* effect = "";  ///< its name
+  const char* id = "";      ///< of the finding; empty if it is the name in lower case with hyphens
   double number = 0;        ///< its size; NaN if unknown
   double limit = 0;         ///< of the number, up to which an effect is adequate, or no_verdict
   std::string what;         ///< the number in words, with its unit: "max |grad u| = 0.29"

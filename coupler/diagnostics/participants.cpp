@@ -106,7 +106,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
       const double most = parallel::max(view_.comm, largest(x));
       if (const double share = most / one.extent; one.extent > 0 && share > farthest)
         report.findings.push_back(
-            {.id = "displacement-scale",
+            {.id = "questionable-displacement",
              .number = share,
              .limit = farthest,
              .sentence =
@@ -125,14 +125,15 @@ class DataOfParticipants final : public CouplingDiagnostic {
       if (!(std::abs(factor - 1) > doubtful)) continue;
       one.reported = true;
       report.findings.push_back(
-          {.id = "velocity-and-displacement",
+          {.id = "questionable-displacement",
            .severity = factor < 0.5 || factor > 2 ? base::Severity::wrong : base::Severity::warning,
            .number = factor,
            .limit = 1 + doubtful,
            .sentence = fmt::format("velocity of '{}': {:.3g} times the rate of the displacement that it "
                                    "gives (limit 1 +- {:g}): the fluid sees a wall that moves differently",
                                    one.name, factor, doubtful),
-           .advice = "correct the 'velocity' [m/s] that this program gives"});
+           .advice = "correct the 'velocity' [m/s] that this program gives",
+           .subject = one.name + ", velocity"});
     }
   }
 

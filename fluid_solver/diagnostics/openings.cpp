@@ -101,7 +101,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
       const double head = sum[energy] / sum[inflow];
       if (total && range > 0 && sum[inflow] > much * largest && head > told_head * range)
         report.findings.push_back(
-            {.id = "inflow-at-total-pressure",
+            {.id = "flow-through-openings",
              .severity = base::Severity::note,
              .number = head / range,
              .limit = told_head,
@@ -111,7 +111,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
                  "fluid, set 'backflow-stabilisation: false'",
                  patch->name, head, head / range),
              .effect = "pressure of inflow",
-             .subject = patch->name});
+             .subject = patch->name + ", inflow"});
       const double wrong = inlet ? sum[net] : -sum[net];
       const bool falls = pressure && whole.range > 0;
       if ((!has_direction && !falls) || !(wrong > always * sum[gross]) || !(sum[gross] > much * largest))
@@ -151,7 +151,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
                  dynamic = 0.5 * view_.parameters().density * speed * speed;
     if (!(weight.range > dynamic)) return;
     report.findings.push_back(
-        {.id = "weight-over-an-opening",
+        {.id = "flow-through-openings",
          .number = weight.range,
          .limit = dynamic,
          .sentence = fmt::format(
@@ -159,7 +159,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
              "rest by {:.3g} Pa (limit: the dynamic pressure, {:.2g} Pa): it drives fluid out below and in above",
              patch.name, weight.range, dynamic),
          .advice = fmt::format("use 'pressure: {}'", weight.pressure),
-         .subject = patch.name});
+         .subject = patch.name + ", weight"});
   }
   /// Empty if the case gives pressures that differ. Collective.
   Weight weight_over(const std::vector<const mesh::Patch*>& patches) const {

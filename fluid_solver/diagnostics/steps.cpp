@@ -184,6 +184,7 @@ std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
   const double excess = ledger.excess / ledger.reference;
   return diagnostics::finding_of(
       {.effect = "balance of the kinetic energy",
+       .id = "energy-growth",
        .number = excess,
        .limit = 0.1,
        .what =

@@ -63,7 +63,8 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
                       part),
           "they move nothing: with 'modes.file' the upper side is where the surface faces +z, whatever "
           "the structure's own normal; equal pressures on both sides cancel; a mode of another symmetry "
-          "needs 'modes.number'");
+          "needs 'modes.number'",
+          std::numeric_limits<double>::infinity(), "given-without-effect");
   }
   void visit(io::Archive& archive) override { archive.common("sums", part_, most_, within_, fine_); }
 

@@ -32,7 +32,8 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
     report_present(report, "balance of the energies", mismatch_ / largest_, 0.01,
                    fmt::format("max error of the energy balance (4.29-4.31) / largest energy = {:.2g}",
                                mismatch_ / largest_),
-                   "use a smaller step, or 'trapezoidal' with 'contact.rule: conserving'", 0.5);
+                   "use a smaller step, or 'trapezoidal' with 'contact.rule: conserving'", 0.5,
+                   "energy-growth");
     if (view_.parameters.damping || !view_.fluid_force.empty()) return;
     const double share = 1 - std::exp(-usual_damping * turns_ / moved_);
     report_neglected(

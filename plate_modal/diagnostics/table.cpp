@@ -53,8 +53,9 @@ std::optional<double> time_to_look(const PlateView& view) {
 }
 
 void report_neglected(diagnostics::Report& report, const char* effect, double number, std::string what,
-                      std::string advice, double share, double limit) {
+                      std::string advice, double share, double limit, const char* id) {
   if (auto finding = diagnostics::finding_of({.effect = effect,
+                                              .id = id,
                                               .number = number,
                                               .limit = limit,
                                               .what = std::move(what),
@@ -64,8 +65,9 @@ void report_neglected(diagnostics::Report& report, const char* effect, double nu
 }
 
 void report_present(diagnostics::Report& report, const char* effect, double number, double limit,
-                    std::string what, std::string advice, double wrong_from) {
+                    std::string what, std::string advice, double wrong_from, const char* id) {
   if (auto finding = diagnostics::finding_of({.effect = effect,
+                                              .id = id,
                                               .number = number,
                                               .limit = limit,
                                               .what = std::move(what),

@@ -103,7 +103,8 @@ class TruncatedModes final : public diagnostics::Diagnostic {
         fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
                     seen.omega / (2 * std::numbers::pi), seen.over_last),
         "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')",
-        seen.over_last < 1 ? std::min(1., share / (1 / (seen.over_last * seen.over_last) - 1)) : 1, 2. / 3);
+        seen.over_last < 1 ? std::min(1., share / (1 / (seen.over_last * seen.over_last) - 1)) : 1, 2. / 3,
+        "deflection-beyond-the-modes");
   }
   /// Share of the initial kinetic energy that is in no mode.
   void look_at_velocity(diagnostics::Report& report) const {
@@ -116,7 +117,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
         report, "initial velocity beyond the modes", lost,
         fmt::format("initial kinetic energy outside the modes = {:.2g}", lost),
         "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'",
-        0.5 * lost);  // of an energy
+        0.5 * lost, 0, "deflection-beyond-the-modes");  // half that of an energy
   }
 
   PlateView view_;

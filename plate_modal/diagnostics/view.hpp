@@ -66,12 +66,12 @@ void add_diagnostics(const PlateView& view, diagnostics::Diagnostics& all);
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Reports a neglected effect unless its number is unknown. `share`: see diagnostics::Finding. `limit`: of the number, from which
-/// an unknown share is a warning.
+/// an unknown share is a warning. `id` of the finding, unless it is the name of the effect.
 void report_neglected(diagnostics::Report& report, const char* effect, double number, std::string what,
-                      std::string advice, double share, double limit = 0);
+                      std::string advice, double share, double limit = 0, const char* id = "");
 /// Reports an effect of the case unless its number is unknown.
 void report_present(diagnostics::Report& report, const char* effect, double number, double limit,
                     std::string what, std::string advice,
-                    double wrong_from = std::numeric_limits<double>::infinity());
+                    double wrong_from = std::numeric_limits<double>::infinity(), const char* id = "");
 
 }  // namespace couplet::plate

@@ -239,6 +239,7 @@ class Gas final : public TankDiagnostic {
     const double mach = speed / std::sqrt(f.specific_heat / (f.specific_heat - f.gas_constant) * rt);
     tell(report,
          {.effect = "compressible flow of a gas",
+          .id = "compressibility",
           .number = mach,
           .what =
               fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow", mach),

@@ -42,11 +42,11 @@ class UnusedInput final : public TankDiagnostic {
     const auto began = [&](const ScheduleRow& row) { return row.at <= reached_ + 1e-6; };
     const auto first = std::ranges::find_if(rows, [](const ScheduleRow& r) { return r.mass_flow != 0; });
     if (first != rows.end() && !began(*first))
-      tell(report, "flow-schedule", "first",
+      tell(report, "given-without-effect", "first",
            fmt::format("no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
                        first - rows.begin(), first->at));
     else if (const auto later = std::ranges::find_if_not(rows, began); later != rows.end()) {
-      tell(report, "flow-schedule", "later",
+      tell(report, "given-without-effect", "later",
            fmt::format("flow.rows[{}] starts at {:g} s, after the end of the run; of {} rows {} ran",
                        later - rows.begin(), later->at, rows.size(), later - rows.begin()));
       // A short run of a long schedule is no fault, but one that only sees its first row may have other units.
@@ -61,7 +61,7 @@ class UnusedInput final : public TankDiagnostic {
       if (row.stop_below)
         limits += fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*row.stop_below));
       tell(
-          report, "flow-schedule", std::to_string(i),
+          report, "given-without-effect", std::to_string(i),
           fmt::format(
               "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond "
               "that whenever it started. Are the sign of the flow (upward, out of the top, is above 0) and the "
@@ -76,7 +76,7 @@ class UnusedInput final : public TankDiagnostic {
     if (flow.type != FlowParameters::Type::plant || seen_->flow > 0) return;
     const PlantParameters& p = flow.plant;
     tell(
-        report, "flow-schedule", "plant",
+        report, "given-without-effect", "plant",
         fmt::format(
             "the plant moved no heat: up to {:g} h the sun brought {:.3g} kWh/m^2. The bottom of the bed is at {:.1f} "
             "degC (charging starts at {:.1f} degC or below, with more sun than the block uses), its top at {:.1f} degC "
@@ -95,7 +95,7 @@ class UnusedInput final : public TankDiagnostic {
     const double span = flow.rows.back().at - flow.rows.front().at, held = reached_ - flow.rows.back().at;
     if (held > long_times * span)
       tell(
-          report, "flow-schedule", "end",
+          report, "given-without-effect", "end",
           fmt::format(
               "the last row, flow.rows[{}], starts at {:g} s and its flow went on for {:g} s more, {:.0f} times the "
               "schedule before it: end it by a row without flow, or check the unit of its times",
@@ -109,7 +109,7 @@ class UnusedInput final : public TankDiagnostic {
       const Melting& m = *layers[i].melting;
       const double low = m.temperature - m.width / 2, high = m.temperature + m.width / 2;
       if (seen_->hottest <= low || seen_->coldest >= high)
-        tell(report, "never-melted", std::to_string(i),
+        tell(report, "given-without-effect", fmt::format("layer {}", i),
              fmt::format("bed.layers[{}]: its capsules melt from {:.1f} to {:.1f} degC, but the fluid stayed "
                          "between {:.1f} and {:.1f} degC: their latent heat had no effect",
                          i, celsius(low), celsius(high), celsius(seen_->coldest), celsius(seen_->hottest)));

@@ -35,6 +35,7 @@ class WallStrength final : public TankDiagnostic {
       share = std::max(share, stress.equivalent[i] / stress.yield[i]);
     tell(report,
          {.effect = "yielding of the wall",
+          .id = "yielding",
           .number = share,
           .what = fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", share),
           .advice = "the wall would yield: its stress and that of the grains are those of an elastic wall",

@@ -161,8 +161,9 @@ class ElementParticipant final : public coupling::Participant {
           "coupler and a thermocline that has 'elsewhere'.",
           context.name);
     for (const std::string& sentence : weather_->doubts())
-      diagnostics::finding(parallel::comm_rank(comm_),
-                           {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
+      diagnostics::finding(
+          parallel::comm_rank(comm_),
+          {.id = "questionable-plant", .sentence = fmt::format("{}: {}", context.name, sentence)});
   }
   coupling::Interface initialise() override {
     coupling::Interface all = accepted_.describe();

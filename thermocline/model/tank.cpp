@@ -75,12 +75,12 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
       if (!sentence.empty())
         diagnostics::finding(rank, {.id = id, .sentence = fmt::format("{}: {}", name_, sentence)});
   };
-  report("weather-data", weather_->doubts());
-  report("weather-data", {missing_weather(p)});
-  report("flow-schedule", {restart_beyond_cut_off(flow)});
+  report("questionable-plant", weather_->doubts());
+  report("questionable-plant", {missing_weather(p)});
+  report("given-without-effect", {restart_beyond_cut_off(flow)});
   if (files_)
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
-  report("calendar", Calendar(flow.plant.calendar, flow.plant.start).doubts());
+  report("questionable-plant", Calendar(flow.plant.calendar, flow.plant.start).doubts());
   if (!p.report) return;
   const Inventory inventory = inventory_of(setup);
   report_ = std::make_unique<DayReport>(*p.report, Plant(flow.plant, setup.fluid.specific_heat), *weather_,
@@ -88,7 +88,7 @@ Tank::Tank(const TankParameters& p, const app::ParticipantContext& context)
                                         context.restart_time);
   report_->take_stock(inventory);
   if (p.report->economics)
-    report("prices", prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()));
+    report("questionable-plant", prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()));
 }
 
 coupling::Interface Tank::initialise() {

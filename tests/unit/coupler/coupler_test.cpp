@@ -356,7 +356,7 @@ TEST(CoupledToy, differences_from_before_a_renewed_prediction_are_forgotten) {
 
 TEST(CoupledToy, a_velocity_that_is_not_the_rate_of_the_displacement_is_found_and_one_that_is_not) {
   const auto found = [] {
-    return std::ranges::count(diagnostics::findings(), std::string("velocity-and-displacement"),
+    return std::ranges::count(diagnostics::findings(), std::string("questionable-displacement"),
                               &diagnostics::Finding::id);
   };
   for (const double times : {1., 3., 0.2}) {

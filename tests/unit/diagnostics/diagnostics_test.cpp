@@ -35,6 +35,7 @@ class Saying final : public Diagnostic {
 
 struct Judged {
   EffectFinding now{.effect = "balance of the kinetic energy",
+                    .id = "energy-growth",
                     .limit = 0.1,
                     .what = "",
                     .left_out = false,
@@ -62,7 +63,7 @@ TEST(Findings, are_told_once_and_again_when_they_turn_wrong) {
   Judged run;
   EXPECT_EQ(run.step(0.05), 0u);
   EXPECT_EQ(run.step(0.2), 1u);
-  EXPECT_EQ(diagnostics::findings().back().id, "balance-of-the-kinetic-energy");
+  EXPECT_EQ(diagnostics::findings().back().id, "energy-growth");
   EXPECT_EQ(diagnostics::findings().back().severity, Severity::warning);
   EXPECT_EQ(run.step(0.4), 0u);
   EXPECT_EQ(run.step(0.6), 1u);

@@ -378,7 +378,7 @@ TEST(Outlet, that_takes_the_total_pressure_of_inflow_says_so) {
     const auto run = support::observe(fluid, 50, 0.02);
     int told = 0;
     for (const diagnostics::Finding& f : run.diagnostics().findings())
-      if (f.id == "inflow-at-total-pressure") {
+      if (f.effect == "pressure of inflow") {
         ++told;
         EXPECT_EQ(f.severity, base::Severity::note);
       }

@@ -146,7 +146,7 @@ TEST(PlateResolution, a_run_says_so) {
     return doubts(fmt::format("10 * (1 + x) * sin(2 * pi * {} * t)", f), 0.0005);
   };
   EXPECT_EQ(fast(20), Names{});
-  EXPECT_TRUE(has(fast(80), "load-faster-than-the-modes"));
+  EXPECT_TRUE(has(fast(80), "deflection-beyond-the-modes"));
 }
 
 }  // namespace couplet::plate::resolution_test

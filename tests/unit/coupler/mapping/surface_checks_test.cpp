@@ -239,11 +239,11 @@ TEST(StructureAtRest, ten_steps_of_load_without_motion_are_flagged_once) {
 }
 
 TEST(DisplacementScale, a_displacement_in_another_unit_is_flagged_once) {
-  const auto found = Scene{.late = 1e3, .from = 5}.findings("displacement-scale");
+  const auto found = Scene{.late = 1e3, .from = 5}.findings("questionable-displacement");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_GT(found[0].number, 30);
   EXPECT_THAT(found[0].sentence, HasSubstr("displacement of 'solid'"));
-  EXPECT_TRUE((Scene{.late = 1, .from = 5}.findings("displacement-scale").empty()));
+  EXPECT_TRUE((Scene{.late = 1, .from = 5}.findings("questionable-displacement").empty()));
 }
 
 }  // namespace couplet::start_checks_test
