@@ -25,7 +25,7 @@ Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters,
       loop_(comm, simulation, parameters.scheme.first, folders_.checkpoints),
       pass_(comm, parameters, std::move(channels)),
       scheme_(parameters.scheme),
-      diagnostics_(parallel::comm_rank(comm), simulation.error_estimate) {
+      diagnostics_(parallel::comm_rank(comm), simulation.diagnostics) {
   start_acceleration();
 }
 

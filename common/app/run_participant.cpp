@@ -259,7 +259,7 @@ class Console {
 
 int run_alone(const Job& job, coupling::Participant& participant, const Diagnose& diagnose) {
   RunReport run(job);
-  diagnostics::Diagnostics diagnostics(job.rank, job.simulation.error_estimate);
+  diagnostics::Diagnostics diagnostics(job.rank, job.simulation.diagnostics);
   diagnostics.add("use-of-case", use_of_case(job.comm));
   Observed observed(participant, diagnostics, diagnose);
   OwnCommands command(job, observed, run);
@@ -300,7 +300,7 @@ int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& partici
                 const Diagnose& diagnose) {
   const auto start = Clock::now();
   RunReport run(job);
-  diagnostics::Diagnostics diagnostics(job.rank, job.simulation.error_estimate);
+  diagnostics::Diagnostics diagnostics(job.rank, job.simulation.diagnostics);
   diagnostics.add("use-of-case", use_of_case(job.comm));
   Observed observed(participant, diagnostics, diagnose);
   Bookkeeping books(job, run);

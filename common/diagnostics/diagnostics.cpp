@@ -69,7 +69,7 @@ std::vector<std::string> Diagnostics::conclude(bool failed) {
   if (!failed) {
     for (const Named& one : all_) one.diagnostic->conclude(report);
     take(report);
-    if (with_errors_) {
+    if (most_ >= When::with_errors) {
       errors_ = report.errors;
       add_model(worst_, errors_);
     }

@@ -68,8 +68,8 @@ class Diagnostic {
 /// New diagnostic, or nullptr if it does not apply to a run.
 using Made = std::shared_ptr<Diagnostic>;
 
-/// Runs in which a diagnostic of a table takes part: all, or those that estimate errors.
-enum class When { always, with_errors };
+/// Runs in which a diagnostic takes part (`simulation.diagnostics`): all, those that estimate errors, or those that ask for all.
+enum class When { always, with_errors, in_full };
 
 /// Row of a program's table of diagnostics. `Of` is what the program shows of itself.
 template <class Of, class Which = Made>
@@ -83,8 +83,9 @@ struct TableRow {
 /// findings are part of the checkpoint. All calls are collective.
 class Diagnostics {
  public:
-  /// `with_errors` requests the parts of the error.
-  Diagnostics(int rank, bool with_errors) : rank_(rank), with_errors_(with_errors) {}
+  /// `most`: diagnostics that take part at most.
+  Diagnostics(int rank, When most) : rank_(rank), most_(most) {}
+  bool is_full() const { return most_ == When::in_full; }
   /// Adds a diagnostic. `name` must be unique; it identifies the memory in checkpoints. nullptr is ignored.
   void add(std::string name, std::shared_ptr<Diagnostic> diagnostic) {
     if (diagnostic) all_.push_back({std::move(name), std::move(diagnostic)});
@@ -94,7 +95,7 @@ class Diagnostics {
   std::vector<Which> add(std::span<const TableRow<Of, Which>> table, const Of& view) {
     std::vector<Which> added;
     for (const TableRow<Of, Which>& row : table) {
-      if (row.when == When::with_errors && !with_errors_) continue;
+      if (row.when > most_) continue;
       if (Which made = row.make(view)) {
         add(row.name, made);
         added.push_back(std::move(made));
@@ -143,7 +144,7 @@ class Diagnostics {
   void take(Report& report);
 
   int rank_;
-  bool with_errors_;
+  When most_;
   std::vector<Named> all_;
   long steps_ = 0, looked_at_ = 0;
   double time_ = 0;

@@ -95,9 +95,7 @@ bool misses_mesh(const NamedErrors& n) {
   return std::isnan(n.parts.mesh) && !(std::isnan(n.parts.step) && std::isnan(n.parts.linear));
 }
 
-bool too_few_steps(const std::vector<NamedErrors>& participants) {
-  return largest(participants).too_few_steps;
-}
+bool misses_step(const std::vector<NamedErrors>& participants) { return largest(participants).misses_step; }
 
 /// "the mesh", with the names of the participants that know other parts of their error but not that one, and
 /// "the step". Empty if there are none.
@@ -105,12 +103,11 @@ std::string unknown_part(const std::vector<NamedErrors>& participants) {
   std::vector<std::string> names;
   for (const NamedErrors& n : participants)
     if (misses_mesh(n)) names.push_back(n.name);
-  const bool few = too_few_steps(participants);
-  const std::string step = few ? "the step, of which there are too few," : "";
-  if (names.empty()) return step;
+  const bool is_step = misses_step(participants);
+  if (names.empty()) return is_step ? "the step" : "";
   const std::string mesh =
       participants.size() > 1 ? fmt::format("the mesh of '{}'", base::join(names, "', '")) : "the mesh";
-  return few ? mesh + " and " + step : mesh;
+  return is_step ? mesh + " and the step" : mesh;
 }
 
 }  // namespace
@@ -127,7 +124,7 @@ std::string ErrorParts::text() const {
   if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
   if (!text.empty() && mesh_order != 2) text += fmt::format(" mesh-order {:.6g}", mesh_order);
   if (!text.empty() && step_order != 2) text += fmt::format(" step-order {:.6g}", step_order);
-  if (!text.empty() && too_few_steps) text += " too-few-steps 1";
+  if (!text.empty() && misses_step) text += " misses-step 1";
   if (!model_by.empty() || !omittable.empty()) text += fmt::format(" | {} | {}", model_by, omittable);
   return text;
 }
@@ -145,7 +142,7 @@ ErrorParts ErrorParts::of(const std::string& text) {
     const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return k.name == name; });
     double value = 0;
     const bool is_about =
-        name == "dimension" || name == "mesh-order" || name == "step-order" || name == "too-few-steps";
+        name == "dimension" || name == "mesh-order" || name == "step-order" || name == "misses-step";
     if ((kind == kinds.end() && !is_about) || !(words >> value))
       throw Error(
           "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling, model), "
@@ -153,8 +150,8 @@ ErrorParts ErrorParts::of(const std::string& text) {
           text);
     if (name == "dimension")
       parts.dimension = int(std::clamp(value, 0.0, 3.0));
-    else if (name == "too-few-steps")
-      parts.too_few_steps = value != 0;
+    else if (name == "misses-step")
+      parts.misses_step = value != 0;
     else if (is_about)
       (name == "mesh-order" ? parts.mesh_order : parts.step_order) = value;
     else
@@ -174,7 +171,7 @@ ErrorParts largest(const std::vector<NamedErrors>& participants) {
     parts.mesh_order = p.of->parts.mesh_order;
   }
   for (const NamedErrors& n : participants)
-    parts.too_few_steps |= std::isnan(parts.step) && n.parts.too_few_steps;
+    parts.misses_step |= std::isnan(parts.step) && n.parts.misses_step;
   for (const NamedErrors& n : participants)
     if (!n.parts.omittable.empty())
       parts.omittable +=
@@ -213,7 +210,7 @@ std::string error_summary(const std::vector<NamedErrors>& participants) {
 
 std::string best_change(const std::vector<NamedErrors>& participants) {
   const auto worst = worst_part(participants);
-  if (too_few_steps(participants)) return "compare with a run at half the time step, which shows its error";
+  if (misses_step(participants)) return "compare with a run at half the time step, which shows its error";
   // Else the known part is large enough to begin with.
   if (std::ranges::any_of(participants, misses_mesh) && !(total_error(participants) >= questionable_error))
     return "compare with a run at half the cell size, which shows its error";

@@ -28,7 +28,7 @@ struct ErrorParts {
   std::string omittable{};                ///< effects with negligible influence, and their cost, in words
   int dimension = 0;                      ///< of the mesh, 0 if unknown
   double mesh_order = 2, step_order = 2;  ///< order of convergence with cell size and step
-  bool too_few_steps = false;             ///< to judge the step of a run in time
+  bool misses_step = false;               ///< a run in time whose step is not estimated
   bool known() const;
   /// Text "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ". Empty if nothing is known.
   std::string text() const;

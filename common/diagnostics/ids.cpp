@@ -59,7 +59,7 @@ constexpr std::array ids{
     // solid_solver
     FindingId{answer, "stress-error", "estimated error of the stress at a probe, and of the largest equivalent stress"},
     FindingId{answer, "quantity-error", "estimated error of a quantity of interest"},
-    FindingId{answer, "strain-energy", "work and strain energy, or two face gradients, disagree"},
+    FindingId{answer, "strain-energy", "work and strain energy disagree, or the strains vary too much within quadrilaterals"},
     FindingId{answer, "energy-growth", "the motion or flow has energy that nothing supplied, or the energies of the modes do not balance"},
     FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},
     FindingId{answer, "impossible-temperature", "a temperature below absolute zero"},

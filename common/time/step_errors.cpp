@@ -19,6 +19,7 @@ constexpr double window = 0.25;
 void StepErrors::add(const Seen& seen, int steps) {
   if (!std::isfinite(seen.error + seen.rate + seen.size + seen.below + seen.highest)) return;
   time_ += steps * seen.dt;
+  way_ += steps * seen.dt * seen.rate;
   const double kept = std::exp(-steps * seen.dt / (window * time_));
   for (const auto& [of_late, now] :
        {std::pair{&rate_, seen.rate}, {&size_, seen.size}, {&below_, seen.below}, {&highest_, seen.highest}})

@@ -38,10 +38,12 @@ class StepErrors {
   double size() const { return size_; }
   /// Remaining error relative to the size of the solution [1]. NaN before the first step.
   double over_size() const;
+  /// Number of oscillations of this size that the solution has made: the integral of |u'| over four amplitudes.
+  double swings() const { return size_ > 0 ? way_ / (4 * size_) : 0; }
   /// Archives the state in checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(rate_, size_, below_, highest_, time_, amplitude_, errors_);
+    numbers(rate_, size_, below_, highest_, time_, amplitude_, errors_, way_);
     for (const auto& [of, sum] : errors_)
       if (!amplitude_.contains(of.first)) numbers.damaged();
   }
@@ -65,6 +67,7 @@ class StepErrors {
   std::map<int, double> amplitude_;  // largest, by the binary logarithm of the frequency
   // Largest recent values, since an oscillation passes through zero rate and zero size.
   double rate_ = 0, size_ = 0, below_ = 0, highest_ = 0, time_ = 0;
+  double way_ = 0;  // integral of |u'|
 };
 
 /// StepErrors of a second-order equation. Local errors C dt^{p+1} d^{p+1}u/dt^{p+1} are estimated from the
@@ -81,6 +84,7 @@ class VelocityErrors {
   StepErrors::Seen add(std::span<const double> before, std::span<const double> now, double dt, double dt_old,
                        double size, const Norm& norm, double forgotten = 0);
   double over_size() const { return errors_.over_size(); }
+  double swings() const { return errors_.swings(); }
   /// State for checkpoints. Empty for a run that collected nothing.
   std::vector<double> state() const;
   void restore(std::span<const double> state);

@@ -135,15 +135,6 @@ PlateModel::Triplets PlateModel::assemble() const {
   return t;
 }
 
-linalg::SparseMatrix PlateModel::shifted_stiffness(double shift) const {
-  Triplets t = assemble();
-  for (std::size_t i = 0; i < t.mass.size(); ++i) t.stiffness[i] += shift * t.mass[i];
-  linalg::SparseMatrix matrix(MPI_COMM_SELF, static_cast<GlobalIndex>(n_unknowns()), std::move(t.row),
-                              std::move(t.column));
-  matrix.fill(t.stiffness);
-  return matrix;
-}
-
 std::vector<double> PlateModel::to_points(std::span<const double> unknowns) const {
   std::vector<double> points(unknowns.begin(), unknowns.end());
   for (std::size_t p = 0; p < axis_.size(); ++p) {

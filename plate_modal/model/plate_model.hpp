@@ -37,8 +37,6 @@ class PlateModel final {
   const PlateCell& cell(Index c) const { return cells_[c]; }
   const linalg::SparseMatrix& stiffness() const { return *stiffness_; }
   const linalg::SparseMatrix& mass() const { return *mass_; }
-  /// K + shift M.
-  linalg::SparseMatrix shifted_stiffness(double shift) const;
   std::size_t n_unknowns() const { return 3 * surface_.points.size(); }
   bool is_supported(std::size_t unknown) const { return fixed_[unknown]; }
 

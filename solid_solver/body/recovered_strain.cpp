@@ -68,13 +68,14 @@ void RecoveredStrain::recover() {
   std::vector<double>().swap(mean_), std::vector<double>().swap(volume_);
 }
 
-RecoveredStrain::Linear RecoveredStrain::fit(Index cell, const std::vector<Index>& patch) const {
+RecoveredStrain::Linear RecoveredStrain::fit(Index cell, const std::vector<Index>& patch) {
   using Terms = Eigen::Vector4d;
   const Vec3 centre = geometry_.cell_centre[cell];
   Vec3 reach = Vec3::Zero();  // along each axis: thin cells have slopes, too
   for (const Index c : patch) reach = reach.cwiseMax((geometry_.cell_centre[c] - centre).cwiseAbs());
   const double longest = reach.maxCoeff();
   for (int a = 0; a < 3; ++a) reach[a] = reach[a] > no_slope * longest ? 1 / reach[a] : 0;
+  if (reach.head(mesh_.dim).minCoeff() == 0) single_ += 1;
   Eigen::Matrix4d of = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, tensor_size> right = Eigen::Matrix<double, 4, tensor_size>::Zero();
   for (const Index c : patch) {
@@ -114,6 +115,10 @@ double RecoveredStrain::missed() const {
   return whole > 0 ? difference / whole : 0;
 }
 
+bool RecoveredStrain::is_one_row() const {
+  return 2 * parallel::sum(mesh_.comm, single_) > parallel::sum(mesh_.comm, double(linear_.size()));
+}
+
 namespace {
 
 double twice_energy(const elastic::ElasticOperator& rows, Index cell, const Tensor3& strain) {
@@ -140,15 +145,6 @@ void InnerVariation::add(Index face, const Tensor3& strain) {
     strain_[std::size_t(c)] += pyramid * strain;
     volume_[std::size_t(c)] += pyramid;
   });
-}
-
-double InnerVariation::energy() const {
-  double missed = 0;
-  for (std::size_t c = 0; c < energy_.size(); ++c)
-    if (mesh_.cell_type[c] == mesh::CellType::quadrilateral && volume_[c] > 0)
-      missed +=
-          (energy_[c] - volume_[c] * twice_energy(rows_, static_cast<Index>(c), strain_[c] / volume_[c])) / 3;
-  return parallel::sum(mesh_.comm, missed);
 }
 
 double InnerVariation::missed() const {

@@ -26,8 +26,6 @@ class InnerVariation {
   void add(Index face, const Tensor3& strain);
   /// Missed part relative to the strain energy of all cells; 0 if there is none. Collective.
   double missed() const;
-  /// Missed part of twice the strain energy [J], quadratic in the strains. Collective.
-  double energy() const;
 
  private:
   const mesh::Mesh& mesh_;
@@ -55,7 +53,7 @@ StrainGap strain_gap(const SolidBody& body, std::span<const double> unknowns, st
 /// Ratio to the true displacement error (scripts/validate solid-accuracy): 0.8-2 on plates, 0.6-4 on
 /// hexahedral beams, 0.3-3 on bent tetrahedra; the difference of two gradients gives 3-30 on hexahedra and
 /// 7-170 on tetrahedra. The ratio is smallest if long cells make the body too stiff, and about ten for a
-/// single layer of hexahedra, see StrainAudit::missed_by_mesh(). Needs two passes over faces.
+/// single layer of hexahedra, see is_one_row(). Needs two passes over faces.
 class RecoveredStrain {
  public:
   /// Keeps references.
@@ -69,13 +67,15 @@ class RecoveredStrain {
   void compare(Index face, const Tensor3& strain);
   /// Relative energy of the difference; 0 if there is no energy. Collective.
   double missed() const;
+  /// True if most cells have no neighbors along some axis. A slope is not recovered there, and all bending would be missed. Collective.
+  bool is_one_row() const;
 
  private:
   /// At the cell center and per meter along the axes; packed as the six components of the symmetric tensor.
   using Linear = std::array<std::array<float, 6>, 4>;
   template <class Visit>
   void visit_pyramids(Index face, const Visit& visit) const;
-  Linear fit(Index cell, const std::vector<Index>& patch) const;
+  Linear fit(Index cell, const std::vector<Index>& patch);
 
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
@@ -85,6 +85,7 @@ class RecoveredStrain {
   std::vector<Index> slot_;     // per owned cell its index in linear_; -1 if not used
   std::vector<Linear> linear_;
   double difference_ = 0, whole_ = 0;
+  double single_ = 0;  // cells without neighbors along some axis
 };
 
 }  // namespace couplet::solid

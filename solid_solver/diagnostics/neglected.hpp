@@ -5,7 +5,7 @@
 
 #include "common/diagnostics/diagnostics.hpp"
 #include "solid_solver/body/solid_fields.hpp"
-#include "solid_solver/diagnostics/linear_theory.hpp"
+#include "solid_solver/diagnostics/large_strain.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {

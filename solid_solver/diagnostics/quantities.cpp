@@ -83,11 +83,9 @@ constexpr double doubtful = 0.3;
 class StressError final : public diagnostics::Diagnostic {
  public:
   explicit StressError(const SolidView& view) : view_(view) {}
-  /// Runs after the displacement error, which strains and stresses follow.
-  void conclude(diagnostics::Report& report) override {
+  void conclude(diagnostics::Report&) override {
     if (view_.now().steps == 0) return;
-    for (const ReportedStress& s :
-         reported_stresses(view_.body, view_.fields, view_.output.probes(), report.errors.mesh))
+    for (const ReportedStress& s : reported_stresses(view_.body, view_.fields, view_.output.probes()))
       tell(s);
   }
 

@@ -19,11 +19,15 @@ namespace couplet::solid {
 
 void Stability::observe(diagnostics::Report& report) {
   const SolidBody& body = view_.body;
-  if (const LoadPath* path = body.equilibrium().load_path()) return see_limits(*path);
+  if (const LoadPath* path = body.equilibrium().load_path()) {
+    last_ = path->stiffness();
+    return see_limits(*path);
+  }
   if (!body.equilibrium().means().has_tangent || !body.rigid().empty() || is_lost_) return;
+  if (!searches_ && !view_.stepper.step().is_last) return;
   const SolidState& now = view_.now();
-  softest_ = body.softest_motion(view_.stepper.last_solve().unknowns, now.known);
-  const double stiffness = softest_.stiffness;
+  const double stiffness = body.softest_motion(view_.stepper.last_solve().unknowns, now.known).stiffness;
+  last_ = stiffness;
   const Vec3 load = view_.fields.total_load();
   if (stiffness >= 0) {
     time_ = now.time, stiffness_ = stiffness, load_ = load;
@@ -92,7 +96,6 @@ void Stability::conclude(diagnostics::Report& report) {
 
 void Stability::visit(io::Archive& archive) {
   archive.common("held", time_, stiffness_, load_, is_lost_, limits_told_);
-  if (archive.reads()) softest_ = {};
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,20 +18,22 @@ namespace couplet::solid {
 /// the last equilibrium is stable.
 class Stability final : public diagnostics::Diagnostic {
  public:
-  explicit Stability(const SolidView& view) : view_(view) {}
+  /// `searches`: at each step, else only at the last one.
+  Stability(const SolidView& view, bool searches) : view_(view), searches_(searches) {}
   void observe(diagnostics::Report& report) override;
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;
-  /// Softest motion of the last load-controlled step. Only there does a soft motion amplify errors.
-  const SoftMotion& softest() const { return softest_; }
+  /// Smallest stiffness that was found last; NaN if it was not looked for.
+  double stiffness() const { return last_; }
 
  private:
   void see_limits(const LoadPath& path);
 
   SolidView view_;
+  bool searches_;
+  double last_ = std::numeric_limits<double>::quiet_NaN();
   double time_ = 0, stiffness_ = 1;  // of the last stable equilibrium
   Vec3 load_ = Vec3::Zero();
-  SoftMotion softest_;
   bool is_lost_ = false;
   std::size_t limits_told_ = 0;
 };

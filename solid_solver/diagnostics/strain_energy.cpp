@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Consistency of a solution: stress work against strain energy, and one face gradient against another.
+// Consistency of a solution: stress work against strain energy, and the strains within cells.
 #include "solid_solver/diagnostics/strain_energy.hpp"
 
 #include <fmt/format.h>
@@ -26,11 +26,6 @@ Vec3 line_of(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index f) {
   return across - g.cell_centre[mesh.owner[f]];
 }
 
-elastic::FaceGradientScheme other_scheme(elastic::FaceGradientScheme scheme) {
-  return scheme == elastic::FaceGradientScheme::corrected ? elastic::FaceGradientScheme::thesis
-                                                          : elastic::FaceGradientScheme::corrected;
-}
-
 /// Half the work of a face force over the difference of the displacements on both sides.
 double work_on(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const SolidState& state, Index f,
                const Vec3& force) {
@@ -47,35 +42,44 @@ bool is_strained(const SolidBody& body) {
   return body.thermal() && (body.parameters().expansion.has_value() || !body.thermal()->stiffness().empty());
 }
 
-/// Estimates of the variation within cells, where available.
-struct WithinCells {
-  std::optional<InnerVariation> variation;
-  std::optional<RecoveredStrain> recovered;
+Tensor3 small_strain(const Tensor3& h) { return 0.5 * (h + h.transpose()); }
+Tensor3 greens_strain(const Tensor3& h) { return 0.5 * (h + h.transpose() + h.transpose() * h); }
+
+/// Estimates of what the mesh misses of the strains within its cells, where available.
+class WithinCells {
+ public:
+  explicit WithinCells(const SolidBody& body)
+      : mesh_(body.mesh()), strain_(has_finite_strain(body.parameters()) ? greens_strain : small_strain) {
+    if (!body.kernel().is_symmetric()) return;
+    // A static body at small strain has displacement_error().
+    if (body.is_dynamic() || body.seat() || strain_ == greens_strain)
+      recovered_.emplace(mesh_, body.elastic());
+    if (!is_strained(body) && InnerVariation::is_needed(mesh_, body.elastic()))
+      variation_.emplace(mesh_, body.elastic());
+  }
+  bool looks() const { return variation_ || recovered_; }
   void add(Index f, const Tensor3& gradient) {
-    const Tensor3 strain = 0.5 * (gradient + gradient.transpose());
-    if (variation) variation->add(f, strain);
-    if (recovered) recovered->add(f, strain);
+    const Tensor3 strain = strain_(gradient);
+    if (variation_) variation_->add(f, strain);
+    if (recovered_) recovered_->add(f, strain);
   }
   /// Call after all faces. Collective.
   void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u, StrainAudit& audit) {
-    if (variation) audit.inner_variation = variation->missed();
-    if (!recovered) return;
-    recovered->recover();
-    const auto compare = [&](Index f, const Tensor3& g) { recovered->compare(f, 0.5 * (g + g.transpose())); };
-    kernel.face_gradients(u.unknowns, u.known, compare, 0, recovered->n_faces());
-    audit.recovered_difference = recovered->missed();
+    if (variation_) audit.inner_variation = variation_->missed();
+    if (!recovered_) return;
+    recovered_->recover();
+    const auto compare = [&](Index f, const Tensor3& g) { recovered_->compare(f, strain_(g)); };
+    kernel.face_gradients(u.unknowns, u.known, compare, 0, recovered_->n_faces());
+    audit.recovered_difference =
+        recovered_->is_one_row() ? diagnostics::ErrorParts::unknown : recovered_->missed();
   }
-};
 
-WithinCells within_cells(const mesh::Mesh& mesh, const SolidBody& body) {
-  WithinCells within;
-  const elastic::ElasticOperator& rows = body.elastic();
-  // A static body with the symmetric gradient has displacement_error().
-  if (body.is_dynamic() || body.seat() || !body.kernel().is_symmetric()) within.recovered.emplace(mesh, rows);
-  if (!body.kernel().is_symmetric() || is_strained(body)) return within;
-  if (InnerVariation::is_needed(mesh, rows)) within.variation.emplace(mesh, rows);
-  return within;
-}
+ private:
+  const mesh::Mesh& mesh_;
+  Tensor3 (*strain_)(const Tensor3&);
+  std::optional<InnerVariation> variation_;
+  std::optional<RecoveredStrain> recovered_;
+};
 
 /// Equilibrium residual times the displacement. If it is zero, the strain energy of a symmetric operator is
 /// half the loads' work. Static solves; this rank's part.
@@ -91,28 +95,21 @@ double residual_work(const SolidView& view, std::span<const double> unknowns) {
 
 }  // namespace
 
-double StrainAudit::missed_by_mesh(int dim) const {
-  const double of_gradients = gradient_difference * gradient_difference;
-  if (!recovered_difference) return of_gradients;
-  // A single cell across shows no slope to neighbors, so all of its bending would be missed.
-  const double missed = dim == 3 ? std::min(*recovered_difference, of_gradients) : *recovered_difference;
-  return std::max(missed, inner_variation);
+double StrainAudit::missed_by_mesh() const {
+  if (!recovered_difference || std::isnan(*recovered_difference)) return diagnostics::ErrorParts::unknown;
+  return std::max(*recovered_difference, inner_variation);
 }
 
 double StrainAudit::mismatch() const { return scale > 0 ? std::abs(stress_work - strain_energy) / scale : 0; }
 
 bool StrainAudit::is_doubtful() const {
-  return mismatch() > most_mismatch || (compares_gradients && gradient_difference > most_difference) ||
-         inner_variation > most_variation;
+  return mismatch() > most_mismatch || inner_variation > most_variation;
 }
 
 std::string StrainAudit::text() const {
   std::string text =
       fmt::format("half the work of the loads is {:.6g} J, the strain energy {:.6g} J ({:.2g} % apart)",
                   stress_work, strain_energy, 100 * mismatch());
-  if (compares_gradients)
-    text +=
-        fmt::format("; the strains of the two face gradients differ by {:.2g} %", 100 * gradient_difference);
   if (inner_variation > most_variation)
     text += fmt::format(
         "; the strains vary so much within its quadrilaterals that they are {:.2g} % too stiff (use more "
@@ -125,11 +122,9 @@ namespace {
 
 /// Energies with which that of the body is compared, over all ranks.
 struct Scales {
-  double energy = 0, size = 0;  ///< of free thermal strain e: e : C : e / 2 and mu |e|^2 [J]
-  double load = 0;              ///< mu (|u|/L)^2 with the size L of the body [J]
-  double of(double value, double thermal) const {
-    return diagnostics::scale_of(std::max({value, thermal, 0.0}), load);
-  }
+  double energy = 0;  ///< of free thermal strain e: e : C : e / 2 [J]
+  double load = 0;    ///< mu (|u|/L)^2 with the size L of the body [J]
+  double of(double value) const { return diagnostics::scale_of(std::max({value, energy, 0.0}), load); }
 };
 
 Scales scales_of(const SolidView& view) {
@@ -144,84 +139,65 @@ Scales scales_of(const SolidView& view) {
         const elastic::LameConstants& lame = body.elastic().lame(c);
         const double strain = pressure[f] / (axes * lame.lambda + 2 * lame.mu);
         scales.energy += 0.5 * v * axes * pressure[f] * strain;
-        scales.size += v * lame.mu * axes * strain * strain;
       });
   const double length = mesh::extent_of(mesh, body.geometry()).diagonal();
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     scales.load += volume[c] * body.elastic().lame(c).mu *
                    elastic::vector_at(view.now().cell_u, c, mesh.dim).squaredNorm() / (length * length);
-  for (double* sum : {&scales.energy, &scales.size, &scales.load}) *sum = parallel::sum(mesh.comm, *sum);
+  for (double* sum : {&scales.energy, &scales.load}) *sum = parallel::sum(mesh.comm, *sum);
   return scales;
 }
 
 }  // namespace
 
-StrainAudit audit_strain(const SolidView& view, bool compare) {
+StrainAudit audit_strain(const SolidView& view, bool looks_within) {
   const SolidBody& body = view.body;
   const mesh::Mesh& mesh = body.mesh();
   const mesh::Geometry& geometry = body.geometry();
   const SolidState& state = view.now();
-  const std::vector<double> points = view.fields.point_displacement();
   StrainAudit audit;
-  audit.compares_gradients = compare;
-  const Index n_faces = mesh.n_flux_faces(), half = n_faces / 2;
-  Index first = 0;  // face of the first of the strains below
-  std::vector<std::array<float, 6>> strains(compare ? std::size_t(n_faces - half) : 0);
+  audit.looks_within_cells = looks_within;
   const std::vector<double> unknowns = body.unknowns_of(state.cell_u, state.face_u);
-  const std::vector<double> known = body.known_of({state.cell_u, state.face_u, points});
+  const std::vector<double> known =
+      body.known_of({state.cell_u, state.face_u, view.fields.point_displacement()});
   const elastic::ElasticOperator& rows = body.elastic();
-  WithinCells within = compare ? within_cells(mesh, body) : WithinCells{};
-  const auto is_mine = [&](Index f) { return mesh.owner[f] < mesh.cells.n_owned(); };
-  const auto volume = [&](Index f) {
-    return std::abs(geometry.face_area[f].dot(line_of(mesh, geometry, f))) / mesh.dim;
-  };
-  double energy = 0, work = 0, difference = 0, size = 0;
-  const auto own = [&](Index f, const Tensor3& gradient) {
-    within.add(f, gradient);
-    if (!is_mine(f)) return;  // another rank's
+  const bool is_symmetric = body.kernel().is_symmetric();
+  WithinCells within(body);
+  double energy = 0, work = 0;
+  const auto add = [&](Index f, const Tensor3& gradient) {
+    if (looks_within) within.add(f, gradient);
+    if (is_symmetric || mesh.owner[f] >= mesh.cells.n_owned()) return;  // another rank's
     const Tensor3 stress = rows.stress(mesh.owner[f], gradient);
-    energy += 0.5 * volume(f) * contraction(stress, gradient);
+    energy += 0.5 * std::abs(geometry.face_area[f].dot(line_of(mesh, geometry, f))) / mesh.dim *
+              contraction(stress, gradient);
     work += work_on(mesh, rows, state, f, stress * geometry.face_area[f]);
-    if (!compare) return;
-    const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
-    size += volume(f) * rows.lame(mesh.owner[f]).mu * symmetric.squaredNorm();
-    std::ranges::copy(pack(symmetric), strains[f - first].begin());
   };
-  const auto other = [&](Index f, const Tensor3& gradient) {
-    if (!is_mine(f)) return;
-    PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
-    if (is_axisymmetric(rows)) gap[2] = strains[f - first][2];  // it knows no hoop strain
-    for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f - first][i];
-    difference += volume(f) * rows.lame(mesh.owner[f]).mu * unpack(gap).squaredNorm();
-  };
-  if (!compare) {
-    body.kernel().face_gradients(unknowns, known, own, 0, n_faces);
-  } else {
-    // Processes half of the faces at a time, because this is the peak of memory (half the strains: 2 %).
-    const elastic::ElasticKernel beside(mesh, rows, other_scheme(body.kernel().scheme()));
-    for (const Index end : {half, n_faces}) {
-      body.kernel().face_gradients(unknowns, known, own, first, end);
-      beside.face_gradients(unknowns, known, other, first, end);
-      first = end;
-    }
-    difference = parallel::sum(mesh.comm, difference);
-    size = parallel::sum(mesh.comm, size);
-  }
-  if (body.kernel().is_symmetric()) {
-    const elastic::ElasticField u{unknowns, known};
+  const elastic::ElasticField u{unknowns, known};
+  if (!is_symmetric || (looks_within && within.looks()))
+    body.kernel().face_gradients(unknowns, known, add, 0, mesh.n_flux_faces());
+  if (is_symmetric) {
     energy = 0.5 * body.kernel().product(elastic::ElasticPart::stiffness, u, u);
     work = energy + 0.5 * residual_work(view, unknowns);
   }
   audit.strain_energy = parallel::sum(mesh.comm, energy);
   audit.stress_work = parallel::sum(mesh.comm, work);
-  within.finish(body.kernel(), {unknowns, known}, audit);
-  const Scales scales = scales_of(view);
-  audit.scale = scales.of(audit.strain_energy, scales.energy);
+  if (looks_within) within.finish(body.kernel(), u, audit);
+  audit.scale = scales_of(view).of(audit.strain_energy);
   if (audit.recovered_difference && audit.scale > 0)
     *audit.recovered_difference *= std::min(1.0, audit.strain_energy / audit.scale);
-  if (const double of_size = scales.of(size, scales.size); of_size > 0)
-    audit.gradient_difference = std::sqrt(difference / of_size);
   return audit;
+}
+
+double missed_at_large_strain(const SolidView& view) {
+  const SolidBody& body = view.body;
+  const std::vector<double> unknowns = view.unknowns(), known = view.known();
+  WithinCells within(body);
+  if (!within.looks()) return diagnostics::ErrorParts::unknown;
+  body.kernel().face_gradients(
+      unknowns, known, [&](Index f, const Tensor3& h) { within.add(f, h); }, 0, body.mesh().n_flux_faces());
+  StrainAudit audit;
+  within.finish(body.kernel(), {unknowns, known}, audit);
+  return audit.missed_by_mesh();
 }
 
 bool is_time_to_look(const SolidView& view) {
@@ -230,10 +206,10 @@ bool is_time_to_look(const SolidView& view) {
          (view.body.parameters().output.energies || view.now().steps % steps_between == 0);
 }
 
-const StrainAudit& StrainEnergy::now(bool compare_gradients) {
+const StrainAudit& StrainEnergy::now(bool within_cells) {
   const bool holds =
-      latest_ && steps_of_latest_ == view_.now().steps && (latest_->compares_gradients || !compare_gradients);
-  if (!holds) latest_ = audit_strain(view_, compare_gradients);
+      latest_ && steps_of_latest_ == view_.now().steps && (latest_->looks_within_cells || !within_cells);
+  if (!holds) latest_ = audit_strain(view_, within_cells);
   steps_of_latest_ = view_.now().steps;
   return *latest_;
 }

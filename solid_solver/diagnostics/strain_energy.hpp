@@ -19,21 +19,17 @@ struct StrainAudit {
   /// Energy to which differences are relative [J]: the strain energy, or that of the strain to which heat would
   /// free the body, if larger, but no less than round-off.
   double scale = 0;
-  /// Relative norm sqrt(sum V_f mu |epsilon|^2), scaled likewise, of the strain difference of two face gradients. Only mu
-  /// enters, because the volume strain is negligible near nu = 1/2.
-  double gradient_difference = 0;
-  bool compares_gradients = false;
+  bool looks_within_cells = false;
   /// InnerVariation::missed() of the symmetric gradient in 2-D, else 0.
   double inner_variation = 0;
   /// RecoveredStrain::missed(), scaled likewise.
   std::optional<double> recovered_difference;
-  /// Error of the stiffness, and so of the displacement, due to the mesh: the largest of these. In 3-D the recovered
-  /// strains count at most as the square of the gradient difference.
-  double missed_by_mesh(int dim) const;
+  /// Error of the stiffness, and so of the displacement, due to the mesh: the larger of both. NaN if unknown.
+  double missed_by_mesh() const;
   /// Relative difference of strain energy and work; zero for a symmetric operator.
   double mismatch() const;
   /// Limits above which the result is doubtful (docs/theory/solid-solution.md, "Checks of the answer").
-  static constexpr double most_mismatch = 0.35, most_difference = 1.0, most_variation = 0.2;
+  static constexpr double most_mismatch = 0.35, most_variation = 0.2;
   /// Limit above which work and strain energy are unrelated.
   static constexpr double useless_mismatch = 1.0;
   bool is_doubtful() const;
@@ -44,13 +40,15 @@ struct StrainAudit {
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(strain_energy, stress_work, scale, gradient_difference, compares_gradients, inner_variation,
-            recovered_difference);
+    numbers(strain_energy, stress_work, scale, looks_within_cells, inner_variation, recovered_difference);
   }
 };
 
-/// Audits the accepted state and, if requested, compares two face gradients. Collective.
-StrainAudit audit_strain(const SolidView& view, bool compare_gradients);
+/// Audits the accepted state and, if requested, the strains within its cells. Collective.
+StrainAudit audit_strain(const SolidView& view, bool within_cells);
+
+/// StrainAudit::missed_by_mesh() of a body at large strain, by Green's strains and the moduli at rest. Collective.
+double missed_at_large_strain(const SolidView& view);
 
 /// Reports small-strain results whose stress work differs from the strain energy. Checks each step of a
 /// static run, and some steps of a dynamic one.
@@ -62,7 +60,7 @@ class StrainEnergy final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;
   /// Audit of the accepted state, computed once per step. Collective.
-  const StrainAudit& now(bool compare_gradients);
+  const StrainAudit& now(bool within_cells);
 
  private:
   SolidView view_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "solid_solver/diagnostics/buckling.hpp"
+#include "solid_solver/diagnostics/large_strain.hpp"
 #include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
 
@@ -13,9 +15,11 @@ using diagnostics::When;
 /// Solid and what several of its diagnostics share.
 struct RunOfSolid {
   const SolidView& view;
-  std::shared_ptr<StrainEnergy> strain;  ///< nullptr at large strain
-  std::shared_ptr<Stability> stability;  ///< nullptr but in a static run at large strain
-  const Heat* heat;                      ///< nullptr unless temperatures are solved for
+  std::shared_ptr<StrainEnergy> strain;               ///< nullptr at large strain
+  std::shared_ptr<Stability> stability;               ///< nullptr but in a static run at large strain
+  const Heat* heat;                                   ///< nullptr unless temperatures are solved for
+  std::shared_ptr<LinearBuckling> buckling{};         ///< nullptr at large strain
+  std::shared_ptr<LargeStrainChange> large_strain{};  ///< nullptr at large strain and unless it was asked for
 };
 
 template <Made (*make)(const SolidView&)>
@@ -32,11 +36,17 @@ Made energy_balance(const RunOfSolid& run) {
   return run.view.body.is_dynamic() ? std::make_shared<EnergyBalance>(run.view, run.strain) : nullptr;
 }
 
+Made linear_theory_of(const RunOfSolid& run) {
+  return run.buckling ? linear_theory(run.view, run.large_strain, run.buckling) : nullptr;
+}
+
 // Later ones read earlier ones: energies read strains, stresses and quantities the displacement error.
 using SolidRow = diagnostics::TableRow<RunOfSolid>;
 constexpr std::array table{
     SolidRow{"strain-energy", When::always, [](const RunOfSolid& run) -> Made { return run.strain; }},
-    SolidRow{"linear-theory", When::always, of_solid<linear_theory>},
+    SolidRow{"buckling", When::always, [](const RunOfSolid& run) -> Made { return run.buckling; }},
+    SolidRow{"large-strain", When::in_full, [](const RunOfSolid& run) -> Made { return run.large_strain; }},
+    SolidRow{"linear-theory", When::always, linear_theory_of},
     SolidRow{"energy-balance", When::always, energy_balance},
     SolidRow{"stability", When::always, [](const RunOfSolid& run) -> Made { return run.stability; }},
     SolidRow{"inertia", When::always, of_solid<neglected_inertia>},
@@ -66,10 +76,14 @@ constexpr std::array table_of_heat{
 
 void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
   const bool is_small = view.compares_gradients(), is_static = !view.body.is_dynamic();
-  all.add(std::span<const SolidRow>(table),
-          {view, is_small ? std::make_shared<StrainEnergy>(view) : nullptr,
-           !is_small && is_static ? std::make_shared<Stability>(view) : nullptr,
-           view.body.thermal() ? view.body.thermal()->heat() : nullptr});
+  RunOfSolid run{view, is_small ? std::make_shared<StrainEnergy>(view) : nullptr,
+                 !is_small && is_static ? std::make_shared<Stability>(view, all.is_full()) : nullptr,
+                 view.body.thermal() ? view.body.thermal()->heat() : nullptr};
+  if (!has_finite_strain(view.body.parameters())) {
+    run.buckling = std::make_shared<LinearBuckling>(view, all.is_full());
+    if (all.is_full()) run.large_strain = std::make_shared<LargeStrainChange>(view);
+  }
+  all.add(std::span<const SolidRow>(table), run);
 }
 
 void add_diagnostics(const HeatView& view, diagnostics::Diagnostics& all) {

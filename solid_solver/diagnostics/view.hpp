@@ -36,11 +36,18 @@ struct HeatView {
   const SolidContext& context;
 };
 
-class StrainEnergy;
+/// Root mean square over the volume of `width` values per owned cell. Collective.
+double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, int width,
+                        std::span<const double> cells);
+
+class LinearBuckling;
+class LargeStrainChange;
 class Stability;
+class StrainEnergy;
 
 // Each makes a diagnostic, or nullptr if it does not apply to the solid.
-diagnostics::Made linear_theory(const SolidView& view);
+diagnostics::Made linear_theory(const SolidView& view, std::shared_ptr<const LargeStrainChange> large_strain,
+                                std::shared_ptr<const LinearBuckling> buckling);
 diagnostics::Made neglected_inertia(const SolidView& view);
 diagnostics::Made limits_of_material(const SolidView& view);
 diagnostics::Made effects_of_heat(const SolidView& view);
@@ -51,7 +58,7 @@ diagnostics::Made heat_storage(const Heat& heat);
 diagnostics::Made impossible_temperature(const Heat& heat);
 diagnostics::Made heat_error(const Heat& heat);
 diagnostics::Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
-                              std::shared_ptr<Stability> stability);
+                              std::shared_ptr<const Stability> stability);
 diagnostics::Made quantities(const SolidView& view);
 diagnostics::Made quantities(const HeatView& view);
 diagnostics::Made stress_error(const SolidView& view);

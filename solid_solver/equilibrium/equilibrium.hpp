@@ -70,7 +70,7 @@ struct EquilibriumMeans {
   bool has_products = false;     ///< products of ElasticPart give the work of a stage
   /// Two gradients of a displacement judge mesh and energy; otherwise the energy of the law does.
   bool compares_gradients = false;
-  bool has_tangent = false;  ///< softness() and lowest_stiffness() are available
+  bool has_tangent = false;  ///< lowest_stiffness() is available
   /// Pressures remain normal to the moving surface and so are part of A: set_pressure().
   bool takes_pressure = true;
 };
@@ -126,12 +126,6 @@ class Equilibrium {
   virtual std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) = 0;
   virtual std::vector<Tensor3> cell_stress(const Displaced& state) = 0;
 
-  /// Sensitivity of a static equilibrium: relative change of the displacement if the whole body became
-  /// softer, over the relative softening. 1 for a linear body under loads, large near buckling. Prescribed
-  /// displacements do not respond and count as 1. Throws SolveFailure.
-  virtual double softness(std::span<const double> /*unknowns*/, std::span<const double> /*known*/) {
-    return 1;
-  }
   /// Smallest x . K x of the tangent K at an equilibrium, over that of `elastic`. 1 without load, negative if
   /// unstable (an upper bound, and so a proof). 1 also for follower pressures on a surface with a free rim,
   /// which have no energy. `start`: forces without the symmetry of the body.

@@ -47,7 +47,6 @@ class FiniteStrain final : public LargeStrain {
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
-  double softness(std::span<const double> unknowns, std::span<const double> known) override;
   SoftMotion lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
                               const linalg::LinearMap& elastic, std::vector<double> start) override;
   Vec3 pressure_force() override { return kernel_->pressure_force(); }

@@ -181,8 +181,6 @@ std::vector<SolidProbes::Stress> SolidProbes::stresses(const DiscreteStress& of)
 
 namespace {
 
-double larger_of(double left, double mesh) { return std::isnan(left) ? left : std::fmax(left, mesh); }
-
 /// Points of the cells and boundary faces with at least three quarters of the largest equivalent stress before recovery, because recovery
 /// of the whole field takes longer than the solve. Collective.
 std::vector<std::uint8_t> points_of_large_stress(const mesh::Mesh& mesh, const DiscreteStress& found) {
@@ -202,8 +200,7 @@ std::vector<std::uint8_t> points_of_large_stress(const mesh::Mesh& mesh, const D
 
 /// Largest equivalent stress of the recovered field. Probes interpolate between points and the equivalent stress is convex, so
 /// none sees more than the points.
-ReportedStress largest(const SolidBody& body, const SolidFields& fields, const DiscreteStress& found,
-                       double mesh_part) {
+ReportedStress largest(const SolidBody& body, const SolidFields& fields, const DiscreteStress& found) {
   const mesh::Mesh& mesh = body.mesh();
   std::vector<std::uint8_t> wanted = points_of_large_stress(mesh, found);
   const SidedTensors sides = fields.recovery().at_points(found, wanted);
@@ -234,26 +231,25 @@ ReportedStress largest(const SolidBody& body, const SolidFields& fields, const D
   const auto all_left = fields.recovery().left_at_points(found, wanted, sides);
   const double left = parallel::sum(
       mesh.comm, at < mesh.points.n_owned() ? all_left[std::size_t(most.material)][std::size_t(at)] : 0);
-  return {"largest", most.place, most.value, larger_of(left, mesh_part)};
+  return {"largest", most.place, most.value, left};
 }
 
 }  // namespace
 
 Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
                              std::span<const double> points) {
-  return largest(body, fields, fields.discrete_stress(points), 0).place;
+  return largest(body, fields, fields.discrete_stress(points)).place;
 }
 
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
-                                              const SolidProbes& probes, double mesh) {
+                                              const SolidProbes& probes) {
   if (!recovers_stress(body)) return {};
   const DiscreteStress stress = fields.discrete_stress(fields.point_displacement());
   std::vector<ReportedStress> found;
   for (const SolidProbes::Stress& one : probes.stresses(stress))
-    found.push_back(
-        {fmt::format("at probe '{}'", one.probe), one.place, one.equivalent, larger_of(one.left, mesh)});
+    found.push_back({fmt::format("at probe '{}'", one.probe), one.place, one.equivalent, one.left});
   if (!body.is_dynamic()) {
-    const ReportedStress most = largest(body, fields, stress, mesh);
+    const ReportedStress most = largest(body, fields, stress);
     if (parallel::comm_rank(body.mesh().comm) == 0 && most.value > 0) found.push_back(most);
   }
   return found;

@@ -82,12 +82,10 @@ struct ReportedStress {
 Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
                              std::span<const double> points);
 
-/// Stresses at probes and, in static runs, the largest one. The relative error of the tensor is the larger of
-/// the residual of the recovery (StressRecovery::left_at_points) and the mesh error of the displacement
-/// (`mesh`), which strains follow. If the largest stress grows with refinement (clamped or reentrant corner),
-/// the former stays large. In 81 readings on 14 bodies, 81 % are within a factor of 3 of the true error and
+/// Stresses at probes and, in static runs, the largest one. The relative error of the tensor is the residual of the recovery
+/// (StressRecovery::left_at_points). If the largest stress grows with refinement (clamped or reentrant corner), it stays large. In 81 readings on 14 bodies, 81 % are within a factor of 3 of the true error and
 /// none below a third (scripts/validate solid-accuracy). On rank 0, else empty. Collective.
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
-                                              const SolidProbes& probes, double mesh);
+                                              const SolidProbes& probes);
 
 }  // namespace couplet::solid

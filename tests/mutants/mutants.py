@@ -47,7 +47,7 @@ MUTANTS = [
            "if (size == entry->size && digest_of_file(file) == entry->digest)", "if (size == entry->size)", "unit_app"),
     Mutant("a filler that never yields passively", "thermocline/wall/mechanics.cpp", "std::clamp(wanted, active_[i], passive_[i])",
            "std::max(wanted, active_[i])", "stability_thermocline"),
-    Mutant("a trapezoidal thermal shock that swings", "solid_solver/diagnostics/heat_errors.cpp", "if (turns_ < patience) return;",
+    Mutant("a trapezoidal thermal shock that swings", "solid_solver/diagnostics/heat.cpp", "if (turns_ < patience) return;",
            "if (turns_ < 1000 * patience) return;", "stability_solid_hard_cases", "ThermalShock.*"),
     # Physics that no test held.
     Mutant("quasi-Newton gives up a step's pairs too early", "coupler/acceleration/quasi_newton.cpp",

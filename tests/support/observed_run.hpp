@@ -12,7 +12,8 @@ namespace couplet::support {
 template <class Participant>
 class ObservedRun {
  public:
-  explicit ObservedRun(Participant& participant) : participant_(participant), diagnostics_(0, true) {
+  explicit ObservedRun(Participant& participant)
+      : participant_(participant), diagnostics_(0, diagnostics::When::in_full) {
     participant.initialise();
     add_diagnostics(participant.view(), diagnostics_);
   }

@@ -70,7 +70,7 @@ CommandLine::Strict strictness(const std::string& word) {
 struct Flags {
   bool check = false, docs = false, schema = false, print_config = false, explain = false, verbose = false,
        quiet = false;
-  std::string strict;
+  std::string strict, diagnostics;
 };
 
 void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
@@ -98,6 +98,11 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
          "accept a finding by its id (in brackets at the end of its line; docs/findings.md); repeatable")
       ->type_name("ID")
       ->allow_extra_args(false);
+  app.add_option(
+         "--diagnostics", flags.diagnostics,
+         "short for --set simulation.diagnostics=WORD: standard, without-errors, or full, with searches that may take as "
+         "long as a solve")
+      ->type_name("WORD");
   app.add_flag("--check", flags.check, "only check the configuration; exit code 0 or 2");
   app.add_flag("--docs", flags.docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", flags.schema, "print the JSON schema of all keys, for editors");
@@ -156,6 +161,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
     result.output = out.str() + err.str();
     return result;
   }
+  if (!flags.diagnostics.empty()) line.overrides.push_back("simulation.diagnostics=" + flags.diagnostics);
   take_task(flags, line);
   return result;
 }

@@ -105,10 +105,14 @@ void declare(config::Section& section, SimulationParameters& p) {
       .doc(
           "auto: dimension, inertia, turbulence model and viscous treatment that the case does not set are "
           "chosen from estimates; each choice is logged with its reason");
-  section.value("error-estimate", p.error_estimate)
+  using diagnostics::When;
+  section
+      .choice("diagnostics", p.diagnostics,
+              {{"without-errors", When::always}, {"standard", When::with_errors}, {"full", When::in_full}})
       .doc(
-          "estimate the error due to mesh, time step and tolerances at the end of the run and report which "
-          "dominates; off: nothing is collected for it");
+          "what the run finds out about its own answer. standard: with the error due to mesh, time step and tolerances; "
+          "without-errors: nothing is collected for that; full: also searches that may take as long as a solve (buckling, "
+          "the change of a linear displacement by large strain)");
   section.value("hang-timeout", p.hang_timeout)
       .unit("s", 1, 1e6)
       .not_negative()

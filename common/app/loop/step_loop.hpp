@@ -16,6 +16,7 @@
 #include "common/config/section.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/coupling/step_plan.hpp"
+#include "common/diagnostics/diagnostics.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/io/fields/mesh_part.hpp"
 
@@ -34,8 +35,8 @@ struct SimulationParameters {
   io::FieldChoice fields;              // volume fields
   double checkpoint_interval = 0;      // [s]; 0 for only at the end
   int checkpoints_kept = 2;
-  double hang_timeout = 600;    // [s]; 0 for never
-  bool error_estimate = true;   // at the end of the run
+  double hang_timeout = 600;  // [s]; 0 for never
+  diagnostics::When diagnostics = diagnostics::When::with_errors;
   bool choose_effects = false;  // estimates of the scene decide what the case leaves open
   std::string keys;             // case as text, stored with every checkpoint (see case_keys)
 };

@@ -28,7 +28,7 @@ def run(job, name, one, with_effect=False):
         who = next(iter(case["participants"]))
     settings = {**(one.get("set") or {}), **(one["with"] if with_effect else {})}
     sets = [f"{key if key.startswith(('simulation.', 'coupling.', 'participants.')) else f'participants.{who}.{key}'}={json.dumps(value)}" for key, value in settings.items()]
-    return folder / "out", error_estimates.launched(job, folder, case, sets)
+    return folder / "out", error_estimates.launched(job, folder, case, [*sets, "simulation.diagnostics=full"])
 
 
 def truth(job, name, one):

@@ -20,7 +20,7 @@ programs, configs, kind = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.
 def run(job, case, sets, folder):
     """`job`: {participant: program}."""
     file = configs / case / "case.yaml"
-    more = [*(f"--set={s}" for s in sets), f"--set=simulation.output.folder={folder}"]
+    more = ["--diagnostics=full", *(f"--set={s}" for s in sets), f"--set=simulation.output.folder={folder}"]
     command = [str(programs / next(iter(job.values()))), str(file), *more]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     if done.returncode not in (0, 4):  # 4: a finding says that the answer is useless, as it may be

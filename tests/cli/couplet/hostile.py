@@ -121,7 +121,7 @@ def programs():
 
 
 # -- links, names, damage ----------------------------------------------------------------------------------------------
-MOVING = CASE.replace("    analysis: static\n", "").replace("end-time: 1 s, time-step: 1 s", "end-time: 4 ms, time-step: 1 ms, checkpoint: {interval: 1 ms}, error-estimate: false").replace("probes:", "output: {surfaces: [top]}\n    probes:")
+MOVING = CASE.replace("    analysis: static\n", "").replace("end-time: 1 s, time-step: 1 s", "end-time: 4 ms, time-step: 1 ms, checkpoint: {interval: 1 ms}, diagnostics: without-errors").replace("probes:", "output: {surfaces: [top]}\n    probes:")
 PLOT = "plot: {panels: [{field: displacement}]}\n"
 STUDY = "study: {participant: solid, axes: {n: {key: simulation.time-step, values: [1 ms, 2 ms]}}, quantities: {q: {monitor: solid/probes.csv, column: 'corner x [m]'}}}\n"
 FLOW = """simulation: {end-time: 1 s, time-step: 1 s}

@@ -47,7 +47,7 @@ participants:
     probes: {tip: {point: [1, 0.5]}}
 """
 COUPLED = (TESTS / "mistakes/coupled.yaml").read_text().replace("end-time: 0.02 s", "end-time: 0.04 s").replace(
-    "error-estimate: false", "accept: [error-estimate], output: {folder: out, interval: 0.02 s}, checkpoint: {interval: 0.02 s}")
+    "diagnostics: without-errors", "accept: [error-estimate], output: {folder: out, interval: 0.02 s}, checkpoint: {interval: 0.02 s}")
 OURS = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")
 SAID = r"this \w+ (?:fails|kills).*"
 CLOCKS = ("participants.csv", "steps.csv", "solver.csv")  # seconds, and counts since the start of the process

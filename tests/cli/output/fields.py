@@ -20,7 +20,7 @@ BIN, CASES = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 def run(here, name, out, output, ranks=1):
     words = ["mpirun", "--oversubscribe", "-n", str(ranks), str(BIN / f"{name}_solver"), f"{name}.yaml", f"--set=simulation.output={{folder: {out}, interval: 0.25, {output}}}",
              f"--set=participants.{name}.output.surfaces=[bottom]", "--set=simulation.time-step=0.25",
-             "--set=simulation.error-estimate=false"]
+             "--set=simulation.diagnostics=without-errors"]
     said(words, 100, cwd=here)
     return here / out / name
 

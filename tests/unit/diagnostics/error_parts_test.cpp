@@ -110,14 +110,13 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
   EXPECT_NE(best_change({rounding}).find("half the cell size"), std::string::npos);
   EXPECT_EQ(error_summary({{"fluid", {.mesh = 1e-2, .step = 1e-3}}, rounding}),
             "the error due to the mesh of 'sphere' is unknown, the rest is 1.1 %");
-  const NamedErrors short_run{"solid", {.mesh = 1e-2, .too_few_steps = true}};
-  EXPECT_EQ(error_summary({short_run}),
-            "the error due to the step, of which there are too few, is unknown, the rest is 1 %");
+  const NamedErrors short_run{"solid", {.mesh = 1e-2, .misses_step = true}};
+  EXPECT_EQ(error_summary({short_run}), "the error due to the step is unknown, the rest is 1 %");
   EXPECT_NE(best_change({short_run}).find("half the time step"), std::string::npos);
-  EXPECT_EQ(error_summary({short_run, {"fluid", {.mesh = 1e-2, .step = 2e-2}}}).find("too few"),
+  EXPECT_EQ(error_summary({short_run, {"fluid", {.mesh = 1e-2, .step = 2e-2}}}).find("step is unknown"),
             std::string::npos)
       << "the fluid knows";
-  EXPECT_TRUE(ErrorParts::of(short_run.parts.text()).too_few_steps);
+  EXPECT_TRUE(ErrorParts::of(short_run.parts.text()).misses_step);
   EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
 }
 

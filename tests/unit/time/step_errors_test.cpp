@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/time/step_errors.hpp"
+
+#include <numbers>
+
 #include "tests/support/test.hpp"
 
 namespace couplet::step_errors_test {
@@ -63,7 +66,7 @@ TEST(StepErrorsTest, ringing_that_steps_do_not_resolve_errs_by_no_more_than_twic
     const double t = n * dt, third = std::abs(std::cos(t));
     alone.add({dt * dt * dt / 12 * third, third, std::abs(std::sin(t)), dt, 2, std::abs(std::sin(t)), third});
   }
-  EXPECT_NEAR(alone.over_size(), 0.0208 * 2 / M_PI, 2e-3);
+  EXPECT_NEAR(alone.over_size(), 0.0208 * 2 / std::numbers::pi, 2e-3);
 }
 
 TEST(StepErrorsTest, nothing_is_known_before_the_first_step) {
@@ -71,6 +74,20 @@ TEST(StepErrorsTest, nothing_is_known_before_the_first_step) {
   StepErrors errors;
   errors.restore(std::vector<double>{});
   EXPECT_TRUE(std::isnan(errors.over_size()));
+}
+
+TEST(StepErrorsTest, swings_of_an_oscillation_are_counted_and_a_decay_is_none) {
+  StepErrors swing, decay;
+  for (int n = 0; n < 1000; ++n) {
+    const double t = 0.02 * n;  // 10 periods of 2 s
+    swing.add({.error = 1e-6,
+               .rate = std::abs(std::numbers::pi * std::cos(std::numbers::pi * t)),
+               .size = std::abs(std::sin(std::numbers::pi * t)),
+               .dt = 0.02});
+    decay.add({.error = 1e-6, .rate = std::exp(-t), .size = 1 + std::exp(-t), .dt = 0.02});
+  }
+  EXPECT_NEAR(swing.swings(), 10, 0.1);
+  EXPECT_LT(decay.swings(), 0.5);
 }
 
 TEST(StepErrorsTest, a_restart_goes_on_bit_for_bit_and_a_damaged_state_is_refused) {

@@ -3,7 +3,7 @@
 #include "solid_solver/output/quantities.hpp"
 #include "common/diagnostics/finding.hpp"
 #include "common/io/checkpoint.hpp"
-#include "solid_solver/diagnostics/heat_errors.hpp"
+#include "solid_solver/diagnostics/view.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::quantities_test {
@@ -253,27 +253,29 @@ Outcome slab(int n, int steps, HeatScheme scheme, bool again = false) {
   const HeatParameters p = cooling(scheme);
   HeatCase scene(make_box(BoxCells::quadrilaterals, {n, 4, 1}, Vec3::Zero(), Vec3(1, 0.4, 0)),
                  {{1, 1.0, 1.0}}, p);
-  auto errors = std::make_unique<HeatErrors>(scene.mesh(), scene.geometry(), p);
+  diagnostics::Made errors = heat_error(*scene.heat);
+  diagnostics::Report report;
   for (int i = 0; i < steps; ++i) {
     const HeatState& now = scene.heat->accepted();
     scene.heat->solve({now.time, 0.5 / steps, coupling::Scheme::standalone, now.steps});
     scene.heat->accept_step();
-    errors->see_step(scene.heat->trial(), scene.heat->accepted());
+    errors->observe(report);
     if (!again) continue;
     io::StateInMemory state;
     io::CheckpointWriter writer(state);
     io::Archive saved(writer);
     errors->visit(saved);
-    errors = std::make_unique<HeatErrors>(scene.mesh(), scene.geometry(), p);
+    errors = heat_error(*scene.heat);
     io::CheckpointReader reader(state);
     io::Archive loaded(reader);
     errors->visit(loaded);
   }
   const double size = scene.error([](const Vec3&) { return mean_before; });
-  return {errors->parts(*scene.heat), scene.error([](const Vec3& x) { return cooled(x[0], 0.5); }) / size};
+  errors->conclude(report);
+  return {report.errors, scene.error([](const Vec3& x) { return cooled(x[0], 0.5); }) / size};
 }
 
-TEST(HeatErrors, coarse_cells_dominate_where_they_do) {
+TEST(HeatError, coarse_cells_dominate_where_they_do) {
   const Outcome found = slab(4, 200, HeatScheme::trapezoidal);
   fmt::print("mesh {:.2e}, step {:.2e}, true {:.2e}\n", found.parts.mesh, found.parts.step, found.wrong);
   EXPECT_GT(found.parts.mesh, 10 * found.parts.step);
@@ -281,7 +283,7 @@ TEST(HeatErrors, coarse_cells_dominate_where_they_do) {
   EXPECT_LT(found.parts.mesh, found.wrong * 4);
 }
 
-TEST(HeatErrors, long_steps_dominate_where_they_do) {
+TEST(HeatError, long_steps_dominate_where_they_do) {
   for (const HeatScheme scheme : {HeatScheme::euler, HeatScheme::three_point, HeatScheme::trapezoidal}) {
     const Outcome found = slab(80,
                                scheme == HeatScheme::euler         ? 20
@@ -296,7 +298,7 @@ TEST(HeatErrors, long_steps_dominate_where_they_do) {
   }
 }
 
-TEST(HeatErrors, a_run_that_goes_on_says_the_same) {
+TEST(HeatError, a_run_that_goes_on_says_the_same) {
   const diagnostics::ErrorParts whole = slab(8, 12, HeatScheme::three_point).parts,
                                 stopped = slab(8, 12, HeatScheme::three_point, true).parts;
   EXPECT_EQ(whole.step, stopped.step);
@@ -314,7 +316,7 @@ TEST(HeatSwing, is_told_once_on_any_number_of_ranks) {
   EXPECT_EQ(scene.doubts(40, 1000), 1);
 }
 
-TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
+TEST(HeatError, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
   HeatParameters p = steady();
   p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "300");
   p.boundaries["xmax"] = heat_boundary(HeatType::temperature, "400");
@@ -322,9 +324,10 @@ TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
     if (level) p.boundaries["xmax"].value = {"300"};
     HeatCase scene(make_box(BoxCells::quadrilaterals, {6, 3, 1}, Vec3::Zero(), Vec3(1, 1, 0)),
                    {{1, 1.0, 1.0}}, p);
-    const HeatErrors errors(scene.mesh(), scene.geometry(), p);
     scene.step(1);
-    const diagnostics::ErrorParts parts = errors.parts(*scene.heat);
+    diagnostics::Report report;
+    heat_error(*scene.heat)->conclude(report);
+    const diagnostics::ErrorParts& parts = report.errors;
     if (level) {
       EXPECT_FALSE(parts.known());
     } else {

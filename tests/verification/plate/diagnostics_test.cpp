@@ -90,8 +90,8 @@ TEST(PlateGuards, limits_are_those_of_the_documents) {
   const RawMesh raw = square(6);
   Structure plate(p, PlateContext{}, &raw);
   const auto run = support::observe(plate, 200, 1e-3);
-  for (const char* id : {"large-rotation", "motion-in-the-plane", "stretch-of-the-mid-surface",
-                         "shear-and-rotary-inertia", "deflection-beyond-the-modes"}) {
+  for (const char* id :
+       {"large-rotation", "motion-in-the-plane", "stretch-of-the-mid-surface", "shear-and-rotary-inertia"}) {
     EXPECT_EQ(run.finding(id).limit, diagnostics::share_limit()) << id;
     EXPECT_TRUE(run.finding(id).effect.ends_with("neglected")) << id;
   }
@@ -168,25 +168,6 @@ TEST(PlateGuards, deflections_far_beyond_linear_theory_are_useless) {
   };
   EXPECT_TRUE(stretch(100).sound());
   EXPECT_EQ(stretch(3e5).severity, base::Severity::wrong);
-}
-
-TEST(PlateGuards, modes_left_out_are_missed_in_a_dynamic_run) {
-  const Support s = Support::simply_supported;
-  Parameters p = plate_held({{"xmin", s}, {"xmax", s}, {"ymin", s}, {"ymax", s}});
-  const auto share = [&](int number, const char* load) {
-    p.number = number;
-    p.load.emplace().lower.emplace().text = load;
-    return find("deflection-beyond-the-modes", p, 4, 1e-3, square(12));
-  };
-  // Mode (2, 2) is the fourth.
-  const char* fourth = "100 * sin(2 * pi * x) * sin(2 * pi * y) * sin(100 * t)";
-  EXPECT_GT(share(3, fourth).number, 0.99);
-  EXPECT_TRUE(share(4, fourth).sound());
-  EXPECT_TRUE(share(15, "100").sound());
-  // Of a free plate the modes that bend count beside those that fall.
-  p = plate_held();
-  EXPECT_GT(share(3, "100 * sin(2 * pi * x) * sin(2 * pi * y)").number, 0.5);
-  EXPECT_LT(share(6, "100").number, 1e-6);
 }
 
 TEST(PlateGuards, the_energy_of_an_initial_velocity_is_kept_or_missed) {

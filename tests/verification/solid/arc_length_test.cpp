@@ -66,7 +66,7 @@ const LoadPath& path_of(const Solid& solid) { return *solid.body().equilibrium()
 /// The largest distance of an equilibrium from the closed form, over the limit load; until the path is stable again.
 double follow(Solid& solid, bool knows_stability) {
   double gap = 0;
-  Stability stability(solid.view());
+  Stability stability(solid.view(), false);
   for (int i = 0; i < 60 && height(solid) > -3.5; ++i) {
     step(solid, 1);
     diagnostics::Report report;
@@ -110,7 +110,7 @@ TEST(ArcLength, warns_of_a_last_equilibrium_that_is_unstable_and_only_then) {
   const auto solid = make_solid(arch(30), hinged());
   const auto warnings = [&] {
     diagnostics::Report report;
-    Stability(solid->view()).conclude(report);
+    Stability(solid->view(), false).conclude(report);
     return std::ranges::count_if(report.findings, [](const diagnostics::Finding& f) {
       return f.id == "unstable-equilibrium" && f.severity == base::Severity::warning;
     });

@@ -172,7 +172,7 @@ TEST(Beams, of_prisms_in_every_direction) {
     }
 }
 
-// Four across, cells 4:1: stiff, and the difference of the gradients says so; with cubes it does not.
+// Four across, cells 4:1: stiff.
 TEST(Beams, of_stretched_cells_in_every_cut) {
   for (const Cut cut : {Cut::six_tetrahedra, Cut::five_tetrahedra, Cut::prisms_along_load, Cut::prisms_across,
                         Cut::prisms_along_beam})
@@ -180,14 +180,9 @@ TEST(Beams, of_stretched_cells_in_every_cut) {
       const Answer stiff = bent({cut, int(length), 4, length});
       const double gap = stiff.tip / reference(length, 0.3) - 1;
       record(fmt::format("stretched_{}_{}", name(cut), int(length)), gap);
-      record(fmt::format("told_{}_{}", name(cut), int(length)), stiff.audit.gradient_difference);
       EXPECT_LT(std::abs(gap), 0.18);  // five tetrahedra a cell at 100:1: 0.1759
       EXPECT_LT(gap, 0);
-      EXPECT_GT(stiff.audit.gradient_difference, 0.35);
     }
-  const Answer sound = bent({Cut::six_tetrahedra, 80, 4, 20});
-  record("told_of_cubes", sound.audit.gradient_difference);
-  EXPECT_LT(sound.audit.gradient_difference, 0.25);
 }
 
 // Cantilever of Slone et al. (2003): L = 20 m, square 2 m x 2 m, E = 10 MPa, nu = 0.3, clamped at x = 0,

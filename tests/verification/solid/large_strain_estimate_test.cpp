@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a linear run says large strain would change, held against what it changes.
-#include "solid_solver/diagnostics/linear_theory.hpp"
+#include "solid_solver/diagnostics/large_strain.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/verification/solid/support.hpp"
 

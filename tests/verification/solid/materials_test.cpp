@@ -336,7 +336,7 @@ TEST_P(Layers, have_the_stress_of_each_side_beside_their_joint) {
   const Mesh& mesh = solid->body().mesh();
   const SolidFields& fields = solid->fields();
   const std::vector<double> points = fields.point_displacement();
-  for (const ReportedStress& s : reported_stresses(solid->body(), fields, solid->view().output.probes(), 0)) {
+  for (const ReportedStress& s : reported_stresses(solid->body(), fields, solid->view().output.probes())) {
     EXPECT_NEAR(s.value, s.where == "largest" ? 210e6 : wanted.lower_bound(s.place[1] - 1e-9)->second, 10)
         << s.where;
     EXPECT_LT(s.error, 1e-6) << s.where;

@@ -177,7 +177,7 @@ TEST(SolidOutput, a_uniform_plane_stress_has_no_error) {
     p.probes["low"] = {Vec3(1.1, 0, 0), {"stress"}};
     const auto solid = make_solid(make_box(cells, {20, 8, 1}, Vec3::Zero(), Vec3(2, 1, 0)), p);
     const auto run = support::observe(*solid, 1, 1);
-    const auto reported = reported_stresses(solid->body(), solid->fields(), solid->view().output.probes(), 0);
+    const auto reported = reported_stresses(solid->body(), solid->fields(), solid->view().output.probes());
     if (parallel::comm_rank(MPI_COMM_WORLD) == 0) {
       EXPECT_EQ(reported.size(), 4u);
     }

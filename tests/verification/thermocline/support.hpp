@@ -111,7 +111,7 @@ struct TankRun {
   std::string name = "tank";
   coupling::Step now;
   TankStep happened;
-  diagnostics::Diagnostics judged{0, true};
+  diagnostics::Diagnostics judged{0, diagnostics::When::with_errors};
   double time = 0;
 };
 

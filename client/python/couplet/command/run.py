@@ -41,6 +41,7 @@ def options_of_programs(parser):
     parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
     parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, with your permissions")
     parser.add_argument("--strict", nargs="?", const="", metavar="effects", help=FLAGS["strict"])
+    parser.add_argument("--diagnostics", choices=("standard", "without-errors", "full"), help="what the run finds out about its own answer; full: also searches that may take as long as a solve")
     parser.add_argument("--accept", action="append", default=[], metavar="ID", help="accepts a finding by its id (docs/findings.md); repeatable")
     parser.add_argument("-v", "--verbose", action="store_true", help="logs more, on every rank")
     parser.add_argument("-q", "--quiet", action="store_true", help="prints only warnings and errors")
@@ -50,6 +51,7 @@ def flags_of(arguments):
     """Arguments that are passed unchanged to all programs."""
     words = [f"--{name.replace('_', '-')}" for name in ("restart_with_changes", "allow_commands", "verbose", "quiet") if getattr(arguments, name)]
     words += ["--restart", str(arguments.restart.absolute())] if arguments.restart else []
+    words += ["--diagnostics", arguments.diagnostics] if arguments.diagnostics else []
     words += [] if arguments.strict is None else ["--strict" + (f"={arguments.strict}" if arguments.strict else "")]
     return words + [word for finding in arguments.accept for word in ("--accept", finding)]
 

@@ -11,92 +11,15 @@
 #include "common/base/processor_clones.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/diagnostics/reference.hpp"
-#include "common/fv/expression.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
-#include "fluid_solver/diagnostics/phase_drift.hpp"
+#include "fluid_solver/diagnostics/driving.hpp"
 #include "fluid_solver/diagnostics/view.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/pressure/pressure.hpp"
 
 namespace couplet::fluid {
-
-/// Time-dependent expressions that drive a flow: body force, motion of the mesh, velocities and pressures at boundaries. A
-/// flow that responds linearly to such an expression does not drift from it, because errors cancel over half
-/// a period, unless waves carry them away. A flow coupled to a structure or with vortices may oscillate and never counts as driven.
-class Driving {
- public:
-  explicit Driving(const FluidParameters& parameters);
-  /// True if some expression depends on time, or a mesh mover moves walls as the case says.
-  bool is_possible() const { return by_mover_ || !timed_.empty(); }
-  /// True if walls, bodies or the mesh move. These expressions then do not describe the driving completely.
-  bool moves() const { return moves_; }
-  /// True if an expression still changes over the last steps of `dt` before `time` [s] at one of the `places`
-  /// [m] of this rank, or if the mesh mover has moved the mesh in the last step. Collective over `comm`.
-  bool acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt,
-            std::span<const double> mesh_flux) const;
-
- private:
-  std::vector<fv::Expression> timed_;
-  bool moves_ = false, by_mover_ = false;
-};
-
-namespace {
-
-constexpr int places_looked_at = 16, steps_looked_at = 16;
-constexpr double still = 1e-6;  // of the largest value: a gust that has passed, a ramp that has ended
-
-}  // namespace
-
-Driving::Driving(const FluidParameters& parameters) {
-  const auto add = [this](const config::ExpressionText& text) {
-    if (fv::Expression found(text); found.uses_time()) timed_.push_back(std::move(found));
-  };
-  moves_ = parameters.motion || !parameters.gaps.empty();
-  for (const auto& [name, body] : parameters.bodies) moves_ = moves_ || !body.velocity.empty();
-  for (const auto& [patch, b] : parameters.boundaries) {
-    const GivenBy by = condition_of(b).velocity;
-    moves_ = moves_ || by == GivenBy::structure || by == GivenBy::motion;
-  }
-  for (const auto& [patch, b] : parameters.boundaries)
-    if (condition_of(b).velocity == GivenBy::structure) return;
-  for (const auto& [patch, b] : parameters.boundaries)
-    by_mover_ = by_mover_ || (condition_of(b).velocity == GivenBy::motion && !parameters.motion);
-  for (const auto& text : parameters.body_force) add(text);
-  if (const auto& motion = parameters.motion) {
-    for (const auto* texts : {&motion->translation, &motion->displacement})
-      for (const auto& text : *texts) add(text);
-    add(motion->angle);
-  }
-  for (const auto& [patch, b] : parameters.boundaries) {
-    for (const auto& text : b.velocity) add(text);
-    add(b.pressure);
-  }
-}
-
-bool Driving::acts(MPI_Comm comm, std::span<const Vec3> places, double time, double dt,
-                   std::span<const double> mesh_flux) const {
-  const auto moves = [](double flux) { return flux != 0; };
-  if (by_mover_ && parallel::any(comm, std::ranges::any_of(mesh_flux, moves))) return true;
-  double change = 0;  // largest of the expressions, each over its own largest value
-  const std::size_t stride = 1 + places.size() / places_looked_at;
-  for (const fv::Expression& e : timed_) {
-    double largest = 0, apart = 0;
-    for (std::size_t i = 0; i < places.size(); i += stride) {
-      const double now = e(places[i], time);
-      largest = std::max(largest, std::abs(now));
-      for (int k = 1; k <= steps_looked_at; ++k) {
-        const double before = e(places[i], std::max(0., time - k * dt));
-        largest = std::max(largest, std::abs(before));
-        apart = std::max(apart, std::abs(now - before));
-      }
-    }
-    largest = parallel::max(comm, largest), apart = parallel::max(comm, apart);
-    if (largest > 0) change = std::max(change, apart / largest);
-  }
-  return change > still;
-}
 
 namespace {
 
@@ -108,7 +31,8 @@ constexpr double friction_error = trapezoidal_error + 1. / 16;  // its rule has 
 constexpr double three_level_error = 1. / 3;
 constexpr double hardly = 0.1;  // share of convection in the rate of change of a flow that answers linearly
 constexpr double quasi_steady = 0.2;  // phase of sound across the mesh [rad] below which there are no waves
-constexpr double window = 0.25;       // recent means cover about this part of the elapsed time
+constexpr double window = 0.25;       // recent values cover about this part of the elapsed time
+constexpr double most_swings = 2;     // of a flow of its own, from which errors of its phase exceed others
 
 /// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
 template <int D>
@@ -142,10 +66,10 @@ struct Differences {
   double step;                               ///< factor of the second difference of the rates
 };
 /// Sums over the volume of the squares of u, its rate, the change of that and the change of that, the volume, and the squares of
-/// what is left; outflow (added later), of what is carried, of the local error.
+/// what is left, of the local error and of what is carried.
 template <int D>
-COUPLET_PROCESSOR_CLONES std::array<double, 9> renew(const Differences<D>& d) {
-  std::array<double, 9> sums{};
+COUPLET_PROCESSOR_CLONES std::array<double, 8> renew(const Differences<D>& d) {
+  std::array<double, 8> sums{};
   for (std::size_t c = 0; c < d.volume.size(); ++c) {
     const double volume = d.volume[c];
     const Vec<D> rate = (d.now[c] - d.u[c]) * d.per_step, change = (rate - d.rate[c]) * d.per_apart;
@@ -155,7 +79,7 @@ COUPLET_PROCESSOR_CLONES std::array<double, 9> renew(const Differences<D>& d) {
     if (d.friction) by_weight += d.of_friction / volume * d.friction[c];
     const Vec<D> turn = by_weight - d.splitting[c], error = d.step * (turn - d.turn[c]);
     d.splitting[c] = by_weight, d.turn[c] = turn;
-    sums[8] += volume * error.squaredNorm();
+    sums[6] += volume * error.squaredNorm();
     if (d.left) {
       d.left[c] += error;
       sums[5] += volume * d.left[c].squaredNorm();
@@ -171,47 +95,12 @@ COUPLET_PROCESSOR_CLONES std::array<double, 9> renew(const Differences<D>& d) {
   return sums;
 }
 
-/// Recent means of a flow's energy, and the friction that follows from them.
-class EnergyMeans {
- public:
-  void add(double dt, const EnergyLedger& ledger) {
-    time_ += dt;
-    const double share = std::min(1., dt / (window * time_));
-    power_ += share * ((ledger.work - work_) / dt - power_);
-    const double held = std::max(0., ledger.energy);
-    gain_ += share * ((held - held_) / dt - gain_);
-    energy_ += share * (held - energy_);
-    work_ = ledger.work, held_ = held;
-  }
-  /// Time of the steps added [s].
-  double time() const { return time_; }
-  /// Dissipation rate of the work [1/s], without the flow's own decay, which reduces errors and solution
-  /// alike.
-  double friction() const {
-    // A flow that gains energy does not lose errors. In a decaying flow, the work alone would exceed the
-    // solution's decay.
-    const double taken = std::max(0., std::min(power_, power_ - gain_));
-    return energy_ > 0 ? taken / (2 * energy_) : 0;
-  }
-  template <class Numbers>
-  void visit(Numbers& numbers) {
-    numbers(time_, power_, gain_, energy_, work_, held_);
-  }
-
- private:
-  double time_ = 0;
-  double power_ = 0, gain_ = 0, energy_ = 0;  // means: work and gain of energy [W], energy [J]
-  double work_ = 0, held_ = 0;                // what the ledger had: work and energy [J]
-};
-
 /// Shares of the error in the velocity over its size, as norms over the volume. Collective.
 ///   mesh    difference of u from a linear fit through the neighbors of each cell, h^2/4 times the Laplacian
 ///           of u on equal cells (recovery of the values)
 ///   step    sum of the local errors of the rates that the scheme extrapolates, see StepErrors; k^-3 each with k
-///           sub-steps. Errors decay with outflow over volume and with dissipation, (W' - E')/(2 E). In a
-///           driven flow (Driving) with a linear response, errors cancel within half a period, so the vector
-///           sum is used if smaller. If friction balances the forces (r dt > 1), the error of an oscillation
-///           is (w dt)^2/8. A self-excited periodic flow drifts in phase, see PhaseDrift; the larger counts.
+///           sub-steps. In a driven flow (Driving) with a linear response, errors cancel within half a period, so the vector
+///           sum is used if smaller. Unknown after some swings of a flow that nothing drives, whose phase drifts.
 ///   linear  residual of the pressure equation: net outflow of the cells over their flux, times the square
 ///           root of the number of cells across. An alternating outflow moves only neighbors, a uniform one
 ///           the whole field; this is the geometric mean.
@@ -222,8 +111,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   void observe(diagnostics::Report&) override { accepted(view_.step.dt); }
   void conclude(diagnostics::Report& report) override { report.errors = parts(); }
   void visit(io::Archive& archive) override {
-    archive.common("numbers", seen_, dt_old_, energy_, left_of_late_, carried_, changed_, largest_, steps_,
-                   drift_);
+    archive.common("numbers", seen_, dt_old_, time_, left_of_late_, carried_, changed_, largest_, steps_);
     for (const auto& [name, vectors] : {std::pair{"left", &left_},
                                         {"rate", &rate_},
                                         {"rate-change", &rate_change_},
@@ -253,10 +141,9 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const State<D>& state = view_.fluid.state();
     const double sub_step = dt / std::max(1, view_.fluid.statistics().sub_steps),
                  step = dt * sub_step * sub_step;
-    const double held = energy_.friction(), less = state.implicit ? 1 / (1 + 0.5 * held * sub_step) : 1;
     const Rates<D>& rates = state.rates_old;
     const double forced = driving_.is_possible() ? mid_step_error : 0;
-    std::array<double, 9> squares = renew(
+    std::array<double, 8> squares = renew(
         Differences<D>{std::span(state.placement->volume).first(n), state.u.data(), u_.data(), rate_.data(),
                        rate_change_.data(), seen_ > 0 ? 1 / dt : 0, seen_ > 1 ? 1 / apart : 0,
                        knows_third && !left_.empty() ? left_.data() : nullptr,
@@ -264,33 +151,24 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
                        rates.viscous.empty() ? nullptr : rates.viscous.data(), splitting_.data(),
                        turn_.data(), adams_bashforth_error - forced, -friction_error - forced,
                        rates.rate.empty() ? adams_bashforth_error : std::max(forced, error_of_waves()),
-                       less * step / (apart * apart)});
+                       step / (apart * apart)});
     if (knows_third) {
-      for (Index f = view_.mesh.n_interior; f < view_.mesh.n_flux_faces(); ++f)
-        squares[6] += std::max(0., view_.fluid.state().phi[f]);
-      if (driving_.is_possible() && has_waves()) squares[6] += waves_out();
       MPI_Allreduce(MPI_IN_PLACE, squares.data(), int(squares.size()), MPI_DOUBLE, MPI_SUM, view_.mesh.comm);
       const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
       const double highest = mean(3) / apart;
       if (dt < (1 - 1e-9) * dt_old_) largest_.forget();
       largest_.add(mean(0), dt);
-      energy_.add(dt, state.ledger);
-      drift_.add(dt, std::max(0., state.ledger.energy), mean(1), mean(2),
-                 adams_bashforth_error * sub_step * sub_step);
-      // Errors leave with the outflow and the waves, and are dissipated by friction.
-      const double forgotten = energy_.friction() + (squares[4] > 0 ? squares[6] / squares[4] : 0);
-      for (Vec<D>& v : left_) v *= std::exp(-forgotten * dt);
-      const double faded = std::exp(-dt / (window * energy_.time()));
+      time_ += dt;
+      const double faded = std::exp(-dt / (window * time_));
       left_of_late_ = std::max(mean(5), left_of_late_ * faded);
       carried_ = std::max(mean(7), carried_ * faded), changed_ = std::max(mean(1), changed_ * faded);
-      steps_.add({.error = mean(8),
+      steps_.add({.error = mean(6),
                   .rate = mean(1),
                   .size = mean(0),
                   .dt = dt,
                   .order = 2,
                   .below = mean(2),
-                  .highest = highest,
-                  .forgotten = forgotten},
+                  .highest = highest},
                  seen_ == 3 ? 3 : 1);
     }
     dt_old_ = dt;
@@ -310,18 +188,6 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       across_ = mesh::extent_of(view_.mesh.comm, view_.fluid.points_at_rest()).size().maxCoeff();
     return changed_ * across_ > quasi_steady * largest_.value() * p.sound_speed();
   }
-  /// Volume of a compressible fluid that waves leave in a second through absorbing boundaries of this rank [m^3/s].
-  double waves_out() const {
-    const FluidParameters& p = view_.parameters();
-    double area = 0;
-    for (const mesh::Patch& patch : view_.mesh.patches) {
-      const BoundaryParameters& b = p.boundaries.at(patch.name);
-      if (!b.absorbing) continue;
-      for (Index f = patch.first; f < patch.first + patch.count; ++f)
-        area += view_.fluid.state().placement->area[f].norm();
-    }
-    return p.sound_speed() * area;
-  }
   diagnostics::ErrorParts parts() {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
@@ -339,7 +205,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const double scale = diagnostics::scale_of(size, falls);
     parts.mesh = recovered_difference() / scale;
     parts.step = step_part() * steps_.size() / scale;
-    parts.too_few_steps = std::isnan(parts.step);
+    parts.misses_step = std::isnan(parts.step);
     // The trapezoidal rule also knows the divergence before.
     const auto& known = view_.parameters().compressibility;
     const bool open = known && known->scheme == WaveScheme::trapezoidal;
@@ -377,7 +243,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     // The errors of a wave travel with it and add up, unless the flow changes too slowly for one.
     const bool stays = !has_waves() && carried_ <= hardly * changed_;
     if (acts) return stays ? std::min(sum, left_of_late_ / steps_.size()) : sum;
-    return driving_.moves() ? sum : std::max(sum, drift_.error() / steps_.size());
+    return driving_.moves() || steps_.swings() <= most_swings ? sum : diagnostics::ErrorParts::unknown;
   }
   double recovered_difference() const {
     const State<D>& s = view_.fluid.state();
@@ -436,8 +302,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   int seen_ = 0;                       // steps that these hold
   double dt_old_ = 0;
   time::StepErrors steps_;
-  PhaseDrift drift_;
-  EnergyMeans energy_;
+  double time_ = 0;  // of the steps judged [s]
   Driving driving_;
   Vectors<D> left_;          // sum of local errors; empty if nothing drives the flow
   double left_of_late_ = 0;  // norm, the largest of late

@@ -1,175 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-
-#include "solid_solver/diagnostics/heat_errors.hpp"
-
+// Temperatures that are solved for: swings from step to step, values below absolute zero, storage that a steady run neglects.
 #include <fmt/format.h>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "common/base/error.hpp"
 #include "common/diagnostics/reference.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/diagnostics/view.hpp"
 
 namespace couplet::solid {
-namespace {
-
-time::TimeSchemeParameters scheme_of(HeatParameters::Scheme scheme) {
-  time::TimeSchemeParameters p;
-  p.type = scheme == HeatParameters::Scheme::euler         ? time::TimeScheme::euler
-           : scheme == HeatParameters::Scheme::three_point ? time::TimeScheme::three_point
-                                                           : time::TimeScheme::trapezoidal;
-  return p;
-}
-
-/// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
-struct Fit {
-  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d values = Eigen::Vector4d::Zero();
-  void add(const Vec3& d, double value) {
-    const double weight = 1 / d.squaredNorm();
-    const Eigen::Vector4d row(1, d.x(), d.y(), d.z());
-    moments += weight * row * row.transpose();
-    values += weight * value * row;
-  }
-  /// Value of the fit in the cell itself; 2-D omits the third direction.
-  double value() const { return moments.completeOrthogonalDecomposition().solve(values)[0]; }
-};
-
-}  // namespace
-
-HeatErrors::HeatErrors(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                       const HeatParameters& parameters)
-    : mesh_(mesh),
-      geometry_(geometry),
-      steady_(parameters.analysis == HeatParameters::Analysis::steady),
-      scheme_(parameters.scheme),
-      steps_(scheme_of(parameters.scheme)) {}
-
-double root_mean_square(const mesh::Mesh& mesh, const mesh::Geometry& geometry, int width,
-                        std::span<const double> cells) {
-  double squares = 0, volume = 0;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    volume += geometry.volume[c];
-    for (int a = 0; a < width; ++a) {
-      const double value = cells[std::size_t(c) * width + a];
-      squares += geometry.volume[c] * value * value;
-    }
-  }
-  return std::sqrt(parallel::sum(mesh.comm, squares) / parallel::sum(mesh.comm, volume));
-}
-
-double HeatErrors::mean(std::span<const double> cells) const {
-  double whole = 0, volume = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    whole += geometry_.volume[c] * cells[c];
-    volume += geometry_.volume[c];
-  }
-  return parallel::sum(mesh_.comm, whole) / parallel::sum(mesh_.comm, volume);
-}
-
-double HeatErrors::size(std::span<const double> temperature, double level) const {
-  std::vector<double> above(temperature.begin(), temperature.begin() + mesh_.cells.n_owned());
-  for (double& t : above) t -= level;
-  return root_mean_square(mesh_, geometry_, 1, above);
-}
-
-void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
-  if (steady_) return;
-  if (!begun_) level_ = mean(before.cells), begun_ = true;
-  const auto n = std::size_t(mesh_.cells.n_owned());
-  std::vector<double> rate(n);
-  for (std::size_t c = 0; c < n; ++c) rate[c] = (now.cells[c] - before.cells[c]) / now.dt;
-  // Rates are at mid-steps, whose distance is the mean of both steps.
-  if (dt_ > 0 && rate_.size() != n)
-    throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
-  if (dt_ > 0)  // the same on all ranks, also on one without cells
-    steps_.add(
-        rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
-        [this](std::span<const double> cells) { return root_mean_square(mesh_, geometry_, 1, cells); });
-  rate_ = std::move(rate);
-  dt_ = now.dt;
-}
-
-/// Difference of each owned cell's temperature from a linear fit through its neighbors [K].
-std::vector<double> HeatErrors::gaps(const Heat& heat) const {
-  const HeatState& now = heat.accepted();
-  const std::vector<double> faces = heat.face_temperature(now);  // also where nothing is solved for
-  const mesh::Geometry& at = geometry_;
-  std::vector<Fit> fits(std::size_t(mesh_.cells.n_local()));
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const Index owner = mesh_.owner[f];
-    if (f >= mesh_.n_interior) {
-      fits[owner].add(at.face_centre[f] - at.cell_centre[owner], faces[f]);
-      continue;
-    }
-    const Index neighbour = mesh_.neighbour[f];
-    const Vec3 d = at.cell_centre[neighbour] + mesh_.shift(f) - at.cell_centre[owner];
-    fits[owner].add(d, now.cells[neighbour]);
-    fits[neighbour].add(-d, now.cells[owner]);
-  }
-  std::vector<double> gap(std::size_t(mesh_.cells.n_owned()));
-  for (std::size_t c = 0; c < gap.size(); ++c) gap[c] = fits[c].value() - now.cells[c];
-  return gap;
-}
-
-/// Error of one or two steps [K]. The temperature of a cell approaches its end like e^(-z) per step; the scheme leaves
-/// `left` of the distance instead. The ratio q of its two changes tells z. For Euler and the trapezoidal rule q is what one
-/// step leaves, for three-point, which begins with Euler, 1.5/(1.5 + z). A single step gets its second change from the same
-/// matrix. Measured on slabs with a source and with a shock, for Fourier numbers from 0.02 to 1000: 0.5 to 1.25 of the error.
-double HeatErrors::of_first_steps(const Heat& heat) const {
-  using Scheme = HeatParameters::Scheme;
-  constexpr double even = 1e-3, least = 1e-9;  // from which 1 - q and 1/q have digits
-  const int steps = heat.accepted().steps;
-  const std::vector<double> second = steps == 1 ? heat.next_change(rate_) : rate_;
-  const std::span<const double> first = steps == 1 ? std::span<const double>(rate_) : steps_.before();
-  if (parallel::any(mesh_.comm, second.size() != first.size())) return diagnostics::ErrorParts::unknown;
-  std::vector<double> error(first.size());
-  for (std::size_t c = 0; c < error.size(); ++c) {
-    const double q = second[c] / first[c];
-    if (!(q < 1 - even)) {  // a rate that does not decay
-      error[c] = 0.5 * steps * dt_ * (second[c] - first[c]);
-      continue;
-    }
-    double z = 1 / std::max(q, least) - 1, left = std::pow(q, steps), changed = 1 - q;
-    if (scheme_ == Scheme::trapezoidal) {
-      z = 2 * (1 - q) / std::max(1 + q, least);
-    } else if (scheme_ == Scheme::three_point && steps == 2) {
-      z *= 1.5;
-      left = (2 - 0.5 * (1 + z)) / ((1 + z) * (1.5 + z));
-      changed = z / (1 + z);
-    }
-    error[c] = (left - std::exp(-steps * z)) / changed * dt_ * first[c];
-  }
-  return root_mean_square(mesh_, geometry_, 1, error);
-}
-
-diagnostics::ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
-  const HeatState& now = heat.accepted();
-  diagnostics::ErrorParts parts;
-  if (now.steps == 0) return parts;
-  const double level = steady_ || !begun_ ? mean(now.cells) : level_;
-  const double varies = size(now.cells, level);
-  const double size = reference ? this->size(now.cells, *reference) : varies;
-  if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
-    return parts;  // uniform temperature has no error
-  parts.mesh = root_mean_square(mesh_, geometry_, 1, gaps(heat)) / size;
-  if (steady_) return parts;
-  parts.step = steps_.over_size() * varies / size;
-  if (std::isnan(parts.step) && now.steps <= 2) parts.step = of_first_steps(heat) / size;
-  return parts;
-}
-
-void HeatErrors::visit(io::Archive& archive) {
-  std::vector<double> numbers = steps_.numbers(), before(steps_.before().begin(), steps_.before().end());
-  archive.common("heat", begun_, level_, dt_, numbers);
-  archive.field(mesh::Entries::owned_cells, "heat-rate-before", before, 1);
-  archive.field(mesh::Entries::owned_cells, "heat-rate", rate_, 1);
-  if (archive.reads()) steps_.restore(numbers, before);
-}
-
 namespace {
 
 constexpr int patience = 4;              // turns in a row
@@ -332,20 +173,6 @@ void HeatStorage::look(diagnostics::Report& report) {
     report.findings.push_back(std::move(*finding));
 }
 
-/// Error of the temperature of a body that only conducts heat.
-class HeatError final : public diagnostics::Diagnostic {
- public:
-  explicit HeatError(const Heat& heat)
-      : heat_(heat), errors_(heat.conduction().mesh(), heat.conduction().geometry(), heat.parameters()) {}
-  void observe(diagnostics::Report&) override { errors_.see_step(heat_.trial(), heat_.accepted()); }
-  void conclude(diagnostics::Report& report) override { report.errors = errors_.parts(heat_); }
-  void visit(io::Archive& archive) override { errors_.visit(archive); }
-
- private:
-  const Heat& heat_;
-  HeatErrors errors_;
-};
-
 }  // namespace
 
 diagnostics::Made heat_swing(const Heat& heat) {
@@ -362,7 +189,5 @@ diagnostics::Made heat_storage(const Heat& heat) {
   if (!heat.is_steady()) return nullptr;
   return std::make_shared<HeatStorage>(heat);
 }
-
-diagnostics::Made heat_error(const Heat& heat) { return std::make_shared<HeatError>(heat); }
 
 }  // namespace couplet::solid
