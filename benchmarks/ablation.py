@@ -236,8 +236,8 @@ def bodies():
         yield Run(f"LE1, {r} cells", "le1/case.yaml", [mesh(f"nr: {r}, nt: {3 * r // 2}")], probe("D x"), [-1.02207e-4])
     for h in (0.01, 0.006):
         yield Run(f"bracket of tetrahedra, {h} m", "filleted-bracket/case.yaml", [mesh(f"h: {h}")], probe("tip y"), [mesh("h: 0.003")])
-    for gradient in ("corrected", "thesis"):
-        yield Run(f"LE1, 8 cells, gradient {gradient}", "le1/case.yaml", [mesh("nr: 8, nt: 12"), S + f"solution-method.face-gradient={gradient}"], probe("D x"), [-1.02207e-4])
+    yield Run("LE1, 8 cells, gradient thesis", "le1/case.yaml",
+              [mesh("nr: 8, nt: 12"), S + "solution-method.face-gradient=thesis"], probe("D x"), [-1.02207e-4])
 
 
 LARGE = [S + "material.law=saint-venant-kirchhoff", S + "boundaries.tip.value=[14418.3776*t, 14418.3776*t, 0]"]

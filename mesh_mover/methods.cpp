@@ -109,10 +109,8 @@ class PseudoSolid final : public MotionMethod {
       of_factors.method = linalg::LinearMethod::direct_planar;
       factors_ = std::make_unique<linalg::LinearSolver>("the mesh displacement", *matrix_, of_factors);
     } else {
-      elastic::ElasticPreconditioner::Options of_multigrid;
-      of_multigrid.scheme = elastic::FaceGradientScheme::symmetric;
-      multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(mesh_, *rows_, std::span<const double>{},
-                                                                    of_multigrid);
+      multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(
+          mesh_, *rows_, elastic::ElasticPreconditioner::Options{});
     }
     krylov_ = std::make_unique<linalg::KrylovSolver>(
         "the mesh displacement", mesh_.comm, unknowns_.size(),

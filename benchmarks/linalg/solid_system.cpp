@@ -34,9 +34,7 @@ struct Files {
   std::string of(const char* name) const { return folder + "/" + name + "-" + ranks; }
 };
 
-SolidProblem problem_of(const SolidBody& body) {
-  return {body.mesh(), body.elastic(), {}, body.kernel(), 0, nullptr};
-}
+SolidProblem problem_of(const SolidBody& body) { return {body.mesh(), body.elastic(), {}, body.kernel(), 0}; }
 
 /// Records the step as Couplet solves it: its load and result.
 void record(Solid& solid, const Files& files) {
@@ -153,9 +151,8 @@ Result by_cycle(const System& system, const SolidBody& body, const std::string& 
   const double choosing = whole.seconds();
   petsc_check(PetscOptionsInsertString(nullptr, options.c_str()));
   elastic::ElasticPreconditioner::Options of;
-  of.scheme = problem.kernel.scheme();
   of.cycle = petsc_cycle;
-  elastic::ElasticPreconditioner preconditioner(problem.mesh, problem.elastic, {}, of);
+  elastic::ElasticPreconditioner preconditioner(problem.mesh, problem.elastic, of);
   std::optional<elastic::CurrentRigidModes> modes;
   if (aggregates > 0) {
     modes.emplace(problem.mesh, problem.elastic, aggregates, std::vector<double>{});

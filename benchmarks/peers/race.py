@@ -22,8 +22,7 @@ METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; i
     "S": "type: segregated, acceleration: none, face-gradient: thesis",
     "SA": "type: segregated, acceleration: aitken, face-gradient: thesis",
     "C": "type: block-coupled, linear-solver: bicgstab-ilu, face-gradient: thesis",
-    "newton-krylov": "type: newton-krylov, preconditioner: multigrid, face-gradient: thesis",
-    "symmetric": "type: newton-krylov, preconditioner: multigrid, face-gradient: symmetric",
+    "newton-krylov": "type: newton-krylov, preconditioner: multigrid, face-gradient: symmetric",
 }
 
 

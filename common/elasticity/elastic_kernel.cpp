@@ -2,6 +2,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 
 #include "common/elasticity/symmetric/symmetric_kernel.hpp"
+#include "common/elasticity/thesis/least_squares.hpp"
 
 namespace couplet::elastic {
 
@@ -10,7 +11,7 @@ ElasticKernel::ElasticKernel(const mesh::Mesh& mesh, const ElasticOperator& rows
   if (is_axisymmetric(rows) || is_symmetric())
     symmetric_ = std::make_unique<SymmetricKernel>(mesh, rows);
   else
-    least_squares_ = make_least_squares_kernel(mesh, rows, scheme == FaceGradientScheme::corrected);
+    least_squares_ = std::make_unique<LeastSquares>(mesh, rows);
 }
 
 ElasticKernel::~ElasticKernel() = default;
@@ -30,12 +31,12 @@ SymmetricSpace& ElasticKernel::cleared() const {
 void ElasticKernel::apply(std::span<const double> unknowns, std::span<const double> known,
                           std::span<double> result) const {
   symmetric_ ? apply_with_mass(unknowns, known, 0, true, result)
-             : least_squares_.apply(unknowns, known, result);
+             : least_squares_->apply(unknowns, known, result);
 }
 
 void ElasticKernel::face_gradients(std::span<const double> unknowns, std::span<const double> known,
                                    const TakeGradient& take, Index first, Index end) const {
-  if (!symmetric_) return least_squares_.face_gradients(unknowns, known, take, first, end);
+  if (!symmetric_) return least_squares_->face_gradients(unknowns, known, take, first, end);
   filled(unknowns, known);
   symmetric_->face_gradients(take, first, end);
 }
@@ -43,7 +44,7 @@ void ElasticKernel::face_gradients(std::span<const double> unknowns, std::span<c
 void ElasticKernel::point_values(std::span<const double> unknowns, std::span<const double> known,
                                  std::span<double> points) const {
   symmetric_ ? filled(unknowns, known).point_values(points)
-             : least_squares_.point_values(unknowns, known, points);
+             : least_squares_->point_values(unknowns, known, points);
 }
 
 void ElasticKernel::face_means(std::span<const Index> faces, std::span<const double> unknowns,

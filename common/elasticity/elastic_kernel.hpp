@@ -12,13 +12,13 @@
 
 namespace couplet::elastic {
 
+class LeastSquares;
 class SymmetricKernel;
 class SymmetricSpace;
 
 /// Discretization of the displacement gradient at faces.
 enum class FaceGradientScheme {
   thesis,     ///< (2.53)-(2.58): the operator that ElasticOperator assembles; locks in bending
-  corrected,  ///< same unknowns and conditions, with second-order corrections from cell gradients
   symmetric,  ///< gradient of the thesis, forces by its transpose, from an energy (SymmetricKernel)
 };
 
@@ -36,17 +36,8 @@ struct ElasticLoads {
   std::vector<double> pressure;  ///< of thermal strain, per local face [Pa], or empty
 };
 
-/// Matrix-free application of the rows of ElasticOperator: result = A u + K known. It takes about 80 ns
-/// (corrected) per hexahedron, whose assembled rows would move more than 2 kB.
-///
-/// `corrected` uses least-squares cell gradients G_P (over face neighbors, mirrored at symmetry planes).
-/// Their weight 1/d^3 is exact for quadratics on stretched lines of cells. The corrected values are
-///   u_V = sum w_i (u_i + 1/2 r_i . G_i),  r_i = x_V - x_i   vertices; exact for quadratics
-///   u_e = (u_V1 + u_V2) / 2 - L . (G_V2 - G_V1) / 8   middle of an edge (3-D; not at known vertices)
-///   d . grad u = u_N - u_P + (x_f - (x_P + x_N) / 2) . (G_N - G_P)      center of an interior face
-///   d . grad u = 2 (u_B - u_P) - d . G_P                                boundary face
-/// where G_i of a boundary node uses the face's vertices and the normal derivative. All corrections vanish
-/// for linear fields. Without them, a beam of cells of length h and depth t is too stiff by 1.15 (h/t)^2.
+/// Rows of ElasticOperator: result = A u + K known. `symmetric` applies them without a matrix, `thesis` by the
+/// assembled one.
 class ElasticKernel {
  public:
   /// Keeps references to the mesh and `rows`, which defines unknowns, known columns, vertices and materials.
@@ -108,14 +99,6 @@ class ElasticKernel {
   void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
                    std::span<double> result, std::span<double> defect) const;
 
-  /// These functions with the published gradient or its corrections.
-  struct LeastSquares {
-    using Values = std::span<const double>;
-    std::function<void(Values unknowns, Values known, std::span<double> result)> apply, point_values;
-    std::function<void(Values unknowns, Values known, const TakeGradient&, Index first, Index end)>
-        face_gradients;
-  };
-
  private:
   SymmetricSpace& filled(std::span<const double> unknowns, std::span<const double> known) const;
   SymmetricSpace& cleared() const;
@@ -123,10 +106,7 @@ class ElasticKernel {
   const ElasticOperator* rows_;
   FaceGradientScheme scheme_;
   std::unique_ptr<SymmetricKernel> symmetric_;  // one of these two is set
-  LeastSquares least_squares_;
+  std::unique_ptr<LeastSquares> least_squares_;
 };
-
-ElasticKernel::LeastSquares make_least_squares_kernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                                      bool is_corrected);
 
 }  // namespace couplet::elastic

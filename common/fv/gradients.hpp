@@ -51,12 +51,4 @@ struct FaceGradient {
   }
 };
 
-/// Mean gradient of each owned cell by Gauss's theorem from values and gradients at points, which define a
-/// quadratic on every edge. Quadrilaterals are split into triangles around the mean of their corners. Exact
-/// for quadratic fields on any (also warped) cell. `values` has mesh.dim components per local point, `slopes`
-/// their gradients, with ghosts up to date. Entry (i, j) is the derivative of component j along i in the
-/// reference configuration.
-std::vector<Tensor3> gradients_from_points(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
-                                           std::span<const double> values, std::span<const Tensor3> slopes);
-
 }  // namespace couplet::fv

@@ -10,9 +10,7 @@ import generate  # noqa: E402
 METHODS = {  # keys of solution-method; the thesis's operator and tolerance
     "segregated": "type: segregated, face-gradient: thesis, relative-tolerance: 1e-7",
     "block-coupled": "type: block-coupled, linear-solver: bicgstab-ilu, face-gradient: thesis, relative-tolerance: 1e-7",
-    "newton-krylov": "type: newton-krylov, face-gradient: thesis, relative-tolerance: 1e-7",
-    "newton-krylov, corrected": "type: newton-krylov, face-gradient: corrected, relative-tolerance: 1e-7",
-    "newton-krylov, symmetric": "type: newton-krylov, face-gradient: symmetric, relative-tolerance: 1e-7",
+    "newton-krylov": "type: newton-krylov, face-gradient: symmetric, relative-tolerance: 1e-7",
 }
 
 

@@ -2,6 +2,7 @@
 #include "solid_solver/body/recovered_strain.hpp"
 
 #include <Eigen/Cholesky>
+#include <optional>
 
 #include <algorithm>
 #include <array>
@@ -49,7 +50,7 @@ void RecoveredStrain::add(Index face, const Tensor3& strain) {
 }
 
 void RecoveredStrain::recover() {
-  const GlobalIndex stride = 1 + mesh_.cells.n_global() / patches_looked_at;
+  stride_ = 1 + mesh_.cells.n_global() / patches_looked_at;
   for (std::size_t c = 0; c < std::size_t(mesh_.cells.n_owned()); ++c)
     for (std::size_t i = 0; i < std::size_t(tensor_size); ++i)
       if (volume_[c] > 0) mean_[c * tensor_size + i] /= volume_[c];
@@ -58,7 +59,7 @@ void RecoveredStrain::recover() {
   std::vector<Index> mark(std::size_t(mesh_.cells.n_local()), -1), patch;
   slot_.assign(std::size_t(mesh_.cells.n_owned()), -1);
   for (Index cell = 0; cell < mesh_.cells.n_owned(); ++cell) {
-    if (mesh_.cell_id[cell] % stride != 0) continue;  // the same ones on any number of ranks
+    if (mesh_.cell_id[cell] % stride_ != 0) continue;  // the same ones on any number of ranks
     patch.clear();
     gather_cells(mesh_, cells_of_point, cell, mark, patch);
     slot_[std::size_t(cell)] = Index(linear_.size());
@@ -95,19 +96,29 @@ RecoveredStrain::Linear RecoveredStrain::fit(Index cell, const std::vector<Index
 }
 
 void RecoveredStrain::compare(Index face, const Tensor3& strain) {
-  const PackedTensor packed = pack(strain);
-  visit_pyramids(face, [&](Index cell, const Vec3& place, double volume) {
-    const Index slot = slot_[std::size_t(cell)];
-    if (slot < 0) return;
-    const Linear& linear = linear_[std::size_t(slot)];
-    const Vec3 x = place - geometry_.cell_centre[cell];
-    PackedTensor gap = packed;
-    for (std::size_t k = 0; k < gap.size(); ++k)
-      gap[k] -= double(linear[0][k]) + linear[1][k] * x[0] + linear[2][k] * x[1] + linear[3][k] * x[2];
-    const Tensor3 missed = unpack(gap);
-    difference_ += volume * contraction(rows_.stress(cell, missed), missed);
-    whole_ += volume * contraction(rows_.stress(cell, strain), strain);
+  visit_pyramids(face, [&](Index cell, const Vec3&, double volume) {
+    if (slot_[std::size_t(cell)] < 0) return;
+    const Tensor3 missed = gap(face, cell, strain);
+    difference_ += volume * product(cell, missed, missed);
+    whole_ += volume * product(cell, strain, strain);
   });
+}
+
+Tensor3 RecoveredStrain::gap(Index face, Index cell, const Tensor3& strain) const {
+  const Index slot = slot_[std::size_t(cell)];
+  if (slot < 0) return Tensor3::Zero();
+  const Linear& linear = linear_[std::size_t(slot)];
+  Vec3 x = geometry_.face_centre[face] - geometry_.cell_centre[cell];
+  if (face < mesh_.n_interior && mesh_.neighbour[face] == cell) x -= mesh_.shift(face);
+  PackedTensor gap = pack(strain);
+  for (std::size_t k = 0; k < gap.size(); ++k)
+    gap[k] -= double(linear[0][k]) + linear[1][k] * x[0] + linear[2][k] * x[1] + linear[3][k] * x[2];
+  return unpack(gap);
+}
+
+double RecoveredStrain::product(Index cell, const Tensor3& a, const Tensor3& b) const {
+  const double whole = contraction(rows_.stress(cell, a), b);
+  return rows_.volume_by_cells() ? whole - rows_.lame(cell).lambda * a.trace() * b.trace() : whole;
 }
 
 double RecoveredStrain::missed() const {
@@ -159,37 +170,48 @@ double InnerVariation::missed() const {
   return whole > 0 ? missed / whole : 0;
 }
 
-StrainGap strain_gap(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known,
-                     Tensor3 (*strain)(const Tensor3&)) {
+MissedStrain missed_strain(const SolidBody& body, std::span<const double> unknowns,
+                           std::span<const double> known, Tensor3 (*strain)(const Tensor3&), bool recovers) {
   const mesh::Mesh& mesh = body.mesh();
-  const elastic::ElasticOperator& rows = body.elastic();
   const Index n = mesh.n_flux_faces();
-  StrainGap found{.strain = std::vector<Tensor3>(std::size_t(n))};
-  InnerVariation variation(mesh, rows);
-  double difference = 0, size = 0;
-  const auto add = [&](Index f, const Tensor3& e, double& sum) {
-    elastic::visit_sides(mesh, body.geometry(), f,
-                         [&](Index c, double v) { sum += v * rows.lame(c).mu * e.squaredNorm(); });
-  };
+  std::optional<InnerVariation> variation;
+  std::optional<RecoveredStrain> recovered;
+  if (InnerVariation::is_needed(mesh, body.elastic())) variation.emplace(mesh, body.elastic());
+  if (recovers) recovered.emplace(mesh, body.elastic());
+  if (!variation && !recovered) return {};
   body.kernel().face_gradients(
       unknowns, known,
       [&](Index f, const Tensor3& h) {
-        found.strain[std::size_t(f)] = strain(h);
-        variation.add(f, found.strain[std::size_t(f)]);
-        add(f, found.strain[std::size_t(f)], size);
+        const Tensor3 e = strain(h);
+        if (variation) variation->add(f, e);
+        if (recovered) recovered->add(f, e);
       },
       0, n);
-  elastic::ElasticKernel(
-      mesh, rows,
-      body.is_corrected() ? elastic::FaceGradientScheme::thesis : elastic::FaceGradientScheme::corrected)
-      .face_gradients(
-          unknowns, known,
-          [&](Index f, const Tensor3& h) { add(f, strain(h) - found.strain[std::size_t(f)], difference); }, 0,
-          n);
-  size = parallel::sum(mesh.comm, size), difference = parallel::sum(mesh.comm, difference);
-  if (size > 0) found.missed = difference / size;
-  if (InnerVariation::is_needed(mesh, rows)) found.variation = variation.missed();
-  return found;
+  MissedStrain missed;
+  if (variation) missed.variation = variation->missed();
+  if (!recovered) return missed;
+  recovered->recover();
+  body.kernel().face_gradients(
+      unknowns, known, [&](Index f, const Tensor3& h) { recovered->compare(f, strain(h)); }, 0, n);
+  missed.recovered = recovered->missed();
+  missed.is_one_row = recovered->is_one_row();
+  return missed;
+}
+
+double missed_product(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
+                      std::span<const Tensor3> a, std::span<const Tensor3> b) {
+  RecoveredStrain of_a(mesh, rows), of_b(mesh, rows);
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    of_a.add(f, a[std::size_t(f)]);
+    of_b.add(f, b[std::size_t(f)]);
+  }
+  of_a.recover();
+  of_b.recover();
+  double sum = 0;
+  elastic::visit_pyramids(mesh, rows.geometry(), [&](Index c, Index f, double volume) {
+    sum += volume * of_a.product(c, of_a.gap(f, c, a[std::size_t(f)]), of_b.gap(f, c, b[std::size_t(f)]));
+  });
+  return of_a.cells_per_patch() * parallel::sum(mesh.comm, sum);
 }
 
 }  // namespace couplet::solid

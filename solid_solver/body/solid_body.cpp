@@ -17,7 +17,7 @@
 namespace couplet::solid {
 namespace {
 
-/// Largest Poisson's ratio of the gradients without an energy, which lock beyond it.
+/// Largest Poisson's ratio of the thesis's gradient, which locks beyond it.
 constexpr double most_poissons_ratio = 0.499;
 
 /// True if a face has a vertex that is free in a direction known at the face.
@@ -132,7 +132,7 @@ void SolidBody::find_mass() {
         "Give the part its own patch, hold all components, or use 'face-gradient: thesis'.");
   if (!kernel_.is_symmetric() && largest_poissons_ratio(parameters_) > most_poissons_ratio)
     throw Error(
-        "material.poissons-ratio: {:g} exceeds {:g}, the limit of 'face-gradient: thesis' and 'corrected'; "
+        "material.poissons-ratio: {:g} exceeds {:g}, the limit of 'face-gradient: thesis'; "
         "use 'symmetric' (with 'solution-method: {{type: auto}}' and without 'zero-normal-gradient').",
         largest_poissons_ratio(parameters_), most_poissons_ratio);
   if (!is_dynamic()) return;

@@ -54,7 +54,6 @@ class SolidBody final {
   /// True if the kernel has its own mass, so that all its nodes have inertia.
   bool has_mass() const { return has_mass_; }
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
-  bool is_corrected() const { return kernel_.scheme() == elastic::FaceGradientScheme::corrected; }
   /// True if the acceleration is written or probed and must be stored.
   bool wants_acceleration() const;
   /// [kg/m^3]

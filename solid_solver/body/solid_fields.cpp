@@ -5,27 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/fv/gradients.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::solid {
 namespace {
-
-/// Cells whose neighbors by vertex all have the same type and material. Elsewhere point values are less
-/// accurate (type) or have no single gradient (material).
-std::vector<bool> uniform_surroundings(const mesh::Mesh& mesh) {
-  constexpr int unseen = -1, several = -2;
-  std::vector<int> around(mesh.points.n_local(), unseen);
-  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
-    const int here = static_cast<int>(mesh.cell_type[c]) + 16 * mesh.material_of(c);
-    for (const Index v : mesh.cell_points[c])
-      around[v] = around[v] == unseen || around[v] == here ? here : several;
-  }
-  std::vector<bool> uniform(mesh.cells.n_owned(), true);
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    for (const Index v : mesh.cell_points[c]) uniform[c] = uniform[c] && around[v] != several;
-  return uniform;
-}
 
 /// Outward unit normal of a boundary face with points at `places`, oriented as the reference one.
 Vec3 normal_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index face,
@@ -195,14 +178,11 @@ SidedTensors SolidFields::strain_sides(std::span<const double> points) const {
 // Gradients of the displacement in cells, from which stress and strain follow.
 
 /// Mean of the face gradients weighted by the pyramids over the faces; exact for linear gradients if those of
-/// the faces are. The corrected gradient has point values exact for quadratics. Gauss's theorem with face
-/// means of these has an error of h^2/24 times the third derivatives along a line of cells, the mean of face
-/// differences h^2/6.
+/// the faces are.
 std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) const {
   const Index n_owned = mesh_.cells.n_owned();
-  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero()), on_boundary;
+  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
   std::vector<double> weight(n_owned, 0);
-  if (body_.is_corrected()) on_boundary.resize(mesh_.boundary.n_owned());
   body_.visit_gradients(displacement(points), [&](Index f, const Tensor3& here) {
     const auto add = [&](Index c) {
       if (c >= n_owned) return;
@@ -212,20 +192,9 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
       weight[c] += pyramid;
     };
     add(mesh_.owner[f]);
-    if (f < mesh_.n_interior)
-      add(mesh_.neighbour[f]);
-    else if (body_.is_corrected())
-      on_boundary[f - mesh_.n_interior] = here;
+    if (f < mesh_.n_interior) add(mesh_.neighbour[f]);
   });
   for (Index c = 0; c < n_owned; ++c) gradient[c] /= weight[c];
-  weight = std::vector<double>();
-  if (!body_.is_corrected()) return gradient;
-
-  const std::vector<Tensor3> at_points = point_tensors().interpolate_full(gradient, on_boundary);
-  const std::vector<Tensor3> better = fv::gradients_from_points(mesh_, geometry_, points, at_points);
-  const std::vector<bool> uniform = uniform_surroundings(mesh_);
-  for (Index c = 0; c < n_owned; ++c)
-    if (uniform[c]) gradient[c] = better[c];
   return gradient;
 }
 

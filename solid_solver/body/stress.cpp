@@ -30,8 +30,6 @@ std::vector<double> with_ghosts(const parallel::IndexMap& map, std::span<const T
   return values;
 }
 
-std::span<const double> all_of(const Tensor3& tensor) { return {tensor.data(), 9}; }
-
 }  // namespace
 
 PackedTensor pack(const Tensor3& t) { return {t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(0, 2)}; }
@@ -96,16 +94,6 @@ PointTensors::PointTensors(const mesh::Mesh& mesh, const mesh::Geometry& geometr
   }
 }
 
-/// Averages the tensors at points of symmetry planes with their mirror images.
-template <class Get, class Set>
-void PointTensors::mirror(const Get& get, const Set& set) const {
-  for (const Mirror& mirror : mirrors_)
-    for (const Index v : mirror.points) {
-      const Tensor3 tensor = get(v);
-      set(v, Tensor3(0.5 * (tensor + mirror.reflection * tensor * mirror.reflection)));
-    }
-}
-
 SidedTensors PointTensors::interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const {
   const std::vector<double> in_cells = with_ghosts(mesh_->cells, cells, tensor_size, pack);
   const std::vector<double> on_faces = with_ghosts(mesh_->boundary, faces, tensor_size, pack);
@@ -117,11 +105,12 @@ SidedTensors PointTensors::interpolate(std::span<const Tensor3> cells, std::span
       Eigen::Map<Vec<tensor_size>>(at(v)) = mesh_->cell_material.empty()
                                                 ? row_of(v).scalar_at<tensor_size>(v, in_cells, on_faces)
                                                 : side_of(v, m, in_cells, on_faces);
-    mirror(
-        [&](Index v) {
-          return unpack({at(v), tensor_size});
-        },
-        [&](Index v, const Tensor3& tensor) { std::ranges::copy(pack(tensor), at(v)); });
+    // Averages with the mirror images at symmetry planes.
+    for (const Mirror& mirror : mirrors_)
+      for (const Index v : mirror.points) {
+        const Tensor3 tensor = unpack({at(v), tensor_size});
+        std::ranges::copy(pack(0.5 * (tensor + mirror.reflection * tensor * mirror.reflection)), at(v));
+      }
     mesh_->points.update_ghosts(values, tensor_size);
   }
   return sides;
@@ -144,18 +133,6 @@ Vec<tensor_size> PointTensors::side_of(Index point, int material, std::span<cons
     whole += weights[i];
   }
   return sum / whole;
-}
-
-std::vector<Tensor3> PointTensors::interpolate_full(std::span<const Tensor3> cells,
-                                                    std::span<const Tensor3> faces) const {
-  const std::vector<double> in_cells = with_ghosts(mesh_->cells, cells, 9, all_of);
-  const std::vector<double> on_faces = with_ghosts(mesh_->boundary, faces, 9, all_of);
-  std::vector<Tensor3> tensors(mesh_->points.n_local());
-  for (Index v = 0; v < mesh_->points.n_local(); ++v)
-    Eigen::Map<Vec<9>>(tensors[v].data()) = row_of(v).scalar_at<9>(v, in_cells, on_faces);
-  mirror([&](Index v) { return tensors[v]; }, [&](Index v, const Tensor3& tensor) { tensors[v] = tensor; });
-  mesh_->points.update_ghosts({tensors.front().data(), tensors.size() * 9}, 9);
-  return tensors;
 }
 
 }  // namespace couplet::solid

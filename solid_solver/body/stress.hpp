@@ -41,15 +41,10 @@ class PointTensors {
                const fv::VertexInterpolation& inside);
   /// `cells`: tensors of owned cells; `faces`: tensors of boundary faces of owned cells. Collective.
   SidedTensors interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
-  /// Does the same for tensors that are not symmetric. Materials are averaged.
-  std::vector<Tensor3> interpolate_full(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
 
  private:
   Vec<tensor_size> side_of(Index point, int material, std::span<const double> cells,
                            std::span<const double> faces) const;
-  /// `get(i)`, `set(i, tensor)` of the points of symmetry planes.
-  template <class Get, class Set>
-  void mirror(const Get& get, const Set& set) const;
   struct Mirror {
     Tensor3 reflection;  // I - 2 n n
     std::vector<Index> points;

@@ -105,7 +105,7 @@ const char* cure_of(const SolidView& view) {
     return "a time scheme that does not conserve the energy of a nonlinear law; a shorter step, "
            "'energy-momentum: true' or 'time-scheme: {type: bathe}' prevents it";
   if (view.body.kernel().is_symmetric()) return "a shorter step or 'time-scheme: {type: bathe}' prevents it";
-  return "the operator of 'solution-method: {face-gradient: thesis}' and 'corrected' is not symmetric, "
+  return "the operator of 'solution-method: {face-gradient: thesis}' is not symmetric, "
          "so undamped motion grows on skewed, stretched or perturbed cells; use 'face-gradient: "
          "symmetric', or damp it by 'time-scheme: {type: bathe}' or a little 'damping: {stiffness: "
          "...}'; 'output: {spectrum: true}' computes its rate on a coarse mesh of the same kind";

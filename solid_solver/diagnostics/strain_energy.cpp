@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/diagnostics/error_parts.hpp"
@@ -45,41 +44,21 @@ bool is_strained(const SolidBody& body) {
 Tensor3 small_strain(const Tensor3& h) { return 0.5 * (h + h.transpose()); }
 Tensor3 greens_strain(const Tensor3& h) { return 0.5 * (h + h.transpose() + h.transpose() * h); }
 
-/// Estimates of what the mesh misses of the strains within its cells, where available.
-class WithinCells {
- public:
-  explicit WithinCells(const SolidBody& body)
-      : mesh_(body.mesh()), strain_(has_finite_strain(body.parameters()) ? greens_strain : small_strain) {
-    if (!body.kernel().is_symmetric()) return;
-    // A static body at small strain has displacement_error().
-    if (body.is_dynamic() || body.seat() || strain_ == greens_strain)
-      recovered_.emplace(mesh_, body.elastic());
-    if (!is_strained(body) && InnerVariation::is_needed(mesh_, body.elastic()))
-      variation_.emplace(mesh_, body.elastic());
-  }
-  bool looks() const { return variation_ || recovered_; }
-  void add(Index f, const Tensor3& gradient) {
-    const Tensor3 strain = strain_(gradient);
-    if (variation_) variation_->add(f, strain);
-    if (recovered_) recovered_->add(f, strain);
-  }
-  /// Call after all faces. Collective.
-  void finish(const elastic::ElasticKernel& kernel, const elastic::ElasticField& u, StrainAudit& audit) {
-    if (variation_) audit.inner_variation = variation_->missed();
-    if (!recovered_) return;
-    recovered_->recover();
-    const auto compare = [&](Index f, const Tensor3& g) { recovered_->compare(f, strain_(g)); };
-    kernel.face_gradients(u.unknowns, u.known, compare, 0, recovered_->n_faces());
-    audit.recovered_difference =
-        recovered_->is_one_row() ? diagnostics::ErrorParts::unknown : recovered_->missed();
-  }
+/// A static body at small strain has displacement_error() instead of recovered strains.
+bool recovers(const SolidBody& body) {
+  return body.is_dynamic() || body.seat() || has_finite_strain(body.parameters());
+}
 
- private:
-  const mesh::Mesh& mesh_;
-  Tensor3 (*strain_)(const Tensor3&);
-  std::optional<InnerVariation> variation_;
-  std::optional<RecoveredStrain> recovered_;
-};
+/// What the mesh misses of the strains within its cells; with another gradient than the symmetric one nothing is known. Collective.
+MissedStrain missed_within(const SolidBody& body, std::span<const double> unknowns,
+                           std::span<const double> known) {
+  if (!body.kernel().is_symmetric()) return {.is_one_row = true};
+  MissedStrain missed =
+      missed_strain(body, unknowns, known,
+                    has_finite_strain(body.parameters()) ? greens_strain : small_strain, recovers(body));
+  if (is_strained(body)) missed.variation = 0;
+  return missed;
+}
 
 /// Equilibrium residual times the displacement. If it is zero, the strain energy of a symmetric operator is
 /// half the loads' work. Static solves; this rank's part.
@@ -94,11 +73,6 @@ double residual_work(const SolidView& view, std::span<const double> unknowns) {
 }
 
 }  // namespace
-
-double StrainAudit::missed_by_mesh() const {
-  if (!recovered_difference || std::isnan(*recovered_difference)) return diagnostics::ErrorParts::unknown;
-  return std::max(*recovered_difference, inner_variation);
-}
 
 double StrainAudit::mismatch() const { return scale > 0 ? std::abs(stress_work - strain_energy) / scale : 0; }
 
@@ -161,43 +135,37 @@ StrainAudit audit_strain(const SolidView& view, bool looks_within) {
   const std::vector<double> known =
       body.known_of({state.cell_u, state.face_u, view.fields.point_displacement()});
   const elastic::ElasticOperator& rows = body.elastic();
-  const bool is_symmetric = body.kernel().is_symmetric();
-  WithinCells within(body);
-  double energy = 0, work = 0;
-  const auto add = [&](Index f, const Tensor3& gradient) {
-    if (looks_within) within.add(f, gradient);
-    if (is_symmetric || mesh.owner[f] >= mesh.cells.n_owned()) return;  // another rank's
-    const Tensor3 stress = rows.stress(mesh.owner[f], gradient);
-    energy += 0.5 * std::abs(geometry.face_area[f].dot(line_of(mesh, geometry, f))) / mesh.dim *
-              contraction(stress, gradient);
-    work += work_on(mesh, rows, state, f, stress * geometry.face_area[f]);
-  };
   const elastic::ElasticField u{unknowns, known};
-  if (!is_symmetric || (looks_within && within.looks()))
-    body.kernel().face_gradients(unknowns, known, add, 0, mesh.n_flux_faces());
-  if (is_symmetric) {
+  double energy = 0, work = 0;
+  if (body.kernel().is_symmetric()) {
     energy = 0.5 * body.kernel().product(elastic::ElasticPart::stiffness, u, u);
     work = energy + 0.5 * residual_work(view, unknowns);
+  } else {
+    const auto add = [&](Index f, const Tensor3& gradient) {
+      if (mesh.owner[f] >= mesh.cells.n_owned()) return;  // another rank's
+      const Tensor3 stress = rows.stress(mesh.owner[f], gradient);
+      energy += 0.5 * std::abs(geometry.face_area[f].dot(line_of(mesh, geometry, f))) / mesh.dim *
+                contraction(stress, gradient);
+      work += work_on(mesh, rows, state, f, stress * geometry.face_area[f]);
+    };
+    body.kernel().face_gradients(unknowns, known, add, 0, mesh.n_flux_faces());
   }
   audit.strain_energy = parallel::sum(mesh.comm, energy);
   audit.stress_work = parallel::sum(mesh.comm, work);
-  if (looks_within) within.finish(body.kernel(), u, audit);
   audit.scale = scales_of(view).of(audit.strain_energy);
-  if (audit.recovered_difference && audit.scale > 0)
-    *audit.recovered_difference *= std::min(1.0, audit.strain_energy / audit.scale);
+  if (!looks_within) return audit;
+  const MissedStrain missed = missed_within(body, unknowns, known);
+  audit.inner_variation = missed.variation;
+  if (recovers(body) && !missed.is_one_row) {
+    const double share = audit.scale > 0 ? std::min(1.0, audit.strain_energy / audit.scale) : 1;
+    audit.missed_by_mesh = std::max(share * missed.recovered, missed.variation);
+  }
   return audit;
 }
 
 double missed_at_large_strain(const SolidView& view) {
-  const SolidBody& body = view.body;
-  const std::vector<double> unknowns = view.unknowns(), known = view.known();
-  WithinCells within(body);
-  if (!within.looks()) return diagnostics::ErrorParts::unknown;
-  body.kernel().face_gradients(
-      unknowns, known, [&](Index f, const Tensor3& h) { within.add(f, h); }, 0, body.mesh().n_flux_faces());
-  StrainAudit audit;
-  within.finish(body.kernel(), {unknowns, known}, audit);
-  return audit.missed_by_mesh();
+  const MissedStrain missed = missed_within(view.body, view.unknowns(), view.known());
+  return missed.is_one_row ? diagnostics::ErrorParts::unknown : std::max(missed.recovered, missed.variation);
 }
 
 bool is_time_to_look(const SolidView& view) {

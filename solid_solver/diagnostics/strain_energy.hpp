@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
 #include "common/base/severity.hpp"
+#include "common/diagnostics/error_parts.hpp"
 #include "solid_solver/diagnostics/view.hpp"
 
 namespace couplet::solid {
@@ -22,10 +24,9 @@ struct StrainAudit {
   bool looks_within_cells = false;
   /// InnerVariation::missed() of the symmetric gradient in 2-D, else 0.
   double inner_variation = 0;
-  /// RecoveredStrain::missed(), scaled likewise.
-  std::optional<double> recovered_difference;
-  /// Error of the stiffness, and so of the displacement, due to the mesh: the larger of both. NaN if unknown.
-  double missed_by_mesh() const;
+  /// Error of the stiffness, and so of the displacement, due to the mesh: RecoveredStrain::missed(), scaled
+  /// likewise, or the variation if that is larger. NaN if unknown.
+  double missed_by_mesh = diagnostics::ErrorParts::unknown;
   /// Relative difference of strain energy and work; zero for a symmetric operator.
   double mismatch() const;
   /// Limits above which the result is doubtful (docs/theory/solid-solution.md, "Checks of the answer").
@@ -40,7 +41,7 @@ struct StrainAudit {
   std::string text() const;
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(strain_energy, stress_work, scale, looks_within_cells, inner_variation, recovered_difference);
+    numbers(strain_energy, stress_work, scale, looks_within_cells, inner_variation, missed_by_mesh);
   }
 };
 

@@ -51,10 +51,8 @@ TangentSolver::TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOpera
   const std::size_t n = rows.n_unknowns();
   if (by == By::frames) {
     elastic::ElasticPreconditioner::Options options;
-    options.scheme = elastic::FaceGradientScheme::symmetric;
     options.node_inertia = node_inertia;
-    compact_ =
-        std::make_unique<elastic::ElasticPreconditioner>(mesh, rows, std::span<const double>{}, options);
+    compact_ = std::make_unique<elastic::ElasticPreconditioner>(mesh, rows, options);
     const GlobalIndex cells = mesh.cells.n_global();
     if (cells >= small_body) {
       const GlobalIndex aggregates =

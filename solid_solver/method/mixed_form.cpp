@@ -202,11 +202,9 @@ MixedForm::MixedForm(const SolidProblem& problem, const MethodParameters& parame
       forces_(n_u_ + n_p_) {
   const std::vector<double> inertia = node_inertia(problem);
   elastic::ElasticPreconditioner::Options options;
-  options.scheme = elastic::FaceGradientScheme::symmetric;
   options.node_inertia = inertia;
   options.without_cells_bulk = true;
-  multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(problem.mesh, problem.elastic,
-                                                                problem.inertia, options);
+  multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(problem.mesh, problem.elastic, options);
   find_scales();
   krylov_ = std::make_unique<linalg::KrylovSolver>(
       "displacement and mean stress", problem.mesh.comm, n_u_ + n_p_,

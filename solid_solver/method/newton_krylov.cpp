@@ -82,15 +82,13 @@ elastic::DeformedBody at_rest(const mesh::Mesh& mesh) {
 }
 
 NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
-    : problem_(problem),
-      options_{parameters.relative_tolerance, parameters.max_iterations, problem.is_symmetric()} {
+    : problem_(problem), options_{parameters.relative_tolerance, parameters.max_iterations, true} {
   using Preconditioner = MethodParameters::Preconditioner;
   // In a small step the right-hand side is mostly inertia, rho V u 4/dt^2, and its residual would act as a
   // force. The energy of free vibration drifted by 4e-3 in 1e5 steps at an elastic Courant number of 0.01.
   // The tolerance therefore refers to the elastic part.
-  if (problem.is_symmetric())
-    options_.relative_tolerance =
-        std::max(finest_tolerance, options_.relative_tolerance / std::max(1., heaviness(problem)));
+  options_.relative_tolerance =
+      std::max(finest_tolerance, options_.relative_tolerance / std::max(1., heaviness(problem)));
   if (!problem.is_static()) options_.carried = steps_carried;
   if (parameters.preconditioner == Preconditioner::factors)
     choose_factors();
@@ -124,17 +122,13 @@ bool NewtonKrylov::invert(std::span<const double> r, std::span<double> z) {
 
 void NewtonKrylov::choose_multigrid() {
   const mesh::Mesh& mesh = problem_.mesh;
-  const bool is_symmetric = problem_.is_symmetric();
-  std::vector<double> of_nodes = node_inertia(problem_);
+  const std::vector<double> of_nodes = node_inertia(problem_);
   elastic::ElasticPreconditioner::Options options;
-  options.scheme = problem_.kernel.scheme();
   options.node_inertia = of_nodes;
-  multigrid_ =
-      std::make_unique<elastic::ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
-  if (!is_symmetric) of_nodes.assign(problem_.inertia.begin(), problem_.inertia.end());
+  multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(mesh, problem_.elastic, options);
   if (heaviness(problem_) <= heavy) add_rigid_motions(of_nodes);
   name_ =
-      fmt::format("newton-krylov ({}, multigrid{})", is_symmetric ? "conjugate gradients" : "BiCGStab",
+      fmt::format("newton-krylov (conjugate gradients, multigrid{})",
                   modes_ ? fmt::format(" and rigid motions of {} aggregates", modes_->n_aggregates()) : "");
 }
 
@@ -152,36 +146,29 @@ void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia) {
       std::max(cells / cells_of_aggregate, std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
   if (aggregates < fewest_aggregates) return;
   modes_ = std::make_unique<elastic::CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates),
-                                                        inertia, problem_.is_symmetric());
+                                                        inertia);
   modes_->update(at_rest(mesh));
 }
 
 void NewtonKrylov::choose_factors() {
-  linalg::LinearOptions of_factors;
-  of_factors.as_preconditioner = true;
-  if (problem_.is_symmetric()) {
-    std::vector<double> inertia(problem_.inertia.begin(), problem_.inertia.end());  // of a unit of volume
-    for (std::size_t c = 0; c < inertia.size(); ++c) inertia[c] /= problem_.geometry().volume[Index(c)];
-    if (problem_.mesh.dim == 3 && elastic::TiedMatrix::suits(problem_.mesh)) {
-      elastic::EnergyParts parts;
-      if (!inertia.empty()) parts.mass = 1, parts.density = inertia;
-      tied_ = std::make_unique<elastic::TiedMatrix>(problem_.mesh, problem_.elastic, parts);
-      tied_->factorise();
-      name_ = "newton-krylov (conjugate gradients, factors with the vertices)";
-      return;
-    }
-    matrix_ = std::make_unique<linalg::SparseMatrix>(
-        elastic::symmetric_matrix(problem_.mesh, problem_.elastic, inertia));
-    of_factors.method =
-        problem_.mesh.dim == 2 ? linalg::LinearMethod::direct_planar : linalg::LinearMethod::direct_symmetric;
-    factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, of_factors);
-    name_ = "newton-krylov (conjugate gradients, Cholesky factors)";
+  std::vector<double> inertia(problem_.inertia.begin(), problem_.inertia.end());  // of a unit of volume
+  for (std::size_t c = 0; c < inertia.size(); ++c) inertia[c] /= problem_.geometry().volume[Index(c)];
+  if (problem_.mesh.dim == 3 && elastic::TiedMatrix::suits(problem_.mesh)) {
+    elastic::EnergyParts parts;
+    if (!inertia.empty()) parts.mass = 1, parts.density = inertia;
+    tied_ = std::make_unique<elastic::TiedMatrix>(problem_.mesh, problem_.elastic, parts);
+    tied_->factorise();
+    name_ = "newton-krylov (conjugate gradients, factors with the vertices)";
     return;
   }
-  matrix_ = std::make_unique<linalg::SparseMatrix>(problem_.elastic.matrix(problem_.inertia));
-  of_factors.method = linalg::LinearMethod::direct;
+  matrix_ = std::make_unique<linalg::SparseMatrix>(
+      elastic::symmetric_matrix(problem_.mesh, problem_.elastic, inertia));
+  linalg::LinearOptions of_factors;
+  of_factors.as_preconditioner = true;
+  of_factors.method =
+      problem_.mesh.dim == 2 ? linalg::LinearMethod::direct_planar : linalg::LinearMethod::direct_symmetric;
   factors_ = std::make_unique<linalg::LinearSolver>("displacement", *matrix_, of_factors);
-  name_ = "newton-krylov (BiCGStab, factors of the least-squares operator)";
+  name_ = "newton-krylov (conjugate gradients, Cholesky factors)";
 }
 
 void NewtonKrylov::project(std::span<double> unknowns) const {
@@ -201,15 +188,12 @@ linalg::SolveStatistics NewtonKrylov::find(std::span<const double> b, std::span<
     if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
     return statistics;
   } catch (const SolveFailure& e) {
-    // Suggests a method other than the failed one.
-    const char* other = !problem_.is_symmetric() ? "{type: block-coupled, linear-solver: direct}"
-                        : multigrid_             ? "{face-gradient: symmetric, preconditioner: factors}"
-                                                 : "{face-gradient: corrected}";
     throw SolveFailure(
-        "{} Is the solid held everywhere, is nu below 0.5, are the cells well shaped? If loads and supports "
-        "are correct, try 'solution-method: {}'{}.",
-        e.what(), other,
-        !problem_.is_symmetric() || multigrid_ ? ", the most robust option, at the highest memory cost" : "");
+        "{} Is the solid held everywhere, is nu below 0.5, are the cells well shaped?{}", e.what(),
+        multigrid_
+            ? " If loads and supports are correct, try 'solution-method: {preconditioner: factors}', the most "
+              "robust option, at the highest memory cost."
+            : "");
   }
 }
 

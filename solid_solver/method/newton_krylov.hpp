@@ -14,9 +14,9 @@
 
 namespace couplet::solid {
 
-/// BiCGStab on the matrix-free operator; one Newton step, because the problem is linear. Preconditioned by
-/// the compact component-wise operator (ElasticPreconditioner) and rigid motions of aggregates. If the body is
-/// small and one matrix serves many steps, it uses factors of the thesis's operator instead.
+/// Conjugate gradients on the operator without a matrix; one Newton step, because the problem is linear.
+/// Preconditioned by the compact component-wise operator (ElasticPreconditioner) and rigid motions of
+/// aggregates, or by factors of the matrix where one serves so many steps that they pay.
 class NewtonKrylov final : public SolutionMethod {
  public:
   NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);

@@ -156,7 +156,7 @@ linalg::SolveStatistics Segregated::find(std::span<const double> b, std::span<do
       throw SolveFailure(
           "The segregated method did not converge: {} outer iterations, residual {:.3e} of the right-hand "
           "side (tolerance {:.3e}). Bending or large nu couple the components too strongly for it; use "
-          "'solution-method: {{type: newton-krylov}}', which needs no outer iterations.",
+          "'solution-method: {{type: newton-krylov, face-gradient: symmetric}}', which needs no outer iterations.",
           statistics.iterations, statistics.residual / wanted * tolerance_, tolerance_);
     ++statistics.iterations;
     statistics.inner_iterations += systems_.find_step(residual_, step_);

@@ -22,19 +22,11 @@ namespace {
 using MethodType = MethodParameters::Type;
 using Preconditioner = MethodParameters::Preconditioner;
 
-// Largest number of cells for which factors of the least-squares gradient, kept for all steps, are faster;
-// they fill quickly in 3-D.
-constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 1500;
 // Smaller bodies have no coarser mesh.
 constexpr GlobalIndex fewest_for_multigrid = 64;
 // Set-up time of factors for a hard system, at any number of solves [s]: 60 000 cells in 2-D, 1500 hexahedra
 // in 3-D.
 constexpr double set_up_of_hard = 4.5;
-// Number of 2-D cells above which factors do not pay in steps in which a wave crosses less than a cell
-// (heaviness 1). With 9216 cells and 100 steps, factors take 2.6 s instead of 0.6, 1.0, 1.4 s at Courant
-// numbers of 0.1, 0.3, 1; with 4096 cells they are still faster. From about 3 they are faster on any mesh.
-constexpr GlobalIndex factors_beside_inertia = 5000;
-
 // K/mu above which CG takes longer than the mixed form or does not converge: nu = 0.49.
 constexpr double bulk_of_mixed_form = 49;
 
@@ -59,12 +51,6 @@ void check_mixed_form(const SolidProblem& problem, const MethodParameters& param
         "selects cells from nu = 0.4): with the volume strain of faces there is no mean stress per cell.");
 }
 
-/// True if steps are so short that inertia makes the system easy. Collective.
-bool is_easy(const SolidProblem& problem) {
-  return problem.mesh.dim == 2 && problem.mesh.cells.n_global() > factors_beside_inertia &&
-         heaviness(problem) >= 1 && !wants_mixed_form(problem);
-}
-
 /// True if factorizing the symmetric gradient's matrix is cheaper; all solves of the run share the set-up.
 bool factors_pay(const SolidProblem& problem, const MethodParameters& parameters, bool is_hard) {
   if (is_axisymmetric(problem.elastic) || problem.mesh.cells.n_global() <= fewest_for_multigrid) return true;
@@ -74,43 +60,32 @@ bool factors_pay(const SolidProblem& problem, const MethodParameters& parameters
 
 /// Resolves `automatic` settings. Returns the reason.
 std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
-  const GlobalIndex cells = problem.mesh.cells.n_global();
-  const bool easy = is_easy(problem);
-  const bool small = cells <= (problem.mesh.dim == 2 ? factors_up_to_2d : factors_up_to_3d) && !easy;
-  const bool asked_automatic = parameters.type == MethodType::automatic;
-  std::string why = asked_automatic ? fmt::format("{} cells in {}-D{}", cells, problem.mesh.dim,
-                                                  easy ? ", short steps" : "")
-                                    : "";
-  if (problem.is_symmetric()) {
-    if (parameters.type != MethodType::automatic && parameters.type != MethodType::newton_krylov)
+  const std::string why =
+      parameters.type == MethodType::automatic
+          ? fmt::format("{} cells in {}-D", problem.mesh.cells.n_global(), problem.mesh.dim)
+          : "";
+  if (!problem.is_symmetric()) {
+    if (parameters.type == MethodType::newton_krylov)
       throw Error(
-          "solution-method: 'face-gradient: symmetric' is solved by conjugate gradients ('type: "
-          "newton-krylov' or 'auto'); 'segregated' and 'block-coupled' require 'face-gradient: thesis' or "
-          "'corrected'.");
-    if (parameters.preconditioner == Preconditioner::automatic) {
-      const bool mixed = wants_mixed_form(problem);
-      // Stiffnesses of several materials may differ strongly.
-      const bool is_hard = mixed || parallel::any(problem.mesh.comm, !problem.mesh.cell_material.empty());
-      const bool direct = factors_pay(problem, parameters, is_hard);
-      parameters.preconditioner = direct  ? Preconditioner::factors
-                                  : mixed ? Preconditioner::mixed
-                                          : Preconditioner::multigrid;
-    }
-    parameters.type = MethodType::newton_krylov;
+          "solution-method: 'type: newton-krylov' requires 'face-gradient: symmetric'; 'thesis' is solved by 'block-coupled' or "
+          "'segregated'.");
+    if (parameters.type == MethodType::automatic) parameters.type = MethodType::block_coupled;
     return why;
   }
-  // As in NewtonKrylov, the tolerance of the symmetric pair refers to the elastic part. Energies would drift
-  // otherwise (2e-6 instead of 1e-10 in 1000 steps at a Courant number of 0.01).
-  if (easy)
-    parameters.relative_tolerance = std::min(
-        parameters.relative_tolerance, std::max(1e-13, parameters.relative_tolerance / heaviness(problem)));
-  if (parameters.type == MethodType::automatic) {
-    const bool direct = small && !problem.is_corrected();
-    parameters.type = direct ? MethodType::block_coupled : MethodType::newton_krylov;
-    if (direct) parameters.linear_solver = MethodParameters::LinearSolver::direct;
+  if (parameters.type != MethodType::automatic && parameters.type != MethodType::newton_krylov)
+    throw Error(
+        "solution-method: 'face-gradient: symmetric' is solved by conjugate gradients ('type: newton-krylov' or 'auto'); "
+        "'segregated' and 'block-coupled' require 'face-gradient: thesis'.");
+  if (parameters.preconditioner == Preconditioner::automatic) {
+    const bool mixed = wants_mixed_form(problem);
+    // Stiffnesses of several materials may differ strongly.
+    const bool is_hard = mixed || parallel::any(problem.mesh.comm, !problem.mesh.cell_material.empty());
+    const bool direct = factors_pay(problem, parameters, is_hard);
+    parameters.preconditioner = direct  ? Preconditioner::factors
+                                : mixed ? Preconditioner::mixed
+                                        : Preconditioner::multigrid;
   }
-  if (parameters.preconditioner == Preconditioner::automatic)
-    parameters.preconditioner = small ? Preconditioner::factors : Preconditioner::multigrid;
+  parameters.type = MethodType::newton_krylov;
   return why;
 }
 
@@ -121,9 +96,7 @@ std::unique_ptr<SolutionMethod> by_factors(const SolidProblem& problem, MethodPa
     return {};
   if (!factor_cost(problem.mesh, problem.geometry(), heaviness(problem)).fits()) return {};
   parameters.preconditioner = Preconditioner::factors;
-  if (problem.is_symmetric()) return std::make_unique<NewtonKrylov>(problem, parameters);
-  parameters.linear_solver = MethodParameters::LinearSolver::direct;
-  return std::make_unique<BlockCoupled>(problem, parameters);
+  return std::make_unique<NewtonKrylov>(problem, parameters);
 }
 
 }  // namespace
@@ -186,13 +159,10 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
   }
   const bool is_iteration = parameters.type == MethodType::newton_krylov && !problem.rigid &&
                             parameters.preconditioner != Preconditioner::factors;
-  const bool was_left = asked.preconditioner == Preconditioner::automatic &&
-                        (problem.is_symmetric() || asked.type == MethodType::automatic);
+  const bool was_left = asked.preconditioner == Preconditioner::automatic;
   if (is_iteration && was_left) method->cure_ = [=](auto b) { return by_factors(problem, parameters, b); };
   if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
-  method->name_ += problem.is_symmetric()   ? ", symmetric face gradient"
-                   : problem.is_corrected() ? ", corrected face gradient"
-                                            : ", least-squares face gradient";
+  method->name_ += problem.is_symmetric() ? ", symmetric face gradient" : ", least-squares face gradient";
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
     method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
                      : problem.is_symmetric()
@@ -209,8 +179,6 @@ elastic::FaceGradientScheme face_gradient_scheme(const SolidParameters& paramete
   switch (parameters.method.face_gradient) {
     case FaceGradient::symmetric:
       return elastic::FaceGradientScheme::symmetric;
-    case FaceGradient::corrected:
-      return elastic::FaceGradientScheme::corrected;
     case FaceGradient::thesis:
       return elastic::FaceGradientScheme::thesis;
     default:

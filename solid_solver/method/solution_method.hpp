@@ -29,7 +29,6 @@ struct SolidProblem {
   const mesh::Geometry& geometry() const { return elastic.geometry(); }
   bool is_static() const { return inertia.empty(); }
   bool is_symmetric() const { return kernel.is_symmetric(); }
-  bool is_corrected() const { return kernel.scheme() == elastic::FaceGradientScheme::corrected; }
   /// y = (diag(inertia) + A) x. Collective.
   void apply(std::span<const double> x, std::span<double> y) const;
   /// r = b - (diag(inertia) + A) u. Collective.

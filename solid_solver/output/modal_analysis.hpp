@@ -30,9 +30,8 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
                               std::span<const double> cell_mass, int n);
 
 /// Bound of the relative errors of the frequencies due to the mesh: half that of the strain energies of the
-/// mass-normalised shapes. Two gradients differ by a strain g and by the energy g^2, which falls faster with the cell
-/// size than the error of the frequencies: the larger of this energy, with that of recovered strains, and of a share of
-/// g counts. Collective.
+/// mass-normalised shapes. Face strains and recovered ones differ by a strain g and by the energy g^2, which falls faster
+/// with the cell size than the error of the frequencies: the larger of this energy and of a share of g counts. Collective.
 double mode_error(const SolidBody& body, const modes::EigenModes& modes);
 
 /// Surface values of these modes on rank 0 (empty elsewhere), vertices by ascending point_id and faces by

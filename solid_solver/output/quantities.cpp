@@ -17,6 +17,7 @@
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/quadratic_fit.hpp"
+#include "solid_solver/body/recovered_strain.hpp"
 #include "solid_solver/body/stress.hpp"
 #include "solid_solver/output/probes.hpp"
 
@@ -90,19 +91,16 @@ Values rows_of_stress(const SolidBody& body, const std::vector<Tensor3>& stress)
 
 DualProblem::DualProblem(const SolidBody& body, std::span<const double> unknowns,
                          std::span<const double> known)
-    : body_(body),
-      other_(body.mesh(), body.elastic(), elastic::FaceGradientScheme::corrected),
-      gap_(gap(unknowns, known)) {}
+    : body_(body), strain_(strains_of(unknowns, known)) {}
 
-std::vector<Tensor3> DualProblem::gap(std::span<const double> unknowns, std::span<const double> known) const {
+std::vector<Tensor3> DualProblem::strains_of(std::span<const double> unknowns,
+                                             std::span<const double> known) const {
   const Index n = body_.mesh().n_flux_faces();
-  std::vector<Tensor3> result(static_cast<std::size_t>(n));
-  const auto strain = [](const Tensor3& g) { return Tensor3(0.5 * (g + g.transpose())); };
+  std::vector<Tensor3> strain(static_cast<std::size_t>(n));
   body_.kernel().face_gradients(
-      unknowns, known, [&](Index f, const Tensor3& g) { result[std::size_t(f)] = -strain(g); }, 0, n);
-  other_.face_gradients(
-      unknowns, known, [&](Index f, const Tensor3& g) { result[std::size_t(f)] += strain(g); }, 0, n);
-  return result;
+      unknowns, known, [&](Index f, const Tensor3& g) { strain[std::size_t(f)] = 0.5 * (g + g.transpose()); },
+      0, n);
+  return strain;
 }
 
 std::vector<double> DualProblem::of_points(std::span<const double> weights) const {
@@ -126,16 +124,7 @@ std::vector<double> DualProblem::of_stress(std::span<const Index> cells, const T
 double DualProblem::missed(std::span<const double> j, SolutionMethod& method) const {
   Values z(j.size(), 0);
   method.solve(j, z);
-  const std::vector<Tensor3> of_z = gap(z, {});
-  double sum = 0;
-  elastic::visit_pyramids(body_.mesh(), body_.geometry(), [&](Index c, Index f, double v) {
-    const Tensor3 &e = gap_[std::size_t(f)], &of_dual = of_z[std::size_t(f)];
-    sum += v * contraction(body_.elastic().stress(c, e), of_dual);
-    // The mean volume strain of a cell has no gap.
-    if (body_.elastic().volume_by_cells())
-      sum -= v * body_.elastic().lame(c).lambda * e.trace() * of_dual.trace();
-  });
-  return parallel::sum(body_.mesh().comm, sum);
+  return missed_product(body_.mesh(), body_.elastic(), strain_, strains_of(z, {}));
 }
 
 namespace {

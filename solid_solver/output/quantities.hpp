@@ -61,12 +61,11 @@ void tell_quantities(MPI_Comm comm, const SolidContext& context, const std::vect
 /// Sensitivity of a functional J(u) = j . u of a linear static body to its mesh error. A symmetric operator
 /// lets K z = j use the matrix, preconditioner and factors of K u = b:
 ///   J(u_exact) - J(u) ~ sum_f V_f dE_f(u) : C : dE_f(z)
-/// The strain difference dE of two face gradients replaces the errors of u and z ([becker2001]; with
-/// recovered strains: Zienkiewicz and Zhu, IJNME 24 (1987) 337). Terms keep their sign, so they cancel as in
-/// J. Requires a symmetric kernel.
+/// The difference dE of face strains and recovered ones replaces the errors of u and z ([becker2001]; Zienkiewicz
+/// and Zhu, IJNME 24 (1987) 337). Terms keep their sign, so they cancel as in J. Requires a symmetric kernel.
 class DualProblem {
  public:
-  /// Keeps references. Compares the gradients of u. Collective.
+  /// Keeps a reference. Collective.
   DualProblem(const SolidBody& body, std::span<const double> unknowns, std::span<const double> known);
 
   /// j of a weighted sum of point displacements. `weights`: `dim` values per local point. Collective.
@@ -77,11 +76,10 @@ class DualProblem {
   double missed(std::span<const double> j, SolutionMethod& method) const;
 
  private:
-  std::vector<Tensor3> gap(std::span<const double> unknowns, std::span<const double> known) const;
+  std::vector<Tensor3> strains_of(std::span<const double> unknowns, std::span<const double> known) const;
 
   const SolidBody& body_;
-  const elastic::ElasticKernel other_;
-  std::vector<Tensor3> gap_;  // of u, one per flux face
+  const std::vector<Tensor3> strain_;  // of u, one per flux face
 };
 
 /// Throws Error for a missing place or patch and for varying conductivities. Collective.

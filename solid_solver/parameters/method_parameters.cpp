@@ -21,18 +21,16 @@ void declare_equations(config::Section& s, MethodParameters& m) {
       .doc(
           "block-coupled: one assembled system of all displacement components. segregated: one scalar "
           "system per component with outer iterations (with kinematics finite-strain: the "
-          "updated-Lagrangian method of the thesis). newton-krylov: matrix-free. auto: chosen by size and "
-          "scene, logged with the reason");
+          "updated-Lagrangian method of the thesis). newton-krylov: conjugate gradients for the symmetric gradient, without a "
+          "matrix. auto: newton-krylov with the symmetric gradient, else block-coupled");
   s.choice("face-gradient", m.face_gradient,
            {{"auto", FaceGradient::automatic},
             {"thesis", FaceGradient::thesis},
-            {"corrected", FaceGradient::corrected},
             {"symmetric", FaceGradient::symmetric}})
       .doc(
           "displacement gradient at the faces. symmetric: derived from an energy, free of bending locking "
           "and of spurious growth on any mesh, solved by conjugate gradients. thesis: of the source, locks "
-          "in bending with few or elongated cells. corrected: the same with second-order corrections, free "
-          "of locking, but undamped motion grows sooner with short steps. auto: symmetric, but thesis with "
+          "in bending with few or elongated cells, solved by block-coupled or segregated. auto: symmetric, but thesis with "
           "'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
 }
 
@@ -53,8 +51,7 @@ void declare_volume_strain(config::Section& s, MethodParameters& m) {
   s.check(
       [&m] {
         const bool asked = m.volume_strain == VolumeStrain::cells || m.volume_strain == VolumeStrain::shared;
-        const bool other = m.face_gradient == FaceGradient::thesis ||
-                           m.face_gradient == FaceGradient::corrected || m.type == Type::block_coupled ||
+        const bool other = m.face_gradient == FaceGradient::thesis || m.type == Type::block_coupled ||
                            m.type == Type::segregated;
         return asked && other
                    ? "it requires 'face-gradient: symmetric' with 'type: newton-krylov'; change these, or "
@@ -82,8 +79,8 @@ void declare_linear_solver(config::Section& s, MethodParameters& m) {
             {"mixed", Preconditioner::mixed}})
       .doc(
           "for newton-krylov. multigrid: compact component-wise operator and rigid motions of aggregates. "
-          "factors: LU of the thesis operator (symmetric: its own factors, mass included), reused for all steps "
-          "of one size. mixed: for the symmetric gradient with one volume strain per cell, with the mean "
+          "factors: of the matrix, mass included, reused for all steps "
+          "of one size. mixed: for one volume strain per cell, with the mean "
           "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3. "
           "auto: factors where the run makes so many steps that they pay, for several materials and from "
           "nu = 0.49 where they are set up in seconds; otherwise mixed from nu = 0.49, otherwise multigrid; an "
@@ -102,8 +99,8 @@ void declare_iteration(config::Section& s, MethodParameters& m) {
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(
-          "relative residual tolerance; for symmetric newton-krylov (and any in 2-D with more than 5000 "
-          "cells) in steps so small that inertia dominates stiffness, relative to its elastic part");
+          "relative residual tolerance; for newton-krylov in steps so small that inertia dominates stiffness, relative to "
+          "its elastic part");
   s.value("max-iterations", m.max_iterations)
       .range(1, 1e6)
       .doc(

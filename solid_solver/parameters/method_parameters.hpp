@@ -9,7 +9,7 @@ namespace couplet::solid {
 /// Solution method of the equations of a step.
 struct MethodParameters {
   enum class Type { automatic, block_coupled, segregated, newton_krylov };
-  enum class FaceGradient { automatic, thesis, corrected, symmetric };
+  enum class FaceGradient { automatic, thesis, symmetric };
   enum class LinearSolver { automatic, direct, bicgstab_ilu, gmres_multigrid };
   enum class Preconditioner { automatic, multigrid, factors, mixed };
   enum class Acceleration { none, aitken, anderson };

@@ -375,7 +375,6 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
          "it estimates the error of the linear solid only");
   refuse(s, "solution-method",
          p.method.type == Method::Type::block_coupled ||
-             p.method.face_gradient == Method::FaceGradient::corrected ||
              (p.method.type != Method::Type::segregated &&
               p.method.face_gradient == Method::FaceGradient::thesis),
          "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or "

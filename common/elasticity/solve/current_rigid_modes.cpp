@@ -70,12 +70,11 @@ void sum_over_ranks(MPI_Comm comm, std::span<double> values) {
 }  // namespace
 
 CurrentRigidModes::CurrentRigidModes(const mesh::Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
-                                     std::vector<double> node_inertia, bool symmetric)
+                                     std::vector<double> node_inertia)
     : mesh_(mesh),
       geometry_(rows.geometry()),
       rows_(rows),
       modes_(mesh.dim == 2 ? 3 : 6),
-      symmetric_(symmetric),
       inertia_(std::move(node_inertia)),
       number_{fv::number_nodes(mesh, rows.unknown_faces()), {}} {
   for (Index i = 0; i < n_node_places(mesh); ++i)
@@ -252,8 +251,7 @@ void CurrentRigidModes::add_correction(std::span<const double> r, std::span<doub
   if (!factors_ || factors_->info() != Eigen::Success) return;
   const int dim = mesh_.dim;
   Eigen::VectorXd coarse = Eigen::VectorXd::Zero(Index(centre_.size()) * modes_);
-  const std::size_t n_rows = symmetric_ ? arm_.size() : std::size_t(mesh_.cells.n_owned());
-  for (std::size_t i = 0; i < n_rows; ++i) {
+  for (std::size_t i = 0; i < arm_.size(); ++i) {
     Vec3 force = Vec3::Zero();
     for (int a = 0; a < dim; ++a) force[a] = r[i * dim + a];
     force = free_part(i, force);

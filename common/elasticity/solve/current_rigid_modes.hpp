@@ -23,15 +23,14 @@ struct DeformedBody {
 /// slowly varying rotations, which component-wise operators resolve slowly. The correction is Z (Z^T A Z)^-1
 /// Z^T r. A contains the springs and V dE : C : dE with dE = sym(F^T dF) and the small-strain constants, so
 /// it is never indefinite. A face whose stencil lies in one aggregate has no contribution. The matrix is
-/// factorized on every rank. For the least-squares rows, whose faces repeat the forces on their cells, Z^T takes
-/// the rows of cells only.
+/// factorized on every rank.
 class CurrentRigidModes {
  public:
   /// `n_aggregates` is approximate, over all ranks. `node_inertia` is that of the unknown nodes [N/m], cells
-  /// first, or empty. `symmetric`: the rows are those of the symmetric gradient. Keeps references to mesh and
+  /// first, or empty. Keeps references to mesh and
   /// rows. Collective.
   CurrentRigidModes(const mesh::Mesh& mesh, const ElasticOperator& rows, int n_aggregates,
-                    std::vector<double> node_inertia, bool symmetric = true);
+                    std::vector<double> node_inertia);
   /// Assembles and factorizes for the current state. Collective.
   void update(const DeformedBody& body);
   /// Adds Z (Z^T A Z)^-1 Z^T r to z. Collective.
@@ -52,7 +51,6 @@ class CurrentRigidModes {
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
   int modes_;
-  bool symmetric_;
   std::vector<double> inertia_;
   Numbering number_;              // one number per node; negative if known
   std::vector<Index> aggregate_;  // of each local cell, over all ranks

@@ -11,7 +11,7 @@
 namespace couplet::elastic {
 namespace {
 
-// Factors for the symmetric operator. The coarse correction of each level is multiplied by a factor, because
+// The coarse correction of each level is multiplied by a factor, because
 // smooth motions are softer than component by component. Parts of the diagonal of K are added. Iterations to
 // 1e-8: 47 instead of 88 for a plate of 32x48x24 hexahedra, 136 instead of 350 for a porous body of 115 500
 // tetrahedra, 69 instead of 135 for Cook's membrane of 64x64.
@@ -42,13 +42,8 @@ class CompactRows {
  public:
   using Lanes = linalg::ComponentMultigrid::Lanes;
 
-  CompactRows(const mesh::Mesh& mesh, const ElasticOperator& rows, double boundary_factor,
-              VolumeStrain left_out)
-      : mesh_(mesh),
-        geometry_(rows.geometry()),
-        rows_(rows),
-        boundary_factor_(boundary_factor),
-        left_out_(left_out) {}
+  CompactRows(const mesh::Mesh& mesh, const ElasticOperator& rows, VolumeStrain left_out)
+      : mesh_(mesh), geometry_(rows.geometry()), rows_(rows), left_out_(left_out) {}
 
   linalg::ComponentMultigrid::Rows make(std::span<const double> inertia);
 
@@ -66,7 +61,6 @@ class CompactRows {
   const mesh::Mesh& mesh_;
   const mesh::Geometry& geometry_;
   const ElasticOperator& rows_;
-  double boundary_factor_;
   VolumeStrain left_out_;
 };
 
@@ -85,8 +79,7 @@ CompactRows::Lanes CompactRows::coefficient(Index f) const {
 CompactRows::Lanes CompactRows::bond(Index f) const {
   const Lanes here = coefficient(f), there = coefficient(mesh_.n_interior + mesh_.twin[f - mesh_.n_interior]);
   Lanes k{};
-  for (int c = 0; c < mesh_.dim; ++c)
-    k[c] = static_cast<float>(boundary_factor_) * here[c] * there[c] / (here[c] + there[c]);
+  for (int c = 0; c < mesh_.dim; ++c) k[c] = here[c] * there[c] / (here[c] + there[c]);
   return k;
 }
 
@@ -97,7 +90,7 @@ CompactRows::Lanes CompactRows::boundary_diagonal(Index f) const {
   if (row.shared) return bond(f);
   for (int c = 0; c < mesh_.dim; ++c) {
     const double known = row.known(c, c), spring = line.area * row.spring(c, c);
-    const double whole = (row.mirrored ? 1 : boundary_factor_) * k[c];
+    const double whole = k[c];
     // Spring and half cell in series.
     k[c] = static_cast<float>(whole * (known + (1 - known) * spring / (whole + spring)));
   }
@@ -151,51 +144,40 @@ linalg::ComponentMultigrid::Rows CompactRows::make(std::span<const double> inert
 }  // namespace
 
 ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows,
-                                             std::span<const double> inertia, const Options& options)
+                                             const Options& options)
     : mesh_(&mesh),
       geometry_(&rows.geometry()),
       rows_(&rows),
-      is_symmetric_(options.scheme == FaceGradientScheme::symmetric),
       left_out_(options.without_cells_bulk ? rows.volume_strain() : VolumeStrain::faces) {
-  // On the boundary the corrected gradient contains 2 (u_B - u_P).
-  const double boundary_factor = options.scheme == FaceGradientScheme::corrected ? 2 : 1;
-  linalg::ComponentMultigrid::Rows compact =
-      CompactRows(mesh, rows, boundary_factor, left_out_)
-          .make(options.node_inertia.empty() ? inertia
-                                             : options.node_inertia.first(std::size_t(mesh.cells.n_owned())));
-  const linalg::ComponentMultigrid::Options of_cycle{is_symmetric_ ? of_smooth : 1, &mesh.cells, mesh.comm};
+  const std::span<const double> of_cells =
+      options.node_inertia.first(options.node_inertia.empty() ? 0 : std::size_t(mesh.cells.n_owned()));
+  linalg::ComponentMultigrid::Rows compact = CompactRows(mesh, rows, left_out_).make(of_cells);
+  const linalg::ComponentMultigrid::Options of_cycle{of_smooth, &mesh.cells, mesh.comm};
   cycle_ = options.cycle ? options.cycle(std::move(compact), of_cycle)
                          : multigrid_cycle(std::move(compact), of_cycle);
-  find_face_rows(boundary_factor, options.node_inertia);
-  if (is_symmetric_) add_true_diagonal(options.node_inertia);
+  find_face_rows(options.node_inertia);
+  add_true_diagonal(options.node_inertia);
 }
 
-void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<const double> node_inertia) {
+void ElasticPreconditioner::find_face_rows(std::span<const double> node_inertia) {
   const mesh::Mesh& mesh = *mesh_;
   const mesh::Geometry& geometry = *geometry_;
   const auto stiffness = [&](Index f) {
     const LameConstants lame = part_of_faces(rows_->lame(mesh.owner[f]), left_out_);
     const fv::FaceLine line = fv::face_line(mesh, geometry, f);
     const Vec3& n = line.normal;
-    const double scale = boundary_factor * line.area * line.inverse_dn;
+    const double scale = line.area * line.inverse_dn;
     return Tensor3(scale * (lame.mu * Tensor3::Identity() + (lame.mu + lame.lambda) * n * n.transpose()));
   };
   for (const Index f : rows_->unknown_faces()) {
-    const LameConstants lame = rows_->lame(mesh.owner[f]);
-    const fv::FaceLine line = fv::face_line(mesh, geometry, f);
-    const double whole = stiffness_across(lame, line);
     Tensor3 own = stiffness(f), cell = own;
     FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
     const BoundaryRow& s = rows_->at(f);
-    if (s.level) own = cell = boundary_factor * whole * Tensor3::Identity();
     if (s.has_value()) {
       const Tensor3 open = Tensor3::Identity() - s.known;
-      cell = open * own;
-      own = open * (own + line.area * s.spring) + whole * s.known;
-      if (is_symmetric_) {
-        cell = (open * stiffness(f) * open).eval();
-        own = supported(stiffness(f), s, line.area, whole);
-      }
+      const fv::FaceLine line = fv::face_line(mesh, geometry, f);
+      cell = (open * own * open).eval();
+      own = supported(own, s, line.area, stiffness_across(rows_->lame(mesh.owner[f]), line));
     }
     if (s.shared) {
       const Index twin = mesh.n_interior + mesh.twin[f - mesh.n_interior];
@@ -258,7 +240,7 @@ void ElasticPreconditioner::solve_faces(std::span<const double> r, std::span<dou
 }
 
 /// Applies [1, C^T] before the cycle and [1; C] after it, and adds the diagonal of K.
-void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::span<double> z) {
+void ElasticPreconditioner::apply(std::span<const double> r, std::span<double> z) {
   const int dim = mesh_->dim;
   const std::size_t n_cells = gathered_.size();
   std::copy_n(r.begin(), n_cells, gathered_.begin());
@@ -274,13 +256,6 @@ void ElasticPreconditioner::smooth_symmetric(std::span<const double> r, std::spa
   cycle_(gathered_, z.first(n_cells), dim);
   solve_faces(r, z);
   for (std::size_t i = 0; i < n_cells; ++i) z[i] += inverse_diagonal_[i] * r[i];
-}
-
-void ElasticPreconditioner::apply(std::span<const double> r, std::span<double> z) {
-  if (is_symmetric_) return smooth_symmetric(r, z);
-  const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * mesh_->dim;
-  cycle_(r.first(n_cells), z.first(n_cells), mesh_->dim);
-  solve_faces(r, z);
 }
 
 }  // namespace couplet::elastic

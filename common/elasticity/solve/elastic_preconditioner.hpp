@@ -14,24 +14,22 @@ namespace couplet::elastic {
 /// Multigrid cycle x = V(b) with `components` values per cell. Collective.
 using ComponentCycle = std::function<void(std::span<const double> b, std::span<double> x, int components)>;
 
-/// Matrix-free preconditioner of diag(inertia) + A. It applies a multigrid cycle to the two-point flux of
+/// Preconditioner of A with the symmetric face gradient and its mass, without a matrix. It applies a multigrid cycle to the two-point flux of
 /// each component with coefficient |S| / (d . n) [mu + (mu + lambda) n_c^2] (diagonal of the compact block
 /// operator). Unknowns of faces follow from u_B = K_B^-1 (r_B + C u_P).
 class ElasticPreconditioner {
  public:
   struct Options {
-    FaceGradientScheme scheme = FaceGradientScheme::thesis;
-    /// Inertia of the unknown nodes (owned cells, then faces) for the symmetric operator [N/m], or empty.
+    /// Inertia of the unknown nodes (owned cells, then faces) [N/m], or empty.
     std::span<const double> node_inertia = {};
-    /// Preconditions the symmetric operator without the bulk modulus of cells, for the mixed form.
+    /// Preconditions the operator without the bulk modulus of cells, for the mixed form.
     bool without_cells_bulk = false;
     /// Creates another cycle than ComponentMultigrid's for comparison (benchmarks/linalg), or empty.
     std::function<ComponentCycle(linalg::ComponentMultigrid::Rows,
                                  const linalg::ComponentMultigrid::Options&)>
         cycle = {};
   };
-  ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
-                        const Options& options);
+  ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows, const Options& options);
 
   /// Computes z = M^-1 r. Collective.
   void apply(std::span<const double> r, std::span<double> z);
@@ -42,17 +40,15 @@ class ElasticPreconditioner {
     Tensor3 inverse, cell, other;
     Index owner, twin_owner;  // -1 if not bonded or on another rank
   };
-  void find_face_rows(double boundary_factor, std::span<const double> node_inertia);
+  void find_face_rows(std::span<const double> node_inertia);
   void add_true_diagonal(std::span<const double> node_inertia);
   void solve_faces(std::span<const double> r, std::span<double> z) const;
-  void smooth_symmetric(std::span<const double> r, std::span<double> z);
 
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   const ElasticOperator* rows_;
-  bool is_symmetric_;
   VolumeStrain left_out_;         // faces: the preconditioner is that of the whole operator
-  std::vector<double> gathered_;  // for the symmetric form, like the next
+  std::vector<double> gathered_;  // right-hand side of the cycle
   std::vector<float> inverse_diagonal_;
   ComponentCycle cycle_;
   std::vector<FaceRow> face_rows_;

@@ -90,7 +90,7 @@ def dual_weighted(job, *cases):
 
 # Words of series that are not what a run does by default: symmetric gradient, solver by choice, trapezoidal rule, implicit coupling,
 # a tank's upwind scheme. Series of the first name of the study alone ("thesis-gradient") begin with theirs.
-OTHERS = ("thesis", "corrected", "block-coupled", "segregated", "aitken", "anderson", "newton-krylov", "bathe", "euler", "three-point", "loose-pressure",
+OTHERS = ("thesis", "block-coupled", "segregated", "aitken", "anderson", "newton-krylov", "bathe", "euler", "three-point", "loose-pressure",
           "viscous-implicit", "incremental", "explicit", "semi-implicit", "tvd", "implicit-60s")
 
 

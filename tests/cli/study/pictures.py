@@ -25,7 +25,7 @@ QUANTITY = types.SimpleNamespace(name="stress at D", given={})
 def rows_of(methods, cells):
     """Two sizes of every series."""
     rows = []
-    for g in ("thesis", "corrected", "symmetric"):
+    for g in ("thesis", "symmetric"):
         for m in methods:
             for c in cells:
                 for n in (8, 16):

@@ -113,7 +113,7 @@ TEST(Effects, solid_verdicts_turn_at_their_thresholds) {
   EXPECT_TRUE(sound(neglected_yielding(1.049)));
   EXPECT_FALSE(sound(neglected_yielding(1.051)));
   SolidParameters rubber = p;
-  rubber.method.face_gradient = MethodParameters::FaceGradient::corrected;
+  rubber.method.face_gradient = MethodParameters::FaceGradient::thesis;
   rubber.material.poissons_ratio = 0.451;
   EXPECT_FALSE(sound(near_incompressibility(rubber)));
   rubber.material.poissons_ratio = 0.449;

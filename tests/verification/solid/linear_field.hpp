@@ -36,17 +36,13 @@ inline std::vector<std::string> traction_text(const SolidParameters& p, const Li
   return result;
 }
 
-/// A mesh and a face gradient; names such as "prisms_corrected".
+/// A mesh and a face gradient; names such as "prisms_symmetric".
 using CellsAndGradient = std::tuple<mesh::BoxCells, FaceGradient>;
 inline const auto all_cells_and_gradients = ::testing::Combine(
-    ::testing::ValuesIn(all_cells),
-    ::testing::Values(FaceGradient::thesis, FaceGradient::corrected, FaceGradient::symmetric));
+    ::testing::ValuesIn(all_cells), ::testing::Values(FaceGradient::thesis, FaceGradient::symmetric));
 inline std::string name_of(const ::testing::TestParamInfo<CellsAndGradient>& info) {
   const auto& [cells, gradient] = info.param;
-  return fmt::format("{}_{}", name(cells),
-                     gradient == FaceGradient::thesis      ? "thesis"
-                     : gradient == FaceGradient::corrected ? "corrected"
-                                                           : "symmetric");
+  return fmt::format("{}_{}", name(cells), gradient == FaceGradient::thesis ? "thesis" : "symmetric");
 }
 
 /// With this gradient, solved to round-off.

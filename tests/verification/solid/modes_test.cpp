@@ -134,7 +134,7 @@ TEST(SolidModesOfAPrism, err_by_no_more_than_what_is_told) {
 
 TEST(SolidModesOfABeam, are_refused_without_a_mass_of_the_kernel) {
   SolidParameters p = vibrating(2);
-  p.method.face_gradient = FaceGradient::corrected;
+  p.method.face_gradient = FaceGradient::thesis;
   const auto solid =
       make_solid(make_box(BoxCells::quadrilaterals, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0)), p);
   EXPECT_FALSE(vibration(solid->body()));

@@ -87,12 +87,12 @@ struct Way {
 
 constexpr std::array ways{
     Way{"static_linear", false, false, FaceGradient::symmetric},
-    Way{"static_corrected", false, false, FaceGradient::corrected},
+    Way{"static_thesis", false, false, FaceGradient::thesis},
     Way{"static_large", false, true, FaceGradient::symmetric},
     Way{"static_large_segregated", false, true, FaceGradient::thesis, time::TimeScheme::trapezoidal,
         MethodParameters::Type::segregated},
     Way{"dynamic_linear", true, false, FaceGradient::symmetric},
-    Way{"dynamic_corrected", true, false, FaceGradient::corrected},
+    Way{"dynamic_thesis", true, false, FaceGradient::thesis},
     Way{"dynamic_bathe", true, false, FaceGradient::symmetric, time::TimeScheme::bathe},
     Way{"dynamic_large", true, true, FaceGradient::symmetric},
 };

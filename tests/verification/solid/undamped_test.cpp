@@ -46,9 +46,9 @@ TEST_P(Undamped, keeps_its_energy_for_1e5_steps) {
 INSTANTIATE_TEST_SUITE_P(All, Undamped,
                          ::testing::Combine(::testing::ValuesIn(all_cells), ::testing::Values(0.01, 0.001)));
 
-// The corrected gradient's operator is not symmetric: its motion grows out of nothing beside it.
-TEST(UndampedNeighbour, of_the_corrected_gradient_grows) {
-  EXPECT_GT(drift(BoxCells::quadrilaterals, 0.01, 100000, FaceGradient::corrected), 0.01);
+// The thesis's operator is not symmetric: its motion grows out of nothing beside it.
+TEST(UndampedNeighbour, of_the_thesiss_gradient_grows) {
+  EXPECT_GT(drift(BoxCells::quadrilaterals, 0.01, 100000, FaceGradient::thesis), 0.01);
 }
 
 }  // namespace couplet::testing::undamped_test

@@ -274,7 +274,7 @@ TEST(MixedForm, is_refused_without_mean_stresses_of_cells) {
   p.method.volume_strain = MethodParameters::VolumeStrain::faces;
   EXPECT_THROW(solved(body(BoxCells::quadrilaterals, 2), p), Error);
   p = nearly_incompressible(2, 0.3, Preconditioner::mixed);
-  p.method.face_gradient = FaceGradient::corrected;
+  p.method.face_gradient = FaceGradient::thesis;
   EXPECT_THROW(solved(body(BoxCells::quadrilaterals, 2), p), Error);
 }
 

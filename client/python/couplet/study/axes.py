@@ -7,7 +7,7 @@ axes:
     set: {mesh-parameters: "{nr: <n>, nt: <3*n/2>, nz: <3*n/4>}"}     # <...> is arithmetic on n, rounded to whole
                                                                       numbers
     multiple: 4                           # sizes that --for-error makes are multiples of it; 0: any number (1)
-  gradient: {key: solution-method.face-gradient, values: [thesis, corrected]}
+  gradient: {key: solution-method.face-gradient, values: [thesis, symmetric]}
   step: {key: simulation.time-step, values: [0.1 s, 0.05 s]}
   scheme: {values: {explicit: {coupling.scheme: explicit}, implicit: {coupling.scheme: implicit}}}   # sets of keys by
                                                                                                      name
