@@ -44,17 +44,6 @@ elastic::FaceGradientScheme scheme_for(const mesh::Mesh& mesh, const SolidParame
   return scheme;
 }
 
-std::unique_ptr<Equilibrium> make_equilibrium(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
-                                              const elastic::ElasticOperator& rows,
-                                              const std::unique_ptr<ThermalStrain>& thermal,
-                                              const SolidParameters& parameters) {
-  if (!has_finite_strain(parameters))
-    return std::make_unique<SmallStrain>(mesh, kernel, rows, thermal, parameters);
-  if (parameters.method.type == MethodParameters::Type::segregated)
-    return std::make_unique<UpdatedLagrangian>(mesh, rows, parameters);
-  return std::make_unique<FiniteStrain>(mesh, rows, parameters);
-}
-
 template <int D>
 void interpolate(const elastic::ElasticOperator& elastic, std::span<const Index> points,
                  std::span<const double> cells, std::span<const double> faces, std::span<const double> known,
@@ -86,7 +75,7 @@ SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
       prescribed_(mesh_, boundaries_, elastic_),
       rigid_(mesh_, elastic_, boundaries_.rigid_faces()) {
   check_supports();
-  equilibrium_ = make_equilibrium(mesh_, kernel_, elastic_, thermal_, parameters_);
+  make_equilibrium();
   find_mass();
   if (parameters_.contact) make_seat();
   if (!parameters_.body_force.empty())
@@ -94,6 +83,21 @@ SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
   if (parameters_.heat || parameters_.temperature ||
       (parameters_.interface_data && parameters_.interface_data->temperature))
     thermal_ = std::make_unique<ThermalStrain>(mesh_, elastic_, parameters_);
+}
+
+void SolidBody::make_equilibrium() {
+  const auto keep = [this](auto made) {
+    auto* kept = made.get();
+    equilibrium_ = std::move(made);
+    return kept;
+  };
+  if (!has_finite_strain(parameters_))
+    keep(std::make_unique<SmallStrain>(mesh_, kernel_, elastic_, thermal_, parameters_));
+  else if (is_updated_lagrangian(parameters_))
+    large_strain_ = updated_lagrangian_ =
+        keep(std::make_unique<UpdatedLagrangian>(mesh_, elastic_, parameters_));
+  else
+    large_strain_ = finite_strain_ = keep(std::make_unique<FiniteStrain>(mesh_, elastic_, parameters_));
 }
 
 void SolidBody::check_supports() const {
@@ -139,7 +143,7 @@ void SolidBody::find_mass() {
   std::vector<double> densities;
   for (Index c = 0; c < mesh_.cells.n_local(); ++c) densities.push_back(density(c));
   has_mass_ = kernel_.set_density(densities);
-  equilibrium_->set_density(densities);
+  if (finite_strain_) finite_strain_->set_density(densities);
 }
 
 bool SolidBody::apply_stiffness() {
@@ -152,7 +156,7 @@ bool SolidBody::apply_stiffness() {
 }
 
 void SolidBody::place_expansion(double t) const {
-  if (thermal_) equilibrium_->set_expansion([&] { return thermal_->expansion(t); });
+  if (thermal_ && finite_strain_) finite_strain_->set_expansion(thermal_->expansion(t));
 }
 
 std::vector<double> SolidBody::scaled(std::vector<double> values) const {
@@ -164,7 +168,7 @@ std::vector<double> SolidBody::scaled(std::vector<double> values) const {
 std::vector<double> SolidBody::dead_loads(double t) const {
   if (t != time_of_dead_loads_) {
     dead_loads_.assign(boundaries_.n_forces(), 0);
-    boundaries_.add_forces(t, dead_loads_, !equilibrium_->means().takes_pressure);
+    boundaries_.add_forces(t, dead_loads_, !large_strain_);
     time_of_dead_loads_ = t;
   }
   return scaled(dead_loads_);
@@ -202,7 +206,8 @@ std::vector<double> SolidBody::known_velocity(double start, double dt) const {
 }
 
 SoftMotion SolidBody::softest_motion(std::span<const double> unknowns, std::span<const double> known) const {
-  return equilibrium_->lowest_stiffness(
+  if (!finite_strain_) return {};
+  return finite_strain_->lowest_stiffness(
       unknowns, known, [this](std::span<const double> x, std::span<double> y) { kernel_.apply(x, {}, y); },
       any_start());
 }

@@ -14,10 +14,13 @@
 #include "solid_solver/boundary/loads.hpp"
 #include "solid_solver/boundary/seat.hpp"
 #include "solid_solver/equilibrium/equilibrium.hpp"
+#include "solid_solver/equilibrium/finite_strain.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 
 namespace couplet::solid {
+
+class UpdatedLagrangian;
 
 /// A displacement, velocity etc. in all local cells, boundary faces and points, `dim` values each.
 struct BodyField {
@@ -44,6 +47,14 @@ class SolidBody final {
   const elastic::ElasticKernel& kernel() const { return kernel_; }
   /// Equilibrium equations; at small strain they use kernel().
   Equilibrium& equilibrium() const { return *equilibrium_; }
+  /// The same at large strain; nullptr at small strain.
+  LargeStrain* large_strain() const { return large_strain_; }
+  /// The same by Newton's method, which has a tangent; nullptr otherwise.
+  FiniteStrain* finite_strain() const { return finite_strain_; }
+  /// The same by the updated Lagrangian method, whose reference moves from step to step; nullptr otherwise.
+  UpdatedLagrangian* updated_lagrangian() const { return updated_lagrangian_; }
+  /// Path whose load factor is an unknown; nullptr for fixed loads.
+  LoadPath* load_path() const { return finite_strain_ ? finite_strain_->load_path() : nullptr; }
   /// Patches that move as rigid bodies.
   const RigidPatches& rigid() const { return rigid_; }
   /// Rigid seat that its faces may touch; nullptr if there is none.
@@ -64,7 +75,7 @@ class SolidBody final {
   bool apply_stiffness();
   /// Loads of the boundaries at time t that are no pressures of the equilibrium, see SolidBoundaries::add_forces().
   std::vector<double> dead_loads(double t) const;
-  /// See Equilibrium::lowest_stiffness(). Collective.
+  /// See FiniteStrain::lowest_stiffness(); without a tangent the stiffness of the body at rest. Collective.
   SoftMotion softest_motion(std::span<const double> unknowns, std::span<const double> known) const;
   /// Smooth forces on the rows of elastic() without symmetry, equal on any number of ranks. Start vector of a
   /// search for a soft motion. Collective.
@@ -73,7 +84,7 @@ class SolidBody final {
   void set_load_factor(double factor) { load_factor_ = factor; }
   /// Sets the follower pressures at time t in the equilibrium. Collective.
   void place_pressures(double t) const {
-    if (equilibrium_->means().takes_pressure) equilibrium_->set_pressure(scaled(boundaries_.pressures(t)));
+    if (large_strain_) large_strain_->set_pressure(scaled(boundaries_.pressures(t)));
   }
   /// Sets the thermal strains at time t in the equilibrium (large strain). Collective.
   void place_expansion(double t) const;
@@ -104,6 +115,7 @@ class SolidBody final {
 
  private:
   void check_supports() const;
+  void make_equilibrium();
   void find_mass();
   void make_seat();
   std::vector<double> scaled(std::vector<double> values) const;
@@ -116,6 +128,9 @@ class SolidBody final {
   elastic::ElasticOperator elastic_;
   elastic::ElasticKernel kernel_;
   std::unique_ptr<Equilibrium> equilibrium_;
+  LargeStrain* large_strain_ = nullptr;  // equilibrium_ by its kind, see above
+  FiniteStrain* finite_strain_ = nullptr;
+  UpdatedLagrangian* updated_lagrangian_ = nullptr;
   std::unique_ptr<Seat> seat_;
   bool has_mass_ = false;
   double load_factor_ = 1;

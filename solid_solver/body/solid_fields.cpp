@@ -28,6 +28,15 @@ Vec3 normal_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index fac
   return area.normalized();
 }
 
+/// Converts displacement gradients, entry (i, j) = d u_j/d x_i, to strains: at large strain Green's,
+/// (F^T F - I)/2.
+void to_strain(bool is_large, std::span<Tensor3> gradients) {
+  for (Tensor3& g : gradients) {
+    const Tensor3 linear = 0.5 * (g + g.transpose());
+    g = is_large ? Tensor3(linear + 0.5 * g * g.transpose()) : linear;
+  }
+}
+
 Tensor3 mean_stress(std::span<const Index> corners, std::span<const double> point_stress) {
   Tensor3 mean = Tensor3::Zero();
   for (const Index v : corners)
@@ -86,13 +95,13 @@ std::vector<Tensor3> SolidFields::face_stress(Index first, Index count,
 std::vector<Tensor3> SolidFields::face_strain(Index first, Index count,
                                               std::span<const double> points) const {
   std::vector<Tensor3> strain = body_.face_gradients(first, count, displacement(points));
-  body_.equilibrium().to_strain(strain);
+  to_strain(body_.large_strain(), strain);
   return strain;
 }
 
 std::vector<Tensor3> SolidFields::cell_strain(std::span<const double> points) const {
   std::vector<Tensor3> strain = cell_gradient(points);
-  body_.equilibrium().to_strain(strain);
+  to_strain(body_.large_strain(), strain);
   return strain;
 }
 
@@ -151,7 +160,7 @@ DiscreteStress SolidFields::discrete_stress(std::span<const double> points) cons
 }
 
 bool recovers_stress(const SolidBody& body) {
-  return body.equilibrium().means().recovers_stress && !is_axisymmetric(body.elastic());
+  return !body.large_strain() && !is_axisymmetric(body.elastic());
 }
 
 const StressRecovery& SolidFields::recovery() const {
@@ -202,7 +211,8 @@ std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) 
 
 std::vector<double> SolidFields::traction(std::span<const Vec3> places, const SidedTensors& sides) const {
   const std::size_t n = mesh_.boundary.n_owned(), dim = mesh_.dim;
-  const std::span<const Vec3> moved = body_.equilibrium().surface(places);
+  // Tractions are known on the undeformed surface.
+  const std::span<const Vec3> moved = body_.large_strain() ? places : std::span<const Vec3>{};
   const std::vector<SurfaceTraction> known =
       moved.empty() ? known_tractions() : std::vector<SurfaceTraction>(n);
   std::vector<double> result(n * dim);
@@ -283,7 +293,8 @@ elastic::ElasticLoads SolidFields::loads_now() const {
 }
 
 Vec3 SolidFields::total_load() const {
-  Vec3 load = last_.body_force + last_.face_force + body_.equilibrium().pressure_force();
+  Vec3 load = last_.body_force + last_.face_force;
+  if (body_.large_strain()) load += body_.large_strain()->pressure_force();
   for (int a = 0; a < 3; ++a) load[a] = parallel::sum(mesh_.comm, load[a]);
   return load;
 }

@@ -19,11 +19,11 @@ namespace couplet::solid {
 
 void Stability::observe(diagnostics::Report& report) {
   const SolidBody& body = view_.body;
-  if (const LoadPath* path = body.equilibrium().load_path()) {
+  if (const LoadPath* path = body.load_path()) {
     last_ = path->stiffness();
     return see_limits(*path);
   }
-  if (!body.equilibrium().means().has_tangent || !body.rigid().empty() || is_lost_) return;
+  if (!body.finite_strain() || body.seat() || !body.rigid().empty() || is_lost_) return;
   if (!searches_ && !view_.stepper.step().is_last) return;
   const SolidState& now = view_.now();
   const double stiffness = body.softest_motion(view_.stepper.last_solve().unknowns, now.known).stiffness;
@@ -74,7 +74,7 @@ void Stability::see_limits(const LoadPath& path) {
 }
 
 void Stability::conclude(diagnostics::Report& report) {
-  const LoadPath* path = view_.body.equilibrium().load_path();
+  const LoadPath* path = view_.body.load_path();
   if (!path) return;
   std::string found;
   for (const LimitPoint& l : path->limits())
@@ -101,7 +101,7 @@ void Stability::visit(io::Archive& archive) {
 namespace {
 
 const char* cure_of(const SolidView& view) {
-  if (!view.compares_gradients())
+  if (view.body.large_strain())
     return "a time scheme that does not conserve the energy of a nonlinear law; a shorter step, "
            "'energy-momentum: true' or 'time-scheme: {type: bathe}' prevents it";
   if (view.body.kernel().is_symmetric()) return "a shorter step or 'time-scheme: {type: bathe}' prevents it";

@@ -15,11 +15,12 @@ using diagnostics::When;
 /// Solid and what several of its diagnostics share.
 struct RunOfSolid {
   const SolidView& view;
-  std::shared_ptr<StrainEnergy> strain;               ///< nullptr at large strain
-  std::shared_ptr<Stability> stability;               ///< nullptr but in a static run at large strain
-  const Heat* heat;                                   ///< nullptr unless temperatures are solved for
-  std::shared_ptr<LinearBuckling> buckling{};         ///< nullptr at large strain
-  std::shared_ptr<LargeStrainChange> large_strain{};  ///< nullptr at large strain and unless it was asked for
+  std::shared_ptr<StrainEnergy> strain;        ///< nullptr at large strain
+  std::shared_ptr<Stability> stability;        ///< nullptr but in a static run at large strain
+  const Heat* heat;                            ///< nullptr unless temperatures are solved for
+  std::shared_ptr<LinearBuckling> buckling{};  ///< nullptr at large strain
+  std::shared_ptr<LargeStrainChange>
+      large_strain{};  ///< nullptr at large strain and unless it was asked for
 };
 
 template <Made (*make)(const SolidView&)>
@@ -75,7 +76,7 @@ constexpr std::array table_of_heat{
 }  // namespace
 
 void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
-  const bool is_small = view.compares_gradients(), is_static = !view.body.is_dynamic();
+  const bool is_small = !view.body.large_strain(), is_static = !view.body.is_dynamic();
   RunOfSolid run{view, is_small ? std::make_shared<StrainEnergy>(view) : nullptr,
                  !is_small && is_static ? std::make_shared<Stability>(view, all.is_full()) : nullptr,
                  view.body.thermal() ? view.body.thermal()->heat() : nullptr};

@@ -25,8 +25,6 @@ struct SolidView {
   std::vector<double> known() const {
     return body.known_of({now().cell_u, now().face_u, fields.point_displacement()});
   }
-  /// True if two displacement gradients can be compared; otherwise the strain energy is that of a law.
-  bool compares_gradients() const { return body.equilibrium().means().compares_gradients; }
 };
 
 /// View of a solid that only conducts heat.

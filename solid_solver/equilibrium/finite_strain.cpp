@@ -64,7 +64,6 @@ constexpr double settled = 1e-9;
 FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                            const SolidParameters& parameters)
     : LargeStrain(mesh, rows),
-      meets_seat_(parameters.contact.has_value()),
       tolerance_(parameters.method.relative_tolerance),
       most_linear_(parameters.method.max_iterations) {
   const mesh::Geometry& geometry = rows.geometry();
@@ -103,13 +102,9 @@ FiniteStrain::FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperato
   if (follows_path) path_.emplace(mesh, geometry, parameters.load_stepping);
 }
 
-std::string FiniteStrain::name(const SolidSystem&) const {
+std::string FiniteStrain::name() const {
   return fmt::format("Newton's method at large strain{}, symmetric face gradient",
                      by_ == TangentSolver::By::factors ? " (factors of the tangent)" : "");
-}
-
-void FiniteStrain::prepare(const SolidProblem& problem, SolidSystem& system) const {
-  system.node_inertia = solid::node_inertia(problem);
 }
 
 TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const double> node_inertia,
@@ -391,8 +386,7 @@ void FiniteStrain::set_pressure(std::vector<double> of_faces) {
 }
 
 /// theta = 1 + the integral of alpha dT: lengths refer to the body at the reference temperature.
-void FiniteStrain::set_expansion(const std::function<std::vector<double>()>& of_faces) {
-  std::vector<double> strains = of_faces();
+void FiniteStrain::set_expansion(std::vector<double> strains) {
   if (strains.empty()) return;
   double least = 1;
   for (double& strain : strains) least = std::min(least, strain += 1);

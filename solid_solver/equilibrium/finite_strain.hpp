@@ -17,6 +17,12 @@
 
 namespace couplet::solid {
 
+/// Softest motion of a body about an equilibrium, see FiniteStrain::lowest_stiffness().
+struct SoftMotion {
+  double stiffness = 1;
+  std::vector<double> shape{};  ///< by the rows of ElasticOperator; empty if unknown
+};
+
 /// One iterate of Newton's method.
 struct NewtonIterate {
   double residual = 0;  ///< norm relative to the load
@@ -35,26 +41,26 @@ class FiniteStrain final : public LargeStrain {
   FiniteStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                const SolidParameters& parameters);
 
-  EquilibriumMeans means() const override { return {.has_tangent = !meets_seat_}; }  // no other means
-  std::string name(const SolidSystem& system) const override;
-  void prepare(const SolidProblem& problem, SolidSystem& system) const override;
-  /// Sets the density of local cells in dynamic analyses.
-  void set_density(std::span<const double> of_cells) override { kernel_->set_density(of_cells); }
+  std::string name() const override;
+  /// Sets the density of local cells [kg/m^3] in dynamic analyses.
+  void set_density(std::span<const double> of_cells) { kernel_->set_density(of_cells); }
   using Load = EquilibriumLoad;
   linalg::SolveStatistics find(const Load& load, SolidSystem& system, std::span<double> u) override;
   void set_pressure(std::vector<double> of_faces) override;
-  void set_expansion(const std::function<std::vector<double>()>& of_faces) override;
+  /// Sets thermal strains not included in the stress, one per local flux face (empty means unchanged).
+  void set_expansion(std::vector<double> of_faces);
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
   SoftMotion lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                              const linalg::LinearMap& elastic, std::vector<double> start) override;
-  Vec3 pressure_force() override { return kernel_->pressure_force(); }
+                              const linalg::LinearMap& elastic, std::vector<double> start);
+  Vec3 pressure_force() const override { return kernel_->pressure_force(); }
   std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                               const elastic::ElasticLoads& loads) override {
     return kernel_->holding_forces(unknowns, known, loads);
   }
-  LoadPath* load_path() override { return path_ ? &*path_ : nullptr; }
+  /// Path whose load factor multiplies all loads and is an unknown of find(); nullptr for fixed loads.
+  LoadPath* load_path() { return path_ ? &*path_ : nullptr; }
   void visit(io::Archive& archive, std::span<const double>, std::span<const double>) override;
   /// Newton iterates of the last solve.
   const std::vector<NewtonIterate>& iterates() const { return iterates_; }
@@ -92,7 +98,6 @@ class FiniteStrain final : public LargeStrain {
   bool mixed_ = false;       // pressures are separate unknowns during the iteration
   bool is_carried_ = false;  // in the current solve
   bool presses_ = false, is_drowned_told_ = false;
-  bool meets_seat_;
   double tolerance_, noise_, noise_of_motion_;
   double whole_ = 0;  // norm of the last residual with U'(J) instead of those pressures
   int most_linear_;

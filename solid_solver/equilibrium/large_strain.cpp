@@ -62,13 +62,6 @@ std::string worst_cell(const mesh::Mesh& mesh, const mesh::Geometry& geometry, d
                      w.x[0], w.x[1], w.x[2], w.ratio);
 }
 
-// Strain and Cauchy stress at large strain.
-
-/// Green's strain (F^T F - I)/2.
-void LargeStrain::to_strain(std::span<Tensor3> gradients) const {
-  for (Tensor3& g : gradients) g = (0.5 * (g + g.transpose()) + 0.5 * g * g.transpose()).eval();
-}
-
 /// sigma = P F^T / J.
 std::vector<Tensor3> LargeStrain::face_stress(const Displaced& state, Index first, Index count) {
   std::vector<Tensor3> stress(count, Tensor3::Zero());

@@ -14,6 +14,10 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/equilibrium/equilibrium.hpp"
 
+namespace couplet::io {
+class Archive;
+}
+
 namespace couplet::solid {
 
 /// Equilibrium of a body at large strain, and the stress at a state.
@@ -23,12 +27,19 @@ class LargeStrain : public Equilibrium {
   LargeStrain(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows)
       : mesh_(mesh), geometry_(rows.geometry()), rows_(rows) {}
 
-  /// The residual is already relative.
-  double share_left(double residual, double) const override { return residual; }
-  void to_strain(std::span<Tensor3> gradients) const override;
+  /// Name for the log.
+  virtual std::string name() const = 0;
+  /// Sets the pressures that remain normal to the moving surface and so are part of A [Pa], one value per
+  /// boundary face of owned cells.
+  virtual void set_pressure(std::vector<double> of_faces) = 0;
+  /// Resultant of the pressures at the last evaluated state on this rank [N].
+  virtual Vec3 pressure_force() const = 0;
+  /// Saves or loads what the accepted state adds to these unknowns and known columns.
+  virtual void visit(io::Archive& archive, std::span<const double> unknowns,
+                     std::span<const double> known) = 0;
+
   std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) override;
   std::vector<Tensor3> cell_stress(const Displaced& state) override;
-  std::span<const Vec3> surface(std::span<const Vec3> moved) const override { return moved; }
 
   /// Called with (face, F, P) for this rank's faces: F(i, j) = d x_i/d X_j, first Piola stress P [Pa].
   using Take = std::function<void(Index, const Tensor3&, const Tensor3&)>;

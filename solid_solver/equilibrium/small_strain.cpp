@@ -157,16 +157,6 @@ linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::s
   return ContactNewton(problem, b, u).run();
 }
 
-void SmallStrain::prepare(const SolidProblem& problem, SolidSystem& system) const {
-  system.method = make_solution_method(problem, parameters_.method);
-}
-
-std::vector<double> SmallStrain::force_of_known(std::span<const double> known) const {
-  std::vector<double> still(rows_.n_unknowns(), 0), force(still.size());
-  kernel_.apply(still, known, force);
-  return force;
-}
-
 linalg::SolveStatistics SmallStrain::find(const EquilibriumLoad& load, SolidSystem& system,
                                           std::span<double> u) {
   if (!load.pressing) return system.method->solve(load.rows, u);
@@ -177,11 +167,6 @@ linalg::SolveStatistics SmallStrain::find(const EquilibriumLoad& load, SolidSyst
   return solve_with_contact({mesh_.comm, stiffness, *system.method, *load.pressing, load.known,
                              parameters_.method.relative_tolerance, parameters_.method.max_iterations},
                             load.rows, u);
-}
-
-void SmallStrain::explain_failure(const SolveFailure& failure) const {
-  throw SchemeFailure("The static step failed, and a shorter step would solve the same equations: {}",
-                      failure.what());
 }
 
 std::vector<double> SmallStrain::forces(std::span<const double> unknowns, std::span<const double> known) {
@@ -199,10 +184,6 @@ std::vector<elastic::Wrench> SmallStrain::holding_forces(std::span<const double>
                                                          std::span<const double> known,
                                                          const elastic::ElasticLoads& loads) {
   return kernel_.holding_forces(unknowns, known, loads);
-}
-
-void SmallStrain::to_strain(std::span<Tensor3> gradients) const {
-  for (Tensor3& e : gradients) e = (0.5 * (e + e.transpose())).eval();
 }
 
 std::vector<Tensor3> SmallStrain::face_stress(const Displaced& state, Index first, Index count) {

@@ -44,23 +44,12 @@ class SmallStrain final : public Equilibrium {
               const SolidParameters& parameters)
       : mesh_(mesh), kernel_(kernel), rows_(rows), thermal_(thermal), parameters_(parameters) {}
 
-  EquilibriumMeans means() const override {
-    return {
-        .recovers_stress = true, .has_products = true, .compares_gradients = true, .takes_pressure = false};
-  }
-  std::string name(const SolidSystem& system) const override { return system.method->name(); }
-  void prepare(const SolidProblem& problem, SolidSystem& system) const override;
-  void set_pressure(std::vector<double>) override {}
-  std::vector<double> force_of_known(std::span<const double> known) const override;
   linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
                                std::span<double> u) override;
-  void explain_failure(const SolveFailure& failure) const override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                               const elastic::ElasticLoads& loads) override;
-  double share_left(double residual, double rows) const override { return rows > 0 ? residual / rows : 0; }
-  void to_strain(std::span<Tensor3> gradients) const override;
   std::vector<Tensor3> face_stress(const Displaced& state, Index first, Index count) override;
   std::vector<Tensor3> cell_stress(const Displaced& state) override;
 

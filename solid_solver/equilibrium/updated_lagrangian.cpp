@@ -125,7 +125,7 @@ UpdatedLagrangian::UpdatedLagrangian(const mesh::Mesh& mesh, const elastic::Elas
 
 UpdatedLagrangian::~UpdatedLagrangian() = default;
 
-std::string UpdatedLagrangian::name(const SolidSystem&) const {
+std::string UpdatedLagrangian::name() const {
   return segregated_name(method_) + " at large strain, updated Lagrangian, least-squares face gradient";
 }
 

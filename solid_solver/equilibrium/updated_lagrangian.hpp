@@ -56,18 +56,19 @@ class UpdatedLagrangian final : public LargeStrain {
                     const SolidParameters& parameters);
   ~UpdatedLagrangian() override;
 
-  std::string name(const SolidSystem& system) const override;
+  std::string name() const override;
   void set_pressure(std::vector<double> of_faces) override { pressure_ = std::move(of_faces); }
   linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
                                std::span<double> u) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
-  Vec3 pressure_force() override { return pressure_force_; }
+  Vec3 pressure_force() const override { return pressure_force_; }
   std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                               const elastic::ElasticLoads& loads) override;
-  void end_step(std::span<const double> unknowns, std::span<const double> known) override;
-  void accept() override;
+  /// Ends the current step; accept() makes it the start of the next one. Throws SolveFailure.
+  void end_step(std::span<const double> unknowns, std::span<const double> known);
+  void accept();
   void visit(io::Archive& archive, std::span<const double> unknowns, std::span<const double> known) override;
 
  private:

@@ -94,9 +94,9 @@ double SolidLedger::kinetic(const SolidState& state, std::span<const double> kno
 }
 
 void SolidLedger::add_work(const SolvedStage& stage) const {
-  const Work work = !body_.has_mass()                          ? face_work(stage)
-                    : body_.equilibrium().means().has_products ? symmetric_work(stage)
-                                                               : finite_work(stage);
+  const Work work = !body_.has_mass()      ? face_work(stage)
+                    : body_.large_strain() ? finite_work(stage)
+                                           : symmetric_work(stage);
   SolidEnergies& energies = stage.after.energies;
   energies.internal_work += work.inside;
   energies.external_work += work.outside;

@@ -51,9 +51,10 @@ void SolidStepper::visit(io::Archive& archive) {
   for (const double* part : parts) sums.push_back(*part);
   archive.sums("energies", sums);
   for (std::size_t i = 0; i < sums.size(); ++i) *parts[i] = sums[i];
-  body_.equilibrium().visit(archive, body_.unknowns_of(s.cell_u, s.face_u), s.known);
+  if (LargeStrain* large = body_.large_strain())
+    large->visit(archive, body_.unknowns_of(s.cell_u, s.face_u), s.known);
   if (!archive.reads()) return;
-  if (const LoadPath* path = body_.equilibrium().load_path()) body_.set_load_factor(path->factor());
+  if (const LoadPath* path = body_.load_path()) body_.set_load_factor(path->factor());
 }
 
 namespace {

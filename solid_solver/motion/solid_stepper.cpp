@@ -12,6 +12,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
+#include "solid_solver/equilibrium/updated_lagrangian.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 
 namespace couplet::solid {
@@ -27,7 +28,7 @@ SolidStepper::SolidStepper(SolidBody& body)
   apply_stiffness();
   start_from_rest();
   body_.place_expansion(0);
-  if (body.equilibrium().load_path()) body.set_load_factor(0);
+  if (body.load_path()) body.set_load_factor(0);
   if (body.is_dynamic()) announce_time_scheme();
 }
 
@@ -118,7 +119,7 @@ void SolidStepper::begin_step(const coupling::Step& step, bool has_loads) {
 void SolidStepper::prepare_loads() {
   const std::vector<time::Stage> stages = stages_of(step_.dt);
   stages_.resize(stages.size());
-  if (body_.equilibrium().load_path()) body_.set_load_factor(1);
+  if (body_.load_path()) body_.set_load_factor(1);
   if (body_.thermal()) body_.thermal()->begin_step(step_);
   apply_stiffness();
   for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -132,8 +133,9 @@ void SolidStepper::solve(std::vector<double> interface_load) {
   try {
     for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], i == 0);
   } catch (const SolveFailure& failure) {
-    if (!body_.is_dynamic() && step_.scheme == coupling::Scheme::standalone)
-      body_.equilibrium().explain_failure(failure);
+    if (!body_.is_dynamic() && step_.scheme == coupling::Scheme::standalone && !body_.large_strain())
+      throw SchemeFailure("The static step failed, and a shorter step would solve the same equations: {}",
+                          failure.what());
     throw;
   }
   trial_.time = step_.time + step_.dt;
@@ -149,7 +151,8 @@ void SolidStepper::solve(std::vector<double> interface_load) {
   elastic_.impose_known(trial_.known, trial_.face_u);
   elastic_.impose_known(trial_.known_rate, trial_.face_v);
   update_trial_ghosts();
-  body_.equilibrium().end_step(body_.unknowns_of(trial_.cell_u, trial_.face_u), trial_.known);
+  if (UpdatedLagrangian* updated = body_.updated_lagrangian())
+    updated->end_step(body_.unknowns_of(trial_.cell_u, trial_.face_u), trial_.known);
   if (parameters_.step_control) judge_step();
 }
 
@@ -166,8 +169,8 @@ void SolidStepper::accept_step() {
   if (body_.thermal()) body_.thermal()->accept_step();
   for (const StageWork& work : stages_)
     if (linalg::ResidualProjection* projection = work.system->projection()) projection->accept();
-  body_.equilibrium().accept();
-  if (LoadPath* path = body_.equilibrium().load_path())
+  if (UpdatedLagrangian* updated = body_.updated_lagrangian()) updated->accept();
+  if (LoadPath* path = body_.load_path())
     path->accept(trial_.time, body_.softest_motion(last_.unknowns, trial_.known).stiffness);
   std::swap(state_, trial_);
   body_.place_expansion(state_.time);

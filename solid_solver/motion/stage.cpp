@@ -134,7 +134,11 @@ SolidSystem& SolidStepper::system_for(double mass_factor) {
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       system->inertia.push_back(mass_factor * body_.density(c) * geometry_.volume[c]);
-  body_.equilibrium().prepare(problem_of(*system), *system);
+  const SolidProblem problem = problem_of(*system);
+  if (!body_.large_strain())
+    system->method = make_solution_method(problem, parameters_.method);
+  else if (body_.finite_strain())
+    system->node_inertia = node_inertia(problem);
   announce(*system);
   systems_.insert(systems_.begin(), std::move(system));
   return *systems_.front();
@@ -150,7 +154,7 @@ SolidProblem SolidStepper::problem_of(const SolidSystem& system) const {
 }
 
 void SolidStepper::announce(const SolidSystem& system) {
-  const std::string chosen = body_.equilibrium().name(system);
+  const std::string chosen = body_.large_strain() ? body_.large_strain()->name() : system.method->name();
   if (chosen == method_announced_) return;
   const bool first = method_announced_.empty();
   method_announced_ = chosen;
@@ -196,7 +200,9 @@ void SolidStepper::subtract_prescribed(StageWork& work) {
     if (!work.known_change.empty()) work.known_change[i] = change;
     work.known[i] = start[i] + (place + beta / work.stage.dt) * change;
   }
-  std::vector<double> force = body_.equilibrium().force_of_known(work.known);
+  if (body_.large_strain()) return;  // find() moves the known columns
+  const std::vector<double> still(elastic_.n_unknowns(), 0);
+  std::vector<double> force = body_.equilibrium().forces(still, work.known);
   for (std::size_t i = 0; i < force.size(); ++i) work.rhs[i] -= force[i];
   work.known_force = std::move(force);
 }
@@ -255,7 +261,7 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
 
 /// A static guess uses the previous known displacements; a dynamic one is extrapolated with its velocity.
 linalg::SolveStatistics SolidStepper::find_equilibrium(const StageWork& work, const SolidState& now) {
-  LoadPath* path = body_.equilibrium().load_path();
+  LoadPath* path = body_.load_path();
   if (path) body_.set_load_factor(1);
   body_.place_pressures(work.place_time);
   body_.place_expansion(work.place_time);

@@ -146,7 +146,7 @@ void SolidOutput::write_series(double time, std::span<const double> points) {
     series_.add("solver.csv", {"time [s]", "solves", "iterations", "inner iterations", "residual"},
                 std::array{time, static_cast<double>(effort.solves), static_cast<double>(effort.iterations),
                            static_cast<double>(effort.inner_iterations), effort.residual});
-  if (const LoadPath* path = body_.equilibrium().load_path())
+  if (const LoadPath* path = body_.load_path())
     series_.add("path.csv",
                 {"time [s]", "load factor [1]", "length [m]", "lowest stiffness [1]", "stable [1]"},
                 std::array{time, path->factor(), path->length(), path->stiffness(),

@@ -61,7 +61,7 @@ double height(const Solid& solid) {
   return 4 + parallel::min(mesh.comm, deflection) / gyration;
 }
 
-const LoadPath& path_of(const Solid& solid) { return *solid.body().equilibrium().load_path(); }
+const LoadPath& path_of(const Solid& solid) { return *solid.body().load_path(); }
 
 /// The largest distance of an equilibrium from the closed form, over the limit load; until the path is stable again.
 double follow(Solid& solid, bool knows_stability) {

@@ -72,7 +72,7 @@ inline StrainAudit audit_of(const Solid& solid) { return audit_strain(solid.view
 /// Energy that the accepted state of a motion holds beyond what it was given, over the latter.
 inline double created_energy(const Solid& solid) {
   const SolidView view = solid.view();
-  EnergyBalance balance(view, view.compares_gradients() ? std::make_shared<StrainEnergy>(view) : nullptr);
+  EnergyBalance balance(view, !view.body.large_strain() ? std::make_shared<StrainEnergy>(view) : nullptr);
   diagnostics::Report report;
   balance.look(report);
   return balance.audit().created();
