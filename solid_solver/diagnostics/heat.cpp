@@ -18,9 +18,7 @@ constexpr double turning_cosine = -0.5;  // cosine between the changes of two st
 constexpr double noticeable = 1e-3;      // root mean square of a step's change over all temperatures seen
 
 /// Change of a temperature of this size that its solver cannot tell from none [K].
-double rounding_of(const Heat& heat, double temperature) {
-  return heat.parameters().linear_tolerance * std::abs(temperature);
-}
+double rounding_of(double temperature) { return HeatParameters::linear_tolerance * std::abs(temperature); }
 
 /// Detects a temperature that alternates between steps. The trapezoidal rule reverses modes that its step
 /// does not resolve (a shock, a large Fourier number) instead of damping them: amplification (1 - z/2)/(1 +
@@ -68,7 +66,7 @@ void HeatSwing::observe(diagnostics::Report& report) {
   highest_ = first ? range[0] : std::max(highest_, range[0]);
   lowest_ = first ? -range[1] : std::min(lowest_, -range[1]);
   range_.add(highest_ - lowest_, heat_.accepted().dt);
-  const double size = std::sqrt(sums[0] / sums[3]), share = range_.share(size, rounding_of(heat_, highest_));
+  const double size = std::sqrt(sums[0] / sums[3]), share = range_.share(size, rounding_of(highest_));
   const bool turns = sums[2] < turning_cosine * std::sqrt(sums[0] * sums[1]) && share > noticeable;
   turns_ = turns ? turns_ + 1 : 0;
   if (turns_ < patience) return;
@@ -157,7 +155,7 @@ void HeatStorage::look(diagnostics::Report& report) {
   const double stored = m.density * m.specific_heat(level);
   const double range = parallel::max(mesh.comm, high_) - parallel::min(mesh.comm, low_),
                rate = parallel::max(mesh.comm, rate_);
-  if (!(rate > 0) || !(range > rounding_of(heat_, level))) return;
+  if (!(rate > 0) || !(range > rounding_of(level))) return;
   // A ramp is followed at the distance of this time, of which the range of temperatures is one.
   const double time = size * size * stored / m.conductivity(level), lag = time * rate / range;
   if (auto finding = diagnostics::finding_of(

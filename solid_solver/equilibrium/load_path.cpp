@@ -14,6 +14,8 @@ namespace couplet::solid {
 namespace {
 
 // Ratio of a step's length to the last one.
+// Largest length of a step over that of the first one.
+constexpr double longest = 10;
 constexpr double shortest_ratio = 0.5, longest_ratio = 1.5;
 
 }  // namespace
@@ -66,7 +68,7 @@ void LoadPath::accept(double time, double stiffness) {
   travelled_ += length;
   largest_ = std::max(largest_, std::abs(now_.factor));
   const double wanted = std::sqrt(double(chosen_.iterations) / std::max(1, now_.iterations));
-  nominal_ = std::min(nominal_ * std::clamp(wanted, shortest_ratio, longest_ratio), chosen_.longest * first_);
+  nominal_ = std::min(nominal_ * std::clamp(wanted, shortest_ratio, longest_ratio), longest * first_);
 }
 
 /// Locates limit points with the parabola through the last three equilibria.

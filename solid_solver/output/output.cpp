@@ -31,8 +31,7 @@ SolidSurfaces::SolidSurfaces(const SolidFields& derived, const SolidBody& body, 
       wanted_(series_.points()) {}
 
 void SolidSurfaces::write(double time, std::span<const double> points, std::span<const Vec3> places) {
-  if (!is_open_)
-    series_.open(context_.output_folder, body_.parameters().output.deformed, context_.restart_time);
+  if (!is_open_) series_.open(context_.output_folder, true, context_.restart_time);
   is_open_ = true;
   const int dim = body_.mesh().dim;
   SidedTensors sides = derived_.stress_sides(points, wanted_);
@@ -67,22 +66,13 @@ std::vector<double> packed_cells(const mesh::Mesh& mesh, std::span<const Tensor3
 
 void add_cell_stress(const SolidBody& body, const SolidFields& derived, std::span<const double> points,
                      FieldList& fields) {
-  const SolidOutputParameters& chosen = body.parameters().output;
-  if (!chosen.stress && !chosen.principal_stress) return;
+  if (!body.parameters().output.stress) return;
   const mesh::Mesh& mesh = body.mesh();
   const std::vector<Tensor3> tensors = derived.cell_stress(points);
-  if (chosen.stress) {
-    fields.add_tensor("stress", "Pa", Place::cells, mesh.dim, packed_cells(mesh, tensors));
-    std::vector<double> equivalent(mesh.cells.n_local(), 0);
-    for (std::size_t c = 0; c < tensors.size(); ++c) equivalent[c] = equivalent_stress(tensors[c]);
-    fields.add("equivalent-stress", "Pa", Place::cells, 1, std::move(equivalent));
-  }
-  if (chosen.principal_stress) {
-    std::vector<double> principal(std::size_t(mesh.cells.n_local()) * 3, 0);
-    for (std::size_t c = 0; c < tensors.size(); ++c)
-      std::ranges::copy(principal_stresses(tensors[c]), principal.begin() + std::ptrdiff_t(3 * c));
-    fields.add("principal-stress", "Pa", Place::cells, 3, std::move(principal));
-  }
+  fields.add_tensor("stress", "Pa", Place::cells, mesh.dim, packed_cells(mesh, tensors));
+  std::vector<double> equivalent(mesh.cells.n_local(), 0);
+  for (std::size_t c = 0; c < tensors.size(); ++c) equivalent[c] = equivalent_stress(tensors[c]);
+  fields.add("equivalent-stress", "Pa", Place::cells, 1, std::move(equivalent));
 }
 
 }  // namespace
@@ -114,7 +104,7 @@ void SolidOutput::write_volume(double time, std::span<const double> points, std:
   const SolidState& state = stepper_.state();
   const int dim = mesh.dim;
   if (!fields_)
-    fields_.emplace(mesh, body_.geometry().points, context_.output_folder, context_.name, chosen.deformed,
+    fields_.emplace(mesh, body_.geometry().points, context_.output_folder, context_.name, true,
                     context_.restart_time, context_.fields);
   FieldList fields;
   fields.list.push_back({"displacement", "m", Place::points, dim, points});
@@ -226,7 +216,7 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
     row.push_back(value);
   };
   for (const PatchForce& r : derived_.reactions(points)) {
-    const Vec3 moment = r.moment_about(chosen.moment_centre);
+    const Vec3 moment = r.moment_about(Vec3::Zero());
     for (int a = 0; a < dim; ++a) add(r.patch, a, " [N]", r.force[a]);
     for (int a = first; chosen.moments && a < 3; ++a) add(r.patch + " moment", a, " [N m]", moment[a]);
   }

@@ -100,9 +100,6 @@ void declare(config::Section& s, HeatParameters& h) {
   s.value("max-iterations", h.max_iterations)
       .range(1, 1000)
       .doc("maximum number of these iterations; beyond it the step fails");
-  s.value("linear-tolerance", h.linear_tolerance)
-      .range(1e-15, 1e-4)
-      .doc("relative residual tolerance of the linear system, where it is not solved directly");
 }
 
 void declare(config::Section& s, ThermalExpansion& e) {
@@ -122,11 +119,6 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<InterfaceData>(
       "interface", p.interface_data, [](config::Section& i, InterfaceData& v) { declare(i, v); },
       "data that patches of type 'interface' receive from the coupler; default: forces");
-  s.value("stiffness-tolerance", p.stiffness_tolerance)
-      .range(0, 0.1)
-      .doc(
-          "relative change of youngs-modulus-table and poissons-ratio-table at which the matrix is "
-          "reassembled");
   s.value("thermoelastic-coupling", p.thermoelastic_coupling)
       .doc("cooling by stretching: heat of the strain rate, thesis (2.27), lagged by one step");
 }

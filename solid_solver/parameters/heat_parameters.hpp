@@ -38,7 +38,8 @@ struct HeatParameters {
   std::map<std::string, HeatBoundary> boundaries;
   double tolerance = 1e-8;  // relative, of the temperature, if properties depend on it
   int max_iterations = 50;
-  double linear_tolerance = 1e-12;
+  /// Relative residual of the linear system, where it is not solved directly.
+  static constexpr double linear_tolerance = 1e-12;
 };
 
 /// Thermal strain relative to a reference temperature.

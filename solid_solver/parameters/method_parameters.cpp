@@ -161,9 +161,6 @@ void declare(config::Section& s, LoadStepping& l) {
   s.value("iterations", l.iterations)
       .range(2, 15)
       .doc("for arc-length: iterations of Newton's method per step toward which the length is adapted");
-  s.value("longest", l.longest)
-      .range(1, 1e4)
-      .doc("for arc-length: largest length of a step over that of the first one");
 }
 
 }  // namespace couplet::solid

@@ -52,7 +52,6 @@ struct LoadStepping {
   Type type = Type::load;
   double first_load_factor = 0.05;  // of the first step
   int iterations = 5;               // target number per step
-  double longest = 10;              // largest step over the first one
 };
 
 void declare(config::Section& section, LoadStepping& stepping);

@@ -76,10 +76,8 @@ void declare(config::Section& s, SolidQuantity& q, int dimension) {
 }
 
 void declare(config::Section& s, SolidOutputParameters& o) {
-  s.value("deformed", o.deformed).doc("write the displaced mesh points");
   s.value("stress", o.stress).doc("write stress components and the equivalent stress");
   s.value("strain", o.strain).doc("write strain components");
-  s.value("principal-stress", o.principal_stress).doc("write the principal stresses, largest first");
   s.value("point-stress", o.point_stress)
       .doc(
           "also write stress components at the points; where materials meet, those of the side with the larger "
@@ -91,10 +89,7 @@ void declare(config::Section& s, SolidOutputParameters& o) {
           "scene that has them, at each output");
   s.value("moments", o.moments)
       .doc(
-          "reactions.csv also has the moment of each patch's force, of large strain that of the deformed body");
-  s.value("moment-centre", o.moment_centre)
-      .unit("m", 1e-9, 1e4)
-      .doc("point about which 'moments' are taken; it rests");
+          "reactions.csv also has the moment of each patch's force about the origin, of large strain that of the deformed body");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
   s.value("spectrum", o.spectrum)
       .doc(

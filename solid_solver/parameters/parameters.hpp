@@ -34,16 +34,13 @@ struct SolidQuantity {
 
 /// Fields written at the output interval, and the energies.
 struct SolidOutputParameters {
-  bool deformed = true;
   bool stress = true;
   bool strain = false;
-  bool principal_stress = false;
   bool point_stress = false;
   bool acceleration = false;
   bool energies = false;
   bool spectrum = false;
   bool moments = false;
-  Vec3 moment_centre = Vec3::Zero();  // [m]
   std::vector<std::string> surfaces;  // patches, or "all"
   int modes = 0;                      // number of frequencies and shapes
   int buckling = 0;                   // number of load factors and shapes
@@ -88,7 +85,6 @@ struct SolidParameters {
   std::optional<ThermalExpansion> expansion;
   bool thermoelastic_coupling = false;
   std::optional<TimeStepControl> step_control;
-  double stiffness_tolerance = 1e-3;  // change of elastic constants with temperature that is tolerated
   MethodParameters method;
   std::map<std::string, SolidProbe> probes;
   std::map<std::string, SolidQuantity> quantities;

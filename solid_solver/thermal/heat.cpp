@@ -22,7 +22,7 @@ constexpr double largest_growth = 2.4;
 
 linalg::LinearOptions options_of(const HeatParameters& p, GlobalIndex n_unknowns) {
   linalg::LinearOptions options;
-  options.relative_tolerance = p.linear_tolerance;
+  options.relative_tolerance = HeatParameters::linear_tolerance;
   options.max_iterations = 2000;
   options.method = n_unknowns <= direct_heat_up_to                  ? linalg::LinearMethod::direct
                    : p.analysis == HeatParameters::Analysis::steady ? linalg::LinearMethod::gmres_multigrid

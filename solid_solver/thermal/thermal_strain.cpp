@@ -20,6 +20,9 @@ std::vector<std::string> symmetry_patches(const SolidParameters& parameters) {
   return names;
 }
 
+// Relative change of the elastic constants that is tolerated before the matrix is made anew.
+constexpr double stiffness_tolerance = 1e-3;
+
 fv::Property property(const std::optional<config::ExpressionText>& text, const std::string& key,
                       const char* needed_by) {
   if (!text) throw Error("material.{}: this key is missing; {} requires it.", key, needed_by);
@@ -101,7 +104,7 @@ void ThermalStrain::choose_stiffness(double t) {
     change = std::max({change, 2 * std::abs(lame_.trial[c].mu - lame_.accepted[c].mu) / size,
                        std::abs(lame_.trial[c].lambda - lame_.accepted[c].lambda) / size});
   }
-  if (parallel::max(mesh_->comm, change) <= parameters_.stiffness_tolerance) lame_.trial = lame_.accepted;
+  if (parallel::max(mesh_->comm, change) <= stiffness_tolerance) lame_.trial = lame_.accepted;
 }
 
 // Equal on all ranks, because new matrices are created collectively.

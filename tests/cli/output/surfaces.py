@@ -50,7 +50,7 @@ participants:
       root: {type: fixed-displacement, value: [0, 0, 0]}
       tip: {type: traction, value: [0, "500*sin(60*t)", 100]}
       sides: {type: free}
-    output: {surfaces: [all], moments: true, moment-centre: [1 m, 0 m, 0 m]}
+    output: {surfaces: [all], moments: true}
 """
 
 

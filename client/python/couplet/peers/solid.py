@@ -8,7 +8,7 @@ from couplet.peers import elements, mesh
 from couplet.peers.values import field, number, only, refuse, settled, vector
 
 HERE = {"program", "mesh", "mesh-scale", "mesh-parameters", "dimension", "plane", "analysis", "kinematics", "material", "boundaries", "gravity",
-        "solution-method", "probes", "output", "stiffness-tolerance", "time-scheme"}  # the last ones affect how it is solved, not what
+        "solution-method", "probes", "output", "time-scheme"}  # the last ones affect how it is solved, not what
 MATERIAL = {"density", "youngs-modulus", "poissons-ratio", "yield-strength", "conductivity", "specific-heat", "expansion"}
 PATCHES = {"free": set(), "fixed-displacement": {"value", "components", "traction"}, "traction": {"value"}, "pressure": {"value"}, "force": {"value"},
            "symmetry": set(), "frictionless": set()}
