@@ -12,7 +12,7 @@
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/probe.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/thermal/thermal_strain.hpp"
 

@@ -117,7 +117,7 @@ bool NewtonKrylov::invert(std::span<const double> r, std::span<double> z) {
     factors_->solve(r, z);
   if (modes_) modes_->add_correction(r, z);
   project(z);
-  return problem_.rigid == nullptr;
+  return !problem_.project;
 }
 
 void NewtonKrylov::choose_multigrid() {
@@ -172,13 +172,13 @@ void NewtonKrylov::choose_factors() {
 }
 
 void NewtonKrylov::project(std::span<double> unknowns) const {
-  if (problem_.rigid) problem_.rigid->project(unknowns);
+  if (problem_.project) problem_.project(unknowns);
 }
 
 linalg::SolveStatistics NewtonKrylov::find(std::span<const double> b, std::span<double> u) {
   try {
     std::vector<double> rows;
-    if (problem_.rigid) {
+    if (problem_.project) {
       rows.assign(b.begin(), b.end());
       project(rows);
       project(u);

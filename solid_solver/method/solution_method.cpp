@@ -31,7 +31,7 @@ constexpr double set_up_of_hard = 4.5;
 constexpr double bulk_of_mixed_form = 49;
 
 bool wants_mixed_form(const SolidProblem& problem) {
-  if (!problem.elastic.volume_by_cells() || problem.rigid) return false;
+  if (!problem.elastic.volume_by_cells() || problem.project) return false;
   double ratio = 0;
   for (Index c = 0; c < problem.mesh.cells.n_owned(); ++c) {
     const elastic::LameConstants lame = problem.elastic.lame(c);
@@ -157,7 +157,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
     default:
       method = std::make_unique<BlockCoupled>(problem, parameters);
   }
-  const bool is_iteration = parameters.type == MethodType::newton_krylov && !problem.rigid &&
+  const bool is_iteration = parameters.type == MethodType::newton_krylov && !problem.project &&
                             parameters.preconditioner != Preconditioner::factors;
   const bool was_left = asked.preconditioner == Preconditioner::automatic;
   if (is_iteration && was_left) method->cure_ = [=](auto b) { return by_factors(problem, parameters, b); };
@@ -169,23 +169,6 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
                          ? " (auto)"
                          : " (auto: the symmetric one does not support these boundaries or this solver)";
   return method;
-}
-
-elastic::FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
-  using FaceGradient = MethodParameters::FaceGradient;
-  if (is_updated_lagrangian(parameters)) return elastic::FaceGradientScheme::thesis;
-  if (has_finite_strain(parameters) || has_orthotropic(parameters))
-    return elastic::FaceGradientScheme::symmetric;
-  switch (parameters.method.face_gradient) {
-    case FaceGradient::symmetric:
-      return elastic::FaceGradientScheme::symmetric;
-    case FaceGradient::thesis:
-      return elastic::FaceGradientScheme::thesis;
-    default:
-      break;
-  }
-  return symmetric_suits(parameters) ? elastic::FaceGradientScheme::symmetric
-                                     : elastic::FaceGradientScheme::thesis;
 }
 
 double norm(MPI_Comm comm, std::span<const double> values) {

@@ -11,7 +11,6 @@
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/boundary/loads.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {
@@ -24,7 +23,8 @@ struct SolidProblem {
   std::span<const double> inertia;       ///< per owned cell [N/m]; empty if static
   const elastic::ElasticKernel& kernel;  ///< A, with the selected face gradient
   double mass_factor = 0;                ///< of the kernel's own mass [1/s^2], if it has one
-  const RigidPatches* rigid = nullptr;   ///< nullptr if no patch moves as a rigid body
+  /// Projects displacements or forces, on the unknowns, to those of patches that move as rigid bodies; empty if none does.
+  std::function<void(std::span<double>)> project{};
   /// Configuration of the body.
   const mesh::Geometry& geometry() const { return elastic.geometry(); }
   bool is_static() const { return inertia.empty(); }
@@ -75,10 +75,6 @@ class SolutionMethod {
 /// Creates the requested method. `automatic` chooses by size and case; the name states the reason.
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& parameters);
-
-/// Requested face gradient. `automatic` is the symmetric one, which neither locks nor lets motion grow, or
-/// the thesis's if the symmetric one is not applicable (symmetric_suits()).
-elastic::FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
 
 /// Euclidean norm over all ranks.
 double norm(MPI_Comm comm, std::span<const double> values);

@@ -105,8 +105,7 @@ void SolidStepper::visit_guesses(io::Archive& archive) {
     projection->set_values(guesses.products, std::move(vectors),
                            [&](std::span<const double> x, std::span<double> y) {
                              problem.apply(x, y);
-                             if (problem.rigid)
-                               problem.rigid->project(y);  // as the solves that kept them did
+                             if (problem.project) problem.project(y);  // as the solves that kept them did
                            });
   }
 }

@@ -145,12 +145,10 @@ SolidSystem& SolidStepper::system_for(double mass_factor) {
 }
 
 SolidProblem SolidStepper::problem_of(const SolidSystem& system) const {
-  return {mesh_,
-          elastic_,
-          system.inertia,
-          kernel_,
-          body_.has_mass() ? system.mass_factor : 0,
-          body_.rigid().empty() ? nullptr : &body_.rigid()};
+  SolidProblem problem{mesh_, elastic_, system.inertia, kernel_, body_.has_mass() ? system.mass_factor : 0};
+  if (const RigidPatches& rigid = body_.rigid(); !rigid.empty())
+    problem.project = [&rigid](std::span<double> unknowns) { rigid.project(unknowns); };
+  return problem;
 }
 
 void SolidStepper::announce(const SolidSystem& system) {

@@ -14,10 +14,10 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/time_scheme.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "solid_solver/body/stress.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/output/files.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
 
 namespace couplet::solid {
 

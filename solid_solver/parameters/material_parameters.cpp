@@ -11,7 +11,6 @@
 #include "common/config/values.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
-#include "solid_solver/method/solution_method.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet::solid {
@@ -276,6 +275,16 @@ bool symmetric_suits(const SolidParameters& p) {
   using Type = MethodParameters::Type;
   if (p.method.type != Type::automatic && p.method.type != Type::newton_krylov) return false;
   return !any_condition(p, has_no_energy);
+}
+
+elastic::FaceGradientScheme face_gradient_scheme(const SolidParameters& p) {
+  using FaceGradient = MethodParameters::FaceGradient;
+  using Scheme = elastic::FaceGradientScheme;
+  if (is_updated_lagrangian(p)) return Scheme::thesis;
+  if (has_finite_strain(p) || has_orthotropic(p) || p.method.face_gradient == FaceGradient::symmetric)
+    return Scheme::symmetric;
+  if (p.method.face_gradient == FaceGradient::thesis) return Scheme::thesis;
+  return symmetric_suits(p) ? Scheme::symmetric : Scheme::thesis;
 }
 
 elastic::VolumeStrain volume_strain_of(const SolidParameters& p) {

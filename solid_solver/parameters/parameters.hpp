@@ -10,6 +10,7 @@
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
 #include "common/contact/contact.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elasticity.hpp"
 #include "solid_solver/parameters/boundary_parameters.hpp"
 #include "solid_solver/parameters/heat_parameters.hpp"
@@ -146,6 +147,9 @@ double largest_poissons_ratio(const SolidParameters& parameters);
 elastic::VolumeStrain volume_strain_of(const SolidParameters& parameters);
 /// True if the symmetric gradient supports all boundaries and the requested method.
 bool symmetric_suits(const SolidParameters& parameters);
+/// Requested face gradient. `automatic` is the symmetric one, which neither locks nor lets motion grow, or the
+/// thesis's where symmetric_suits() is false.
+elastic::FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
 
 /// Elastic constants of the cells for ElasticOperator.
 elastic::ElasticBody elastic_body(const SolidParameters& parameters, const mesh::Mesh& mesh,

@@ -2,7 +2,7 @@
 // Linear buckling against closed forms, free vibrations of loaded bodies, the cheap estimate, and equilibria that do not hold.
 #include "solid_solver/diagnostics/buckling.hpp"
 #include "common/diagnostics/finding.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"

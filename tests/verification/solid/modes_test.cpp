@@ -2,7 +2,7 @@
 // Free vibrations found by factors of the shifted stiffness or by multigrid: the lowest ones of the dense eigenproblem, none missed, with the
 // shapes on the surface that plate_modal takes.
 #include "common/modes/modal_checks.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::modes_test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Manufactured solution u_i = a_i 1e-6 sin(4 pi x) sin(2 pi y) sin(pi z), a = (2, 4, 6), on a cube of 0.2 m
 // (the 3-D case of the solids4foam verification suite); in 2-D without the third component and factor.
-#include "solid_solver/output/displacement_error.hpp"
+#include "solid_solver/analysis/displacement_error.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::order_test {

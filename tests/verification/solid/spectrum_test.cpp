@@ -4,7 +4,7 @@
 // schemes.
 #include "common/mesh/topology.hpp"
 #include "common/time/time_scheme.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::spectrum_test {

@@ -2,7 +2,7 @@
 // The symmetric operator with the vertices as unknowns of their own: the kernel's rows, their inverse and their inertia.
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/elasticity/finite/stress_stiffness.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::symmetric_matrix_test {

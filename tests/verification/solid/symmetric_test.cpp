@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The symmetric face gradient: K from an energy. What it must be on every mesh, and what it gives in bending.
 #include "common/elasticity/elastic_kernel.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing::symmetric_test {

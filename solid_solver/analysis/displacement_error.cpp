@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/output/displacement_error.hpp"
+#include "solid_solver/analysis/displacement_error.hpp"
 
 #include <Eigen/Dense>
 
@@ -14,8 +14,8 @@
 #include "common/linalg/krylov.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/analysis/reconstruction.hpp"
 #include "solid_solver/body/stress.hpp"
-#include "solid_solver/output/reconstruction.hpp"
 
 namespace couplet::solid {
 namespace {

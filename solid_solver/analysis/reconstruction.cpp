@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/output/reconstruction.hpp"
+#include "solid_solver/analysis/reconstruction.hpp"
 
 #include <Eigen/Dense>
 

@@ -12,7 +12,7 @@
 #include "common/mesh/mesh.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 
 namespace couplet::solid {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/analysis/modal_analysis.hpp"
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
