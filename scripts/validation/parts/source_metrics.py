@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Metrics of the sources, counted with regular expressions rather than a compiler: good to a few per cent, and the same
 from one commit to the next. Every measure returns (what it found, whether the limit is met)."""
+import collections
 import importlib
 import json
 import os
 import re
 import resource
 import shutil
-import statistics
+import subprocess
 import sys
 
 PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler")
 HOUSE = ("common", *PROGRAMS)
 LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', re.S)
-CLASS = re.compile(r"\b(?:class|struct)\s+(?:\[\[\w+\]\]\s*)?([\w:]+)(?:\s+final)?\s*(?::([^:;{(][^;{(]*))?\{")
 
 
 # -- files ------------------------------------------------------------------------------------------------------------
@@ -87,12 +87,6 @@ def lines_of_programs(job, most):
     return f"{sum(found.values())}: {worst(found, 7)}", sum(found.values()) <= most
 
 
-def files(job, most):
-    sizes = [len(t.splitlines()) for t in texts(job).values()]
-    return f"{len(sizes)} files, median {statistics.median(sizes):.0f} lines", len(sizes) <= most
-
-
-# Ten cases of different kinds as runs of seconds: (case, keys, whether it is a single static solve).
 TEN = (
     ("cook", (".mesh-parameters={n: 64, shape: 0}",), True),
     ("elliptic-plate", (), True),
@@ -124,80 +118,6 @@ def share_of_diagnostics(job, most, most_of_static):
 
 # -- classes
 # ------------------------------------------------------------------------------------------------------------
-def plain(text):
-    """Comments, literals and preprocessor lines are blank."""
-    blank = lambda match: re.sub(r"[^\n]", " ", match.group())
-    return re.sub(r"^[ \t]*#[^\n]*", blank, LITERAL.sub(blank, text), flags=re.M)
-
-
-def closing(text, begin):
-    """Position of the brace that closes the one before `begin`."""
-    depth = 1
-    for brace in re.compile(r"[{}]").finditer(text, begin):
-        depth += 1 if brace.group() == "{" else -1
-        if depth == 0:
-            return brace.start()
-    return len(text)
-
-
-def data_members(body):
-    """Number of data members declared in the body of a class; those of nested classes count."""
-    count, at = 0, 0
-    while match := CLASS.search(body, at):
-        end = closing(body, match.end())
-        if not re.search(r"\benum\s+$", body[: match.start()]):
-            count += data_members(body[match.end() : end])
-        body = body[: match.start()] + "struct X " + body[end + 1 :]
-        at = match.start() + 9
-    while True:  # bodies of functions, initializers, arguments of templates
-        shorter = re.sub(
-            r"<[^<>;{}()]*>",
-            "",
-            re.sub(r"\{(?:[^{}]|\{\})*\}", "{}", body.replace("->", "").replace("operator<", "operator")),
-        )
-        shorter = re.sub(r"\{\}(?=\s*[,;])", "", re.sub(r"=[^,;{}()]*(?=[,;])", "", shorter))
-        if shorter == body:
-            break
-        body = shorter
-    for statement in re.split(r";|\{\}|\b(?:public|protected|private)\s*:", body):
-        head = statement.strip()
-        if (
-            not head
-            or "(" in head
-            or re.match(
-                (
-                    r"(?:using|typedef|friend|static_assert|enum|template|static|constexpr|struct X$|class \w+$|struct"
-                    r" \w+$)\b"
-                ),
-                head,
-            )
-        ):
-            continue
-        if re.search(r"[\w>*&]\s+[&*]?\w+", head):
-            count += 1 + head.count(",")
-    return count
-
-
-def largest_class(job, most):
-    """Classes and structs but those in files of parameters, which list the keys of a case."""
-    found = {}
-    for f, text in ((f, plain(text)) for f, text in texts(job).items() if "parameters" not in f):
-        at = 0
-        while match := CLASS.search(text, at):
-            at = closing(text, match.end())
-            if not re.search(r"\benum\s+$", text[: match.start()]):
-                found[match[1]] = max(found.get(match[1], 0), data_members(text[match.end() : at]))
-    over = sum(n > most for n in found.values())
-    return f"{worst(found, 5)}; {over} of {len(found)} have more than {most}", not over
-
-
-def mirrored(job, share):
-    """tests/unit/mesh/order_test.cpp is the test of common/mesh/order.hpp, tests/unit/coupler/links_test.cpp that of
-    coupler/links.hpp."""
-    tests = {f for f in tracked(job, "tests/unit") if f.endswith("_test.cpp")}
-    headers = [f for f in texts(job) if f.endswith(".hpp")]
-    there = [h for h in headers if f"tests/unit/{h.removeprefix('common/').removesuffix('.hpp')}_test.cpp" in tests]
-    return f"{len(there)} of {len(headers)}", len(there) >= share * len(headers)
 
 
 def comparison(job):
@@ -219,18 +139,155 @@ def comparison(job):
     )
 
 
+def processor_minutes(job, command, seconds):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    result = job.run(command, seconds)
+    if result.returncode != 0:
+        raise RuntimeError((result.stderr or result.stdout)[-300:])
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / 60
+
+
 def minutes(job, limit, *targets):
     """Processor minutes of compiler and linker from an empty folder, two jobs, no compiler cache."""
     folder = job.scratch / "metrics-build"
     shutil.rmtree(folder, ignore_errors=True)
-    result = job.run(["cmake", "-G", "Ninja", "-S", job.root, "-B", folder], 600)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if result.returncode == 0:
-        result = job.run(
-            ["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600
-        )
-    if result.returncode != 0:
-        raise RuntimeError((result.stderr or result.stdout)[-300:])
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    used = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / 60
+    subprocess.run(["cmake", "-G", "Ninja", "-S", job.root, "-B", folder], check=True, capture_output=True)
+    used = processor_minutes(
+        job, ["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600
+    )
+    return f"{used:.1f} min", used <= limit
+
+
+# -- ideas ----------------------------------------------------------------------------------------------------------------
+def keys_of_programs(job):
+    """Returns {program: its keys}."""
+    return {
+        p: set(re.findall(r"^\| `([^`]+)`", job.run([job.build / "bin" / p, "--docs"]).stdout, re.M)) for p in PROGRAMS
+    }
+
+
+def keys(job, most):
+    found = {p: len(k) for p, k in keys_of_programs(job).items()}
+    return f"{sum(found.values())}: {worst(found)}", sum(found.values()) <= most
+
+
+def unused_keys(job, most):
+    """Keys of a program that no case sets."""
+    there = {
+        word
+        for f in tracked(job, "configs")
+        if f.endswith(".yaml")
+        for word in re.findall(r"[\w-]+(?=\s*:)", (job.root / f).read_text())
+    }
+    found = {p: len([k for k in keys if k not in there]) for p, keys in keys_of_programs(job).items()}
+    return f"{sum(found.values())}: {worst(found)}", sum(found.values()) <= most
+
+
+def word_options(job, most):
+    """Words that keys may have as values."""
+    found = set()
+
+    def walk(node, key, program):
+        for name, value in (
+            node.items() if isinstance(node, dict) else ((None, v) for v in node if isinstance(node, list))
+        ):
+            if name in ("enum", "const"):
+                found.update(
+                    (program, key, w) for w in (value if isinstance(value, list) else [value]) if isinstance(w, str)
+                )
+            elif name == "properties":
+                for inner, schema in value.items():
+                    walk(schema, inner, program)
+            elif isinstance(value, (dict, list)):
+                walk(value, key, program)
+
+    for program in PROGRAMS:
+        walk(json.loads(job.run([job.build / "bin" / program, "--schema"]).stdout), "", program)
+    return f"{len(found)}", len(found) <= most
+
+
+def estimators(job, most):
+    """Those that the ablation switches off one by one."""
+    switches = (job.root / "benchmarks/ablation.py").read_text().partition("SWITCHES = {")[2].partition("\n}")[0]
+    found = collections.Counter()
+    for program, names in re.findall(r'^    "(\w+)": \{(.*?)^    \},', switches, re.M | re.S):
+        found[program] = len(re.findall(r'^        "[^"]+": \[', names, re.M))
+    return f"{sum(found.values())}: {worst(found)}", sum(found.values()) <= most
+
+
+def findings(job, most):
+    n = len(re.findall(r"^\| `", (job.root / "docs/findings.md").read_text(), re.M))
+    return f"{n}", n <= most
+
+
+def virtuals(job, file, most):
+    n = len(re.findall(r"\bvirtual (?!~)", (job.root / file).read_text()))
+    return f"{n}", n <= most
+
+
+def floors(job, program, most):
+    """Longest chain of folders of a program that include from each other; folders that include in a circle are one."""
+    below = collections.defaultdict(set)
+    for f, text in texts(job).items():
+        here = f.split("/")
+        if here[0] == program and len(here) > 2:
+            below[here[1]] |= {m for m in re.findall(rf'#include "{program}/(\w+)/', text) if m != here[1]}
+    seen = {}
+
+    def reach(folder):
+        found, ahead = {folder}, [folder]
+        while ahead:
+            for other in below[ahead.pop()] - found:
+                found.add(other), ahead.append(other)
+        return found
+
+    reached = {f: reach(f) for f in list(below)}
+
+    def height(folder):
+        if folder not in seen:
+            seen[folder] = 1 + max((height(o) for o in reached[folder] if folder not in reached[o]), default=0)
+        return seen[folder]
+
+    circles = sorted(f for f in reached if any(o != f and f in reached[o] for o in reached[f]))
+    n = max(map(height, reached))
+    return f"{n} of {len(reached)} folders" + (f"; in a circle: {', '.join(circles)}" if circles else ""), n <= most
+
+
+def classes(job, most, most_of_two_meanings):
+    listing = job.run(
+        [
+            "ctags",
+            "--languages=C++",
+            "--c++-kinds=cs",
+            "--fields=+s",
+            "-x",
+            "--_xformat=%N %F",
+            *(job.root / f for f in texts(job)),
+        ]
+    ).stdout
+    names = collections.Counter(line.split()[0] for line in listing.splitlines() if not line.startswith("__anon"))
+    two = {n: k for n, k in names.items() if k > 1}
+    return (
+        f"{sum(names.values())} classes; {len(two)} names with more than one: {worst(two, 5)}",
+        sum(names.values()) <= most and len(two) <= most_of_two_meanings,
+    )
+
+
+def macros(job, most):
+    found = [f for f, text in texts(job).items() if re.search(r"^#\s*define\b", text, re.M)]
+    return f"{len(found)} files: {', '.join(found)}", len(found) <= most
+
+
+def mirrored(job, most):
+    """tests/unit/mesh/order_test.cpp is the test of common/mesh/order.hpp, tests/unit/coupler/links_test.cpp that of coupler/links.hpp."""
+    tests = {f for f in tracked(job, "tests/unit") if f.endswith("_test.cpp")}
+    headers = [f for f in texts(job) if f.endswith(".hpp")]
+    there = [h for h in headers if f"tests/unit/{h.removeprefix('common/').removesuffix('.hpp')}_test.cpp" in tests]
+    return f"{len(there)} of {len(headers)}", len(there) >= most
+
+
+def suite(job, limit):
+    """Processor minutes of the short tests, which also includes those in which processes wait for each other by polling."""
+    used = processor_minutes(job, ["ctest", "--test-dir", job.build, "-j", "2", "-LE", "long"], 2 * 3600)
     return f"{used:.1f} min", used <= limit
