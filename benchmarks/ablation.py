@@ -36,7 +36,7 @@ SWITCHES = {  # program: {estimator: [(file, text, what stands there without it)
         "variation within quadrilaterals": [("solid_solver/body/recovered_strain.cpp", "return mesh.dim == 2 && ", "return !OFF && mesh.dim == 2 && ")],
         "errors of the steps": [(ERROR, "parts.step = steps_.over_size();", "parts.step = OFF ? unknown : steps_.over_size();")],
         "residual of the solver": [(ERROR, "parts.linear = body_.is_dynamic()", "parts.linear = OFF ? 0. : body_.is_dynamic()")],
-        "quadratics of the neighbors (stress)": [("solid_solver/output/probes.cpp", "one.equivalent, one.left}", "one.equivalent, OFF ? std::nan(\"\") : one.left}")],
+        "quadratics of the neighbors (stress)": [("solid_solver/output/probes.cpp", "body.is_dynamic() ? std::nan", "OFF || body.is_dynamic() ? std::nan")],
     },
     "fluid_solver": {
         "recovered velocity": [(FLOW, "parts.mesh = recovered_difference() / scale;", "parts.mesh = OFF ? 0 : recovered_difference() / scale;")],

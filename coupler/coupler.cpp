@@ -175,7 +175,7 @@ void Coupler::finalise(const std::string& problem) {
   for (std::size_t i = 0; i < pass_.partners().size(); ++i)
     last.push_back(pass_.links().input(i, pass_.given()));
   std::vector<diagnostics::NamedErrors> parts = finalise_all(pass_.everyone(), problem, std::move(last));
-  if (simulation_.error_estimate && problem.empty()) {
+  if (simulation_.diagnostics != diagnostics::When::always && problem.empty()) {
     if (const diagnostics::ErrorParts& mine = diagnostics_.errors(); mine.known() || !mine.omittable.empty())
       parts.push_back({"coupling", mine});
     errors_ = diagnostics::largest(parts);

@@ -20,6 +20,7 @@ void StepErrors::add(const Seen& seen, int steps) {
   if (!std::isfinite(seen.error + seen.rate + seen.size + seen.below + seen.highest)) return;
   time_ += steps * seen.dt;
   way_ += steps * seen.dt * seen.rate;
+  largest_ = std::max(largest_, seen.size);
   const double kept = std::exp(-steps * seen.dt / (window * time_));
   for (const auto& [of_late, now] :
        {std::pair{&rate_, seen.rate}, {&size_, seen.size}, {&below_, seen.below}, {&highest_, seen.highest}})

@@ -38,12 +38,13 @@ class StepErrors {
   double size() const { return size_; }
   /// Remaining error relative to the size of the solution [1]. NaN before the first step.
   double over_size() const;
-  /// Number of oscillations of this size that the solution has made: the integral of |u'| over four amplitudes.
-  double swings() const { return size_ > 0 ? way_ / (4 * size_) : 0; }
+  /// Number of oscillations of the largest size that the solution has made: the integral of |u'| over four
+  /// amplitudes.
+  double swings() const { return largest_ > 0 ? way_ / (4 * largest_) : 0; }
   /// Archives the state in checkpoints.
   template <class Numbers>
   void visit(Numbers& numbers) {
-    numbers(rate_, size_, below_, highest_, time_, amplitude_, errors_, way_);
+    numbers(rate_, size_, below_, highest_, time_, amplitude_, errors_, way_, largest_);
     for (const auto& [of, sum] : errors_)
       if (!amplitude_.contains(of.first)) numbers.damaged();
   }
@@ -67,7 +68,7 @@ class StepErrors {
   std::map<int, double> amplitude_;  // largest, by the binary logarithm of the frequency
   // Largest recent values, since an oscillation passes through zero rate and zero size.
   double rate_ = 0, size_ = 0, below_ = 0, highest_ = 0, time_ = 0;
-  double way_ = 0;  // integral of |u'|
+  double way_ = 0, largest_ = 0;  // integral of |u'|, largest |u|
 };
 
 /// StepErrors of a second-order equation. Local errors C dt^{p+1} d^{p+1}u/dt^{p+1} are estimated from the

@@ -188,6 +188,10 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       across_ = mesh::extent_of(view_.mesh.comm, view_.fluid.points_at_rest()).size().maxCoeff();
     return changed_ * across_ > quasi_steady * largest_.value() * p.sound_speed();
   }
+  bool absorbs() const {
+    return std::ranges::any_of(view_.parameters().boundaries,
+                               [](const auto& b) { return b.second.absorbing; });
+  }
   diagnostics::ErrorParts parts() {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
@@ -242,6 +246,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
                                                 view_.fluid.state().mesh_flux);
     // The errors of a wave travel with it and add up, unless the flow changes too slowly for one.
     const bool stays = !has_waves() && carried_ <= hardly * changed_;
+    if (acts && has_waves() && absorbs())
+      return diagnostics::ErrorParts::unknown;  // they leave with the waves
     if (acts) return stays ? std::min(sum, left_of_late_ / steps_.size()) : sum;
     return driving_.moves() || steps_.swings() <= most_swings ? sum : diagnostics::ErrorParts::unknown;
   }

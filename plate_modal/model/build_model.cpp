@@ -115,14 +115,14 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
   const std::filesystem::path file = folder / *p.mesh;
   mesh::check_mesh_file(file, p.mesh_parameters);
   if (file.extension() == ".geo") return mesh::mesh_geo(file, 2, p.mesh_parameters);
-  return mesh::is_deck(file) ? file : mesh::convert_mesh(file);
+  return mesh::is_foreign(file.extension()) ? file : mesh::convert_mesh(file);
 }
 
 /// Mid-surface of the mesh in the parameters, with scaled lengths.
 Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = mesh_file(p, folder);
-  const bool is_deck = mesh::is_deck(file);
-  mesh::RawMesh raw = is_deck ? mesh::read_deck(file) : mesh::read_msh(file);
+  const bool is_foreign = mesh::is_foreign(file.extension());
+  mesh::RawMesh raw = is_foreign ? mesh::read_foreign(file) : mesh::read_msh(file);
   if (raw.dim != 2 || raw.cell_type.empty())
     throw Error(
         "The mesh '{}' is not two-dimensional. The mid-surface of a plate needs a 2-D mesh with its surface "
@@ -130,7 +130,7 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
         (folder / *p.mesh).string());
   for (Vec3& x : raw.points) x *= p.mesh_scale;
   std::vector<int> entities;
-  if (!is_deck) entities = mesh::read_boundary_entities(file);
+  if (!is_foreign) entities = mesh::read_boundary_entities(file);
   entities.resize(raw.boundary_patch.size(), 0);  // none of the patch 'rest'
   Midsurface surface = midsurface_of(raw, entities);
   for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane

@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "solid_solver/analysis/modal_analysis.hpp"
 #include "solid_solver/diagnostics/view.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
 
 namespace couplet::solid {
 

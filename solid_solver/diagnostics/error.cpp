@@ -10,11 +10,10 @@
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
-#include "solid_solver/output/displacement_error.hpp"
+#include "solid_solver/analysis/displacement_error.hpp"
 #include "solid_solver/body/solid_body.hpp"
-#include "solid_solver/diagnostics/stability.hpp"
 #include "solid_solver/diagnostics/strain_energy.hpp"
-#include "solid_solver/equilibrium/equilibrium.hpp"
+#include "solid_solver/equilibrium/finite_strain.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -24,8 +23,8 @@ constexpr double unknown = diagnostics::ErrorParts::unknown;
 constexpr double grown = 1.2;
 // Swings of a motion from which errors of its phase, which nothing estimates, exceed those of its shape.
 constexpr double most_swings = 2;
-// Stiffness of the softest motion over that of the unloaded body.
-constexpr double soft = 0.5;
+// Sensitivity to the stiffness from which the energies that a mesh misses say little: those of the soft motion are a small part.
+constexpr double soft = 3;
 
 double product(MPI_Comm comm, std::span<const double> a, std::span<const double> b) {
   return parallel::sum(comm, std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
@@ -43,20 +42,15 @@ double stated_error_of_modes(MPI_Comm comm) {
 /// Estimates the error of the displacement:
 ///   mesh    static: displacement_error(), the root mean square over the body. In motion and beside a seat: strain energy of the
 ///           difference between face strains and recovered ones, also at large strain. At least the variation within quadrilaterals,
-///           which neither shows. Unknown with another gradient than the symmetric one, after some swings of a motion, and where the
-///           load has taken half of the stiffness of a motion, along which errors grow.
+///           which neither shows. Unknown with another gradient than the symmetric one, after some swings of a motion, and near the
+///           loss of stability, where small errors grow.
 ///   step    sum of the local errors, see VelocityErrors. None if static; unknown where a transient temperature strains the body.
 ///   linear  static: work of the equilibrium residual over that of the loads, the error of the compliance;
 ///           dynamic: relative residuals of all steps, see StepErrors
 class ErrorEstimate final : public diagnostics::Diagnostic {
  public:
-  ErrorEstimate(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
-                std::shared_ptr<const Stability> stability)
-      : view_(view),
-        body_(view.body),
-        strain_(std::move(strain)),
-        stability_(std::move(stability)),
-        steps_(scheme_of(body_.parameters())) {}
+  ErrorEstimate(const SolidView& view, std::shared_ptr<StrainEnergy> strain)
+      : view_(view), body_(view.body), strain_(std::move(strain)), steps_(scheme_of(body_.parameters())) {}
   void observe(diagnostics::Report& report) override;
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;
@@ -65,13 +59,13 @@ class ErrorEstimate final : public diagnostics::Diagnostic {
   double left_by_solver() const;
   double missed_work() const;
   double missed_now() const;
+  bool gives_way() const;
   double mesh_error() const;
   void find_displacement_error();
 
   SolidView view_;
   const SolidBody& body_;
-  std::shared_ptr<StrainEnergy> strain_;        // nullptr at large strain
-  std::shared_ptr<const Stability> stability_;  // nullptr but in a static run at large strain
+  std::shared_ptr<StrainEnergy> strain_;  // nullptr at large strain
   time::VelocityErrors steps_;
   time::StepErrors linear_;
   double largest_ = 0, missed_ = unknown;  // displacement of a motion [m], and the error of its mesh then
@@ -107,9 +101,20 @@ double ErrorEstimate::missed_now() const {
   return audit.scale > 0 ? audit.missed_by_mesh : unknown;
 }
 
+/// True if a static body at large strain answers to its stiffness far more than in proportion, or not at all.
+bool ErrorEstimate::gives_way() const {
+  FiniteStrain* equilibrium = body_.finite_strain();
+  if (body_.is_dynamic() || !equilibrium || body_.seat()) return false;
+  try {
+    return !(equilibrium->softness(view_.unknowns(), view_.now().known) < soft);
+  } catch (const SolveFailure&) {
+    return true;
+  }
+}
+
 double ErrorEstimate::mesh_error() const {
   if (!body_.kernel().is_symmetric()) return unknown;
-  if (stability_ && !(stability_->stiffness() > soft)) return unknown;
+  if (gives_way()) return unknown;
   if (displacement_)
     return std::max(*displacement_, strain_->now(true).inner_variation);  // NaN without a displacement
   if (body_.parameters().expansion) return unknown;  // energies are no measure if heat strains the body
@@ -176,9 +181,8 @@ void ErrorEstimate::visit(io::Archive& archive) {
 
 }  // namespace
 
-diagnostics::Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
-                              std::shared_ptr<const Stability> stability) {
-  return std::make_shared<ErrorEstimate>(view, std::move(strain), std::move(stability));
+diagnostics::Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain) {
+  return std::make_shared<ErrorEstimate>(view, std::move(strain));
 }
 
 }  // namespace couplet::solid

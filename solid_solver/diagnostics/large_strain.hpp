@@ -43,7 +43,7 @@ std::optional<LargeStrainEstimate> estimate_large_strain(const SolidBody& body, 
                                                          std::span<const double> known,
                                                          double& gradient_seen);
 
-/// Largest such change of a linear static run, which `simulation: {diagnostics: full}` asks for.
+/// Largest such change of a linear static run.
 class LargeStrainChange final : public diagnostics::Diagnostic {
  public:
   explicit LargeStrainChange(const SolidView& view) : view_(view) {}

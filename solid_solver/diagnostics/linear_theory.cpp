@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What small strain neglects: by the largest gradient, by the distance from buckling, and on request by an expansion.
+// What small strain neglects: by the largest gradient, by an expansion, and by the distance from buckling.
 #include <algorithm>
 #include <memory>
 
@@ -20,9 +20,8 @@ class LinearTheory final : public diagnostics::Diagnostic {
   void look(diagnostics::Report& report) override {
     Deformation now = view_.fields.deformation(view_.fields.point_displacement());
     largest_gradient_ = now.gradient = std::max(largest_gradient_, now.gradient);
-    add(report, neglected_geometry(view_.body.parameters(), now,
-                                   large_strain_ ? large_strain_->estimate() : std::nullopt,
-                                   large_strain_ && large_strain_->is_bounded(), buckling_->factor()));
+    add(report, neglected_geometry(view_.body.parameters(), now, large_strain_->estimate(),
+                                   large_strain_->is_bounded(), buckling_->factor()));
     add(report, unknown_yielding(view_.body.parameters(), now.strain));
   }
 
@@ -30,7 +29,7 @@ class LinearTheory final : public diagnostics::Diagnostic {
 
  private:
   SolidView view_;
-  std::shared_ptr<const LargeStrainChange> large_strain_;  // nullptr unless it was asked for
+  std::shared_ptr<const LargeStrainChange> large_strain_;
   std::shared_ptr<const LinearBuckling> buckling_;
   double largest_gradient_ = 0;
 };

@@ -19,15 +19,11 @@ namespace couplet::solid {
 
 void Stability::observe(diagnostics::Report& report) {
   const SolidBody& body = view_.body;
-  if (const LoadPath* path = body.load_path()) {
-    last_ = path->stiffness();
-    return see_limits(*path);
-  }
+  if (const LoadPath* path = body.load_path()) return see_limits(*path);
   if (!body.finite_strain() || body.seat() || !body.rigid().empty() || is_lost_) return;
   if (!searches_ && !view_.stepper.step().is_last) return;
   const SolidState& now = view_.now();
   const double stiffness = body.softest_motion(view_.stepper.last_solve().unknowns, now.known).stiffness;
-  last_ = stiffness;
   const Vec3 load = view_.fields.total_load();
   if (stiffness >= 0) {
     time_ = now.time, stiffness_ = stiffness, load_ = load;

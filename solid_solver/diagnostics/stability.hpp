@@ -23,15 +23,12 @@ class Stability final : public diagnostics::Diagnostic {
   void observe(diagnostics::Report& report) override;
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;
-  /// Smallest stiffness that was found last; NaN if it was not looked for.
-  double stiffness() const { return last_; }
 
  private:
   void see_limits(const LoadPath& path);
 
   SolidView view_;
   bool searches_;
-  double last_ = std::numeric_limits<double>::quiet_NaN();
   double time_ = 0, stiffness_ = 1;  // of the last stable equilibrium
   Vec3 load_ = Vec3::Zero();
   bool is_lost_ = false;

@@ -15,12 +15,11 @@ using diagnostics::When;
 /// Solid and what several of its diagnostics share.
 struct RunOfSolid {
   const SolidView& view;
-  std::shared_ptr<StrainEnergy> strain;        ///< nullptr at large strain
-  std::shared_ptr<Stability> stability;        ///< nullptr but in a static run at large strain
-  const Heat* heat;                            ///< nullptr unless temperatures are solved for
-  std::shared_ptr<LinearBuckling> buckling{};  ///< nullptr at large strain
-  std::shared_ptr<LargeStrainChange>
-      large_strain{};  ///< nullptr at large strain and unless it was asked for
+  std::shared_ptr<StrainEnergy> strain;               ///< nullptr at large strain
+  std::shared_ptr<Stability> stability;               ///< nullptr but in a static run at large strain
+  const Heat* heat;                                   ///< nullptr unless temperatures are solved for
+  std::shared_ptr<LinearBuckling> buckling{};         ///< nullptr at large strain
+  std::shared_ptr<LargeStrainChange> large_strain{};  ///< nullptr at large strain
 };
 
 template <Made (*make)(const SolidView&)>
@@ -46,7 +45,7 @@ using SolidRow = diagnostics::TableRow<RunOfSolid>;
 constexpr std::array table{
     SolidRow{"strain-energy", When::always, [](const RunOfSolid& run) -> Made { return run.strain; }},
     SolidRow{"buckling", When::always, [](const RunOfSolid& run) -> Made { return run.buckling; }},
-    SolidRow{"large-strain", When::in_full, [](const RunOfSolid& run) -> Made { return run.large_strain; }},
+    SolidRow{"large-strain", When::always, [](const RunOfSolid& run) -> Made { return run.large_strain; }},
     SolidRow{"linear-theory", When::always, linear_theory_of},
     SolidRow{"energy-balance", When::always, energy_balance},
     SolidRow{"stability", When::always, [](const RunOfSolid& run) -> Made { return run.stability; }},
@@ -60,7 +59,7 @@ constexpr std::array table{
     SolidRow{"heat-storage", When::always, of_heat<heat_storage>},
     SolidRow{"impossible-temperature", When::always, of_heat<impossible_temperature>},
     SolidRow{"error", When::with_errors,
-             [](const RunOfSolid& run) { return solid_error(run.view, run.strain, run.stability); }},
+             [](const RunOfSolid& run) { return solid_error(run.view, run.strain); }},
     SolidRow{"quantities", When::always, of_solid<quantities>},
     SolidRow{"stress-error", When::with_errors, of_solid<stress_error>}};
 
@@ -82,7 +81,7 @@ void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
                  view.body.thermal() ? view.body.thermal()->heat() : nullptr};
   if (!has_finite_strain(view.body.parameters())) {
     run.buckling = std::make_shared<LinearBuckling>(view, all.is_full());
-    if (all.is_full()) run.large_strain = std::make_shared<LargeStrainChange>(view);
+    run.large_strain = std::make_shared<LargeStrainChange>(view);
   }
   all.add(std::span<const SolidRow>(table), run);
 }

@@ -55,8 +55,7 @@ diagnostics::Made heat_swing(const Heat& heat);
 diagnostics::Made heat_storage(const Heat& heat);
 diagnostics::Made impossible_temperature(const Heat& heat);
 diagnostics::Made heat_error(const Heat& heat);
-diagnostics::Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain,
-                              std::shared_ptr<const Stability> stability);
+diagnostics::Made solid_error(const SolidView& view, std::shared_ptr<StrainEnergy> strain);
 diagnostics::Made quantities(const SolidView& view);
 diagnostics::Made quantities(const HeatView& view);
 diagnostics::Made stress_error(const SolidView& view);

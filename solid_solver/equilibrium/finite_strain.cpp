@@ -357,6 +357,24 @@ double FiniteStrain::energy(std::span<const double> unknowns, std::span<const do
   return parallel::sum(mesh_.comm, kernel_->energy());
 }
 
+double FiniteStrain::softness(std::span<const double> unknowns, std::span<const double> known) {
+  const double strain = energy(unknowns, known);
+  std::vector<double> inner = forces(unknowns, known);
+  double work = 0;
+  for (std::size_t i = 0; i < inner.size(); ++i) work += unknowns[i] * inner[i];
+  work = parallel::sum(mesh_.comm, work);
+  const double size = norm(mesh_.comm, unknowns);
+  if (!(strain > 0) || !(size > 0)) return 1;
+  TangentSolver& solver = solver_for(0, {});
+  solver.forget_factors();
+  solver.follow(true);
+  std::vector<double> change(inner.size());
+  constexpr double tolerance = 1e-2;
+  solver.solve(inner, change, tolerance, most_linear_);
+  const double loaded = std::min(1.0, std::abs(work) / (2 * strain));
+  return loaded * norm(mesh_.comm, change) / size + 1 - loaded;
+}
+
 void FiniteStrain::visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) {
   kernel_->forget_start();
   forces(unknowns, known);

@@ -52,6 +52,13 @@ class FiniteStrain final : public LargeStrain {
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
+  /// Sensitivity of a static equilibrium: relative change of the displacement if the whole body became
+  /// softer, over the relative softening. 1 for a linear body under loads, large near buckling. Prescribed
+  /// displacements do not respond and count as 1. Throws SolveFailure.
+  double softness(std::span<const double> unknowns, std::span<const double> known);
+  /// Smallest x . K x of the tangent K at an equilibrium, over that of `elastic`. 1 without load, negative if
+  /// unstable (an upper bound, and so a proof). 1 also for follower pressures on a surface with a free rim,
+  /// which have no energy. `start`: forces without the symmetry of the body.
   SoftMotion lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
                               const linalg::LinearMap& elastic, std::vector<double> start);
   Vec3 pressure_force() const override { return kernel_->pressure_force(); }

@@ -247,7 +247,8 @@ std::vector<ReportedStress> reported_stresses(const SolidBody& body, const Solid
   const DiscreteStress stress = fields.discrete_stress(fields.point_displacement());
   std::vector<ReportedStress> found;
   for (const SolidProbes::Stress& one : probes.stresses(stress))
-    found.push_back({fmt::format("at probe '{}'", one.probe), one.place, one.equivalent, one.left});
+    found.push_back({fmt::format("at probe '{}'", one.probe), one.place, one.equivalent,
+                     body.is_dynamic() ? std::nan("") : one.left});
   if (!body.is_dynamic()) {
     const ReportedStress most = largest(body, fields, stress);
     if (parallel::comm_rank(body.mesh().comm) == 0 && most.value > 0) found.push_back(most);

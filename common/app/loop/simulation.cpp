@@ -111,8 +111,8 @@ void declare(config::Section& section, SimulationParameters& p) {
               {{"without-errors", When::always}, {"standard", When::with_errors}, {"full", When::in_full}})
       .doc(
           "what the run finds out about its own answer. standard: with the error due to mesh, time step and tolerances; "
-          "without-errors: nothing is collected for that; full: also searches that may take as long as a solve (buckling, "
-          "the change of a linear displacement by large strain)");
+          "without-errors: nothing is collected for that; full: also searches that may take as long as a solve (all "
+          "low buckling loads, stability in each step)");
   section.value("hang-timeout", p.hang_timeout)
       .unit("s", 1, 1e6)
       .not_negative()

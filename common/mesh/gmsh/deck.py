@@ -135,7 +135,7 @@ class Reader:
             self.include(values['INPUT'])
     def numbers(self, n):
         """Whole numbers of this line and, up to n, of the following ones."""
-        found = []
+        found, place = [], self.place()
         while True:
             for word in self.line.split(','):
                 if word and not word.isspace():
@@ -143,7 +143,7 @@ class Reader:
             if len(found) >= n:
                 return found
             if not self.data():
-                self.fail('expected %d whole numbers here, found %d.' % (n, len(found)))
+                self.fail('expected %d whole numbers here, found %d.' % (n, len(found)), place)
     def real(self, word):
         word = word.strip()
         plain = word.upper().replace('D', 'E', 1)

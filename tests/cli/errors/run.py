@@ -134,11 +134,11 @@ def newest(folder):
 def off(folder):
     """Off: nothing is said, and the results are those of a run that estimates, byte for byte."""
     results = []
-    for word in ("true", "false"):
-        text = run("solid_solver", "vibrating-cantilever", [*beam(2, 0.5), f"simulation.error-estimate={word}"], folder)
+    for word in ("standard", "without-errors"):
+        text = run("solid_solver", "vibrating-cantilever", [*beam(2, 0.5), f"simulation.diagnostics={word}"], folder)
         results.append((pathlib.Path(folder) / "solid/probes.csv").read_bytes())
         known = [v for v in errors(folder, "solid").values() if v is not None]
-        check(("estimated error" in text) == (word == "true") == bool(known), f"error-estimate: {word}", known)
+        check(("estimated error" in text) == (word == "standard") == bool(known), f"diagnostics: {word}", known)
     check(results[0] == results[1], "the results are the same")
 
 
@@ -171,7 +171,7 @@ def coupled(folder):
         text = flap(folder, n, sets, 4 if part == "coupling tolerance" else 0)  # useless, and said to be
         told = [line for line in text.splitlines() if line.startswith("[coupler 0] estimated")]
         check(f"[coupler 0] the {part} (" in text and len(told) == 1, name, *told)
-    text = flap(folder, 10, {**flap_settings(0.05, 0.1, 1e-6), "simulation.error-estimate": "false"})
+    text = flap(folder, 10, {**flap_settings(0.05, 0.1, 1e-6), "simulation.diagnostics": "without-errors"})
     check("estimated error" not in text, "flap, off")
 
 

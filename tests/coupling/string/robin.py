@@ -43,7 +43,7 @@ def watched(name):
     return table(f"{name}/coupler/watch.csv")
 
 
-WATCH = ("coupling.watch={out: {participant: fluid, data: velocity, part: wall}, given: {participant: fluid, data: pressure-force}, "
+WATCH = ("coupling.watch={out: {participant: fluid, data: velocity}, given: {participant: fluid, data: pressure-force}, "
          "taken: {participant: wall, data: pressure-force}}")
 
 

@@ -41,7 +41,7 @@ struct Judged {
                     .left_out = false,
                     .wrong_from = 0.5};
   EffectFinding mean{.effect = "waves of pressure", .number = NAN, .limit = 0.1, .what = "", .share = NAN};
-  Diagnostics all{0, true};
+  Diagnostics all{0, When::with_errors};
   std::size_t before = diagnostics::findings().size();
   Judged() {
     spdlog::set_level(spdlog::level::off);

@@ -336,28 +336,18 @@ TEST(Sound, a_small_mach_number_gives_the_incompressible_flow) {
   EXPECT_NEAR(std::log10(changes[0] / changes[2]), 2, 0.1);
 }
 
-/// The errors of the steps travel with a wave and add up: by local errors at a place, which cancel over a period, they were
-/// estimated a twentieth of what they are.
-TEST_P(Wave, has_the_error_of_its_steps_on_the_way_to_an_absorbing_end) {
-  const double speed = 0.01, w = 2 * std::acos(-1.) * 500;
+/// The errors of the steps travel with a wave and leave with it, so that their sum would be many times too large.
+TEST_P(Wave, has_an_unknown_error_of_its_steps_on_the_way_to_an_absorbing_end) {
+  const double w = 2 * std::acos(-1.) * 500;
   FluidParameters p = air(GetParam());
   p.boundaries["xmin"] = boundary(BoundaryType::inlet);
-  p.boundaries["xmin"].velocity = {{fmt::format("{}*sin({}*t)", speed, w)}, {"0"}};
-  p.boundaries["xmax"] = absorbing(boundary(BoundaryType::outlet));
-  for (const int steps : {200, 400}) {
-    FluidParticipant<2> fluid(distribute(MPI_COMM_WORLD, duct(200)), p, FluidContext{}, MotionLink{});
-    const auto run = support::observe(fluid, steps, 0.0201 / steps);
-    const State<2>& s = fluid.fluid().state();
-    double off = 0, size = 0;
-    for (Index i = 0; i < fluid.fluid().mesh().cells.n_owned(); ++i) {
-      const double right = speed * std::sin(w * (s.time - s.placement->centre[i][0] / c));
-      off += std::pow(s.u[i][0] - right, 2), size += right * right;
-    }
-    const double truth = std::sqrt(parallel::sum(MPI_COMM_WORLD, off) / parallel::sum(MPI_COMM_WORLD, size));
-    const double ratio = run.diagnostics().errors().step / truth;
-    RecordProperty(fmt::format("ratio_{}", steps), fmt::format("{}", ratio));
-    EXPECT_GT(ratio, 1. / 3) << truth;
-    EXPECT_LT(ratio, 3) << truth;
+  p.boundaries["xmin"].velocity = {{fmt::format("0.01*sin({}*t)", w)}, {"0"}};
+  for (const bool absorbs : {true, false}) {
+    p.boundaries["xmax"] =
+        absorbs ? absorbing(boundary(BoundaryType::outlet)) : boundary(BoundaryType::outlet);
+    FluidParticipant<2> fluid(distribute(MPI_COMM_WORLD, duct(50)), p, FluidContext{}, MotionLink{});
+    const double step = support::observe(fluid, 100, 1e-4).diagnostics().errors().step;
+    EXPECT_EQ(std::isnan(step), absorbs) << step;
   }
 }
 

@@ -47,24 +47,10 @@ Shrunk shrunk(int cells, int steps, const char* pull, bool again = false) {
   return found;
 }
 
-TEST(HeatInASolid, the_step_of_the_conduction_is_told_within_a_factor_of_two) {
-  const double fine = shrunk(32, 640, "0").end;
-  for (const int steps : {5, 10, 20}) {
-    const Shrunk found = shrunk(32, steps, "0");
-    const double wrong = std::abs(found.end / fine - 1);
-    fmt::print("{} steps: estimated {:.3g}, true {:.3g}\n", steps, found.parts.step, wrong);
-    EXPECT_GT(found.parts.step, wrong / 2) << steps;
-    EXPECT_LT(found.parts.step, wrong * 2) << steps;
-    if (steps < 20) EXPECT_GT(found.parts.step, found.parts.mesh) << steps;
-  }
-}
-
-TEST(HeatInASolid, counts_by_the_share_of_what_it_moves_and_over_a_restart) {
-  const diagnostics::ErrorParts free = shrunk(8, 8, "0").parts, again = shrunk(8, 8, "0", true).parts,
-                                pulled = shrunk(8, 8, "1e10").parts;
-  EXPECT_EQ(free.step, again.step);
-  EXPECT_EQ(free.mesh, again.mesh);
-  EXPECT_LT(pulled.step, 0.1 * free.step) << "nearly all of the displacement is that of the load";
+// What the error of a temperature that changes does to a displacement is not estimated.
+TEST(HeatInASolid, leaves_the_error_of_the_steps_unknown_over_a_restart_too) {
+  for (const bool again : {false, true})
+    EXPECT_TRUE(std::isnan(shrunk(8, 8, "0", again).parts.step)) << again;
 }
 
 // A cylinder 1 m < r < 1.5 m between two rigid planes across its axis, T - T_ref = 100 ln(b / r) / ln(b / a)

