@@ -217,7 +217,7 @@ def estimators(job, most):
 
 
 def findings(job, most):
-    n = len(re.findall(r"^\| `", (job.root / "docs/findings.md").read_text(), re.M))
+    n = (job.root / "common/diagnostics/ids.cpp").read_text().count("FindingId{")
     return f"{n}", n <= most
 
 
