@@ -2,14 +2,12 @@
 """Metrics of the sources, counted with regular expressions rather than a compiler: good to a few per cent, and the same
 from one commit to the next. Every measure returns (what it found, whether the limit is met)."""
 import collections
-import importlib
 import json
 import os
 import re
 import resource
 import shutil
 import subprocess
-import sys
 
 PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler")
 HOUSE = ("common", *PROGRAMS)
@@ -118,25 +116,6 @@ def share_of_diagnostics(job, most, most_of_static):
 
 # -- classes
 # ------------------------------------------------------------------------------------------------------------
-
-
-def comparison(job):
-    folder = str(job.root / "benchmarks/linalg")
-    if folder not in sys.path:
-        sys.path.append(folder)
-    tables = importlib.import_module("tables")
-    rows = tables.read(job.root / "benchmarks/linalg/table.csv")
-    there = [n for n in tables.HAND_WRITTEN if any((job.root / "common/linalg").rglob(f"{n}.hpp"))]
-    gains = {n: tables.best(rows, n) for n in there}
-    lacking = tables.problems(rows, job.root / "common/linalg")
-    text = ", ".join(f"{n} {min(g[:2]):.2f} of PETSc's best ({g[2]['system']})" for n, g in gains.items() if g)
-    return (
-        (
-            f"{len({r['system'] for r in rows})} systems, {len(rows)} rows;"
-            f" {text}{'; ' + '; '.join(lacking) if lacking else ''}"
-        ),
-        not lacking,
-    )
 
 
 def processor_minutes(job, command, seconds):

@@ -189,30 +189,6 @@ def others(job, case):
     )
 
 
-def diameters(job, case, chosen, values):
-    """Figure 5.9 with smooth days and the cut-off at the outlet: the least of these diameters, over that of the hot
-    tank, that stores 90 % of the excess."""
-    folder, found = CASES[case][0], {}
-    variant = yaml.safe_load((job.root / "configs" / folder / "case.yaml").read_text())["study"]["variants"][
-        f"{SMOOTH}B"
-    ]
-    for ratio in values:
-        keys = (
-            f".diameter={ratio * {'A': 38, 'G': 23}[case]} m",
-            *(f".{key}={json.dumps(value)}" for key, value in variant.items()),
-        )
-        summary = job.case(folder, keys).table("tank", "summary.csv")
-        found[ratio] = dict(zip(summary["quantity"], map(float, summary["value"])))
-    text = "; ".join(
-        f"{r:g}: {v['Q_C/Q_excess']:.1f} %, {v['eta_th']:.1f} %, {v['FoS_static']:.2f}" for r, v in found.items()
-    )
-    least = min((r for r, v in found.items() if v["Q_C/Q_excess"] >= 90), default=None)
-    return (
-        f"stored share of the excess, efficiency, static factor of safety at {text}; least that stores 90 %: {least}",
-        least == chosen,
-    )
-
-
 def optimise(job):
     """Diameter and cut-off against the stored share less a price of the volume, on a coarse tank: a grid of 9 x 9 and
     the search."""
