@@ -95,11 +95,47 @@ constexpr MissingPhysics table[] = {
      "use gaps for valves that close, or bodies for parts that pass each other (immersed-seat)"},
 };
 
+/// A key or word that is gone, exactly as it was written. Sections of no program, as `coupling`, have none.
+struct Removed {
+  std::string_view program, words, instead;
+};
+
+constexpr std::string_view coupling, tank = "thermocline";
+
+constexpr Removed removed[] = {
+    {coupling, "error-estimate", "set 'diagnostics: without-errors' for 'error-estimate: false'"},
+    {coupling, "both min-iterations", "leave it out: a step has converged when either limit is met"},
+    {coupling, "maximum-columns", "leave it out, or set 'reused-steps'"},
+    {coupling, "waveform", "leave it out: sub-steps take input that is linear in time"},
+    {coupling, "on-divergence", "leave it out, or set 'simulation: {accept: [interface-oscillation]}'"},
+    {coupling, "interface-output", "look at the fields of the programs, or integrate with 'coupling.watch'"},
+    {coupling, "part", "leave it out: forces.csv of the fluid has the forces of each patch"},
+    {coupling, "rbf", "set 'type: projection'"},
+    {fluid, "scheme runge-kutta", "leave it out, and take a third of the step"},
+    {fluid, "upstream-line", "mesh the tube, or set 'upstream-volume'"},
+    {fluid, "substance heat-capacity-ratio", "set 'speed-of-sound'"},
+    {solid, "corrected", "set 'face-gradient: symmetric', the default"},
+    {solid, "deformed", "displace the fields where you look at them"},
+    {solid, "principal-stress", "read it at probes, or compute it from 'stress'"},
+    {solid, "moment-centre", "subtract the center times the force"},
+    {solid, "stiffness-tolerance linear-tolerance longest", "leave it out"},
+    {tank, "coldest warmest", "set their mean, 'temperature'"},
+    {tank,
+     "wall-film wall-coefficient emissivity-liquid emissivity-roof emissivity-wall cover-emissivity roof-pressure "
+     "deep-temperature outlet-margin dead-state solar-absorptance site longitude time-zone shift days humidity lowest "
+     "highest capsules",
+     "leave it out"},
+};
+
 }  // namespace
 
 std::span<const MissingPhysics> missing_physics() { return table; }
 
 std::string limit_named_by(std::string_view key_or_value, std::string_view program) {
+  for (const Removed& row : removed)
+    if (row.program == program)
+      for (const std::string& word : base::split(row.words, ' '))
+        if (word == key_or_value) return fmt::format("It is gone (CHANGELOG.md). Instead: {}.", row.instead);
   std::string text = "-";
   for (const char c : key_or_value)
     text += c == '_' || c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -17,8 +17,8 @@ struct MissingPhysics {
 
 std::span<const MissingPhysics> missing_physics();
 
-/// Returns a sentence with the limit and what to do instead if a key or value asks a program for such physics.
-/// Otherwise an empty text.
+/// Returns what to do instead if a key or value asks a program for such physics, with the limit, or is one that
+/// earlier versions had. Otherwise an empty text.
 std::string limit_named_by(std::string_view key_or_value, std::string_view program);
 
 }  // namespace couplet::config

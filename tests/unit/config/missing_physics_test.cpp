@@ -54,8 +54,19 @@ TEST(MissingPhysics, a_key_or_value_that_asks_for_it_is_answered_with_the_limit)
               ElementsAre(HasSubstr("no plasticity")));
 }
 
+TEST(MissingPhysics, a_key_or_word_that_is_gone_is_answered_with_what_to_use) {
+  EXPECT_THAT(
+      errors_of("fluid_solver", "upstream-line: {length: 1}"),
+      ElementsAre("case.yaml:4:5: participants.p.upstream-line: unknown key. It is gone (CHANGELOG.md). "
+                  "Instead: mesh the tube, or set 'upstream-volume'."));
+  EXPECT_THAT(errors_of("fluid_solver", "model: runge-kutta"),
+              ElementsAre(HasSubstr("'runge-kutta' is not available. It is gone (CHANGELOG.md). Instead: ")));
+  EXPECT_THAT(errors_of("solid_solver", "upstream-line: 1"),
+              ElementsAre(HasSubstr("unknown key. Valid keys: ")));
+}
+
 TEST(MissingPhysics, other_keys_and_programs_are_answered_as_before) {
-  EXPECT_THAT(errors_of("fluid_solver", "heat-capacity-ratio: 1.4"),
+  EXPECT_THAT(errors_of("solid_solver", "heat-capacity-ratio: 1.4"),
               ElementsAre(HasSubstr("unknown key. Valid keys: ")));
   EXPECT_THAT(errors_of("solid_solver", "carreau: 1"), ElementsAre(HasSubstr("unknown key. Valid keys: ")));
   EXPECT_THAT(errors_of("fluid_solver", "viscosity: thick"),
