@@ -107,7 +107,7 @@ class WavesOfPressure final : public diagnostics::Diagnostic {
   }
 
  private:
-  double density() const { return view_.parameters().density; }
+  double density() const { return view_.properties().rho; }
   /// The first, a middle and the last face of a patch on this rank. What the motion moves is observed.
   std::vector<PlaceOfPatch> some_places(const std::string& name) const {
     const mesh::Patch* patch = name.empty() ? nullptr : view_.mesh.find_patch(name);
@@ -254,7 +254,7 @@ std::optional<diagnostics::Finding> changes_of_density(const FluidView<D>& view)
   const auto range = view.parameters().is_compressible() && sound ? pressure_range(view) : std::nullopt;
   if (!range) return {};
   return diagnostics::finding_of(
-      change_of_density(true, view.parameters().density, *range, largest_speed(view), *sound));
+      change_of_density(true, view.properties().rho, *range, largest_speed(view), *sound));
 }
 
 template <int D>

@@ -186,7 +186,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     if (!p.is_compressible()) return false;
     if (across_ == 0)
       across_ = mesh::extent_of(view_.mesh.comm, view_.fluid.points_at_rest()).size().maxCoeff();
-    return changed_ * across_ > quasi_steady * largest_.value() * p.sound_speed();
+    return changed_ * across_ > quasi_steady * largest_.value() * p.properties().sound;
   }
   bool absorbs() const {
     return std::ranges::any_of(view_.parameters().boundaries,
@@ -197,7 +197,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     parts.dimension = D;
     const double speed = root_mean_square(view_.fluid.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;
-    const double falls = std::sqrt(largest_pressure() / view_.parameters().density);
+    const double falls = std::sqrt(largest_pressure() / view_.properties().rho);
     const double across = std::pow(double(view_.mesh.cells.n_global()), 1. / D);
     // A fluid at rest is so within the tolerance of its pressure; what moves then is no solution.
     const double left = view_.parameters().pressure_tolerance * std::sqrt(across) * falls;
@@ -294,7 +294,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     std::vector<double> times{s.pressure[1]->time};
     if (s.pressure[2]) times.push_back(s.pressure[2]->time);
     const WaveRule rule = three_level_rule(s.pressure[0]->time, s.time, times);
-    const double sound = view_.parameters().sound_speed(), bulk = view_.parameters().density * sound * sound;
+    const double sound = view_.properties().sound, bulk = view_.properties().rho * sound * sound;
     for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c) {
       double rate = rule.rate * s.pressure[0]->p[c];
       for (std::size_t k = 0; k < times.size(); ++k) rate += rule.past[k] * s.pressure[k + 1]->p[c];

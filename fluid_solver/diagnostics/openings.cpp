@@ -79,7 +79,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
         const double in = std::max(0., (s.mesh_flux.empty() ? 0 : s.mesh_flux[f]) - s.phi[f]) * view_.step.dt;
         const double speed = in / (view_.step.dt * s.placement->area[f].norm());
         sums[inflow] += in;
-        sums[energy] += 0.5 * view_.parameters().density * speed * speed * in;
+        sums[energy] += 0.5 * view_.properties().rho * speed * speed * in;
       }
     }
     if (view_.step.number == 0 || std::ranges::none_of(openings_, &Opening::total)) return;
@@ -148,7 +148,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
   void look_at_weight(diagnostics::Report& report, const mesh::Patch& patch, double volume) const {
     const Weight weight = weight_over({&patch});
     const double speed = volume / (weight.area * (view_.step.time + view_.step.dt)),
-                 dynamic = 0.5 * view_.parameters().density * speed * speed;
+                 dynamic = 0.5 * view_.properties().rho * speed * speed;
     if (!(weight.range > dynamic)) return;
     report.findings.push_back(
         {.id = "flow-through-openings",

@@ -73,7 +73,7 @@ class GivenStep final : public diagnostics::Diagnostic {
 template <int D>
 double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, bool friction) {
   const State<D>& s = fluid.state();
-  const double nu = fluid.parameters().kinematic_viscosity();
+  const double nu = fluid.parameters().properties().nu;
   double rate = 0;
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const bool inside = f < mesh.n_interior;

@@ -70,7 +70,7 @@ double largest_shear(const FluidView<D>& view) {
     const double change = (g * extent.asDiagonal()).norm() / size;
     largest = std::max(largest, std::min(strain, rotation) / std::sqrt(2.) * change * change);
   }
-  return parallel::max(mesh.comm, largest) / view.parameters().kinematic_viscosity();
+  return parallel::max(mesh.comm, largest) / view.properties().nu;
 }
 
 /// True if the flow has no third dimension in which vortices stretch: most cells reach from one boundary to the
@@ -103,7 +103,7 @@ template <int D>
 double eddy_viscosity(const FluidView<D>& view) {
   double largest = 0;
   for (const double eddy : view.fluid.state().eddy) largest = std::max(largest, eddy);
-  return parallel::max(view.mesh.comm, largest) * view.parameters().density / view.parameters().viscosity;
+  return parallel::max(view.mesh.comm, largest) * view.properties().rho / view.properties().mu;
 }
 
 }  // namespace
@@ -173,7 +173,7 @@ std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const int dimension = is_plane(view) ? 2 : 3;
   if (p.turbulence && dimension == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
   if (!(p.viscosity > 0)) return {};
-  const double nu = p.kinematic_viscosity();
+  const double nu = p.properties().nu;
   double width = hydraulic_diameter(view.fluid);
   // At the walls of a flow that starts from rest, layers are as thick as friction has reached: below U^2 t/nu = 9e4 (a displacement
   // thickness of 520 nu/U), no disturbance of them grows [Schlichting]. Two of them fill this width.

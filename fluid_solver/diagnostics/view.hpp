@@ -95,6 +95,7 @@ struct FluidView {
   const double& wall_displacement;
 
   const FluidParameters& parameters() const { return fluid.parameters(); }
+  Properties properties() const { return parameters().properties(); }
   int rank() const { return parallel::comm_rank(mesh.comm); }
   bool stands_still() const {
     return has_interface && !has_mover && step.scheme != coupling::Scheme::standalone;

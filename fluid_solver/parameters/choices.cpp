@@ -111,7 +111,7 @@ diagnostics::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshF
   };
   if (mesh.dim == 2) return without("eddies are three-dimensional");
   if (!(speed > 0)) return without("no boundary or initial condition sets a speed");
-  const double nu = p.kinematic_viscosity();
+  const double nu = p.properties().nu;
   if (!(nu > 0)) return without("inviscid fluid");
   const double reynolds = speed * mesh.smallest_side() / nu, cell = speed * mesh.mean_cell / nu;
   if (reynolds < laminar)
@@ -127,7 +127,7 @@ diagnostics::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshF
 /// Explicit diffusion requires nu dt (sum of 4/h^2) <= 1, convection about half a cell per step. The implicit
 /// term costs about two explicit steps.
 diagnostics::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
-  const double nu = p.kinematic_viscosity(), h = mesh.shortest_edge;
+  const double nu = p.properties().nu, h = mesh.shortest_edge;
   const double diffusion = nu > 0 ? h * h / (4 * mesh.dim * nu) : std::numeric_limits<double>::infinity();
   const double convection = speed > 0 ? 0.5 * h / speed : std::numeric_limits<double>::infinity();
   const bool implicit = diffusion < 0.5 * convection && !std::isinf(diffusion);

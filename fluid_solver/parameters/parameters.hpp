@@ -256,11 +256,10 @@ struct FluidParameters {
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
   std::optional<CompressibilityParameters> compressibility;  // absent if neglected, which the density checks
   std::map<std::string, ProbeParameters> probes;
-  /// Speed of sound [m/s]; 0 if the fluid is computed as incompressible.
-  double sound_speed() const { return solved_sound(compressibility, density, viscosity); }
   bool is_compressible() const { return compressibility && compressibility->is_solved(); }
-  double kinematic_viscosity() const { return viscosity / density; }  ///< [m^2/s]
-  Properties properties() const { return {density, viscosity, kinematic_viscosity(), sound_speed()}; }
+  Properties properties() const {
+    return {density, viscosity, viscosity / density, solved_sound(compressibility, density, viscosity)};
+  }
 };
 
 /// Pairs of periodic patches. Throws Error if two patches do not name each other.
