@@ -205,8 +205,8 @@ std::vector<double> SolidBody::known_velocity(double start, double dt) const {
   return after;
 }
 
-SoftMotion SolidBody::softest_motion(std::span<const double> unknowns, std::span<const double> known) const {
-  if (!finite_strain_) return {};
+double SolidBody::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known) const {
+  if (!finite_strain_) return 1;
   return finite_strain_->lowest_stiffness(
       unknowns, known, [this](std::span<const double> x, std::span<double> y) { kernel_.apply(x, {}, y); },
       any_start());

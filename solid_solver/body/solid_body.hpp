@@ -47,11 +47,11 @@ class SolidBody final {
   const elastic::ElasticKernel& kernel() const { return kernel_; }
   /// Equilibrium equations; at small strain they use kernel().
   Equilibrium& equilibrium() const { return *equilibrium_; }
-  /// The same at large strain; nullptr at small strain.
+  /// Equilibrium at large strain; nullptr at small strain.
   LargeStrain* large_strain() const { return large_strain_; }
-  /// The same by Newton's method, which has a tangent; nullptr otherwise.
+  /// Equilibrium that Newton's method solves by its tangent; nullptr for another one.
   FiniteStrain* finite_strain() const { return finite_strain_; }
-  /// The same by the updated Lagrangian method, whose reference moves from step to step; nullptr otherwise.
+  /// Equilibrium of the updated Lagrangian method, whose reference moves from step to step; nullptr for another one.
   UpdatedLagrangian* updated_lagrangian() const { return updated_lagrangian_; }
   /// Path whose load factor is an unknown; nullptr for fixed loads.
   LoadPath* load_path() const { return finite_strain_ ? finite_strain_->load_path() : nullptr; }
@@ -76,7 +76,7 @@ class SolidBody final {
   /// Loads of the boundaries at time t that are no pressures of the equilibrium, see SolidBoundaries::add_forces().
   std::vector<double> dead_loads(double t) const;
   /// See FiniteStrain::lowest_stiffness(); without a tangent the stiffness of the body at rest. Collective.
-  SoftMotion softest_motion(std::span<const double> unknowns, std::span<const double> known) const;
+  double lowest_stiffness(std::span<const double> unknowns, std::span<const double> known) const;
   /// Smooth forces on the rows of elastic() without symmetry, equal on any number of ranks. Start vector of a
   /// search for a soft motion. Collective.
   std::vector<double> any_start() const;

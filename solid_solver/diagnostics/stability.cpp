@@ -23,7 +23,7 @@ void Stability::observe(diagnostics::Report& report) {
   if (!body.finite_strain() || body.seat() || !body.rigid().empty() || is_lost_) return;
   if (!searches_ && !view_.stepper.step().is_last) return;
   const SolidState& now = view_.now();
-  const double stiffness = body.softest_motion(view_.stepper.last_solve().unknowns, now.known).stiffness;
+  const double stiffness = body.lowest_stiffness(view_.stepper.last_solve().unknowns, now.known);
   const Vec3 load = view_.fields.total_load();
   if (stiffness >= 0) {
     time_ = now.time, stiffness_ = stiffness, load_ = load;

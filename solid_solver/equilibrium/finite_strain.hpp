@@ -17,12 +17,6 @@
 
 namespace couplet::solid {
 
-/// Softest motion of a body about an equilibrium, see FiniteStrain::lowest_stiffness().
-struct SoftMotion {
-  double stiffness = 1;
-  std::vector<double> shape{};  ///< by the rows of ElasticOperator; empty if unknown
-};
-
 /// One iterate of Newton's method.
 struct NewtonIterate {
   double residual = 0;  ///< norm relative to the load
@@ -59,8 +53,8 @@ class FiniteStrain final : public LargeStrain {
   /// Smallest x . K x of the tangent K at an equilibrium, over that of `elastic`. 1 without load, negative if
   /// unstable (an upper bound, and so a proof). 1 also for follower pressures on a surface with a free rim,
   /// which have no energy. `start`: forces without the symmetry of the body.
-  SoftMotion lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                              const linalg::LinearMap& elastic, std::vector<double> start);
+  double lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
+                          const linalg::LinearMap& elastic, std::vector<double> start);
   Vec3 pressure_force() const override { return kernel_->pressure_force(); }
   std::vector<elastic::Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                               const elastic::ElasticLoads& loads) override {

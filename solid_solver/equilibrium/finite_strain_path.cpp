@@ -189,8 +189,8 @@ void FiniteStrain::visit(io::Archive& archive, std::span<const double>, std::spa
 
 // Stability of the equilibrium.
 
-SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
-                                          const linalg::LinearMap& elastic, std::vector<double> start) {
+double FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
+                                      const linalg::LinearMap& elastic, std::vector<double> start) {
   kernel_->forget_start();
   kernel_->set_own_pressures(false);
   kernel_->linearise(unknowns, known, 0, trial_);
@@ -207,7 +207,7 @@ SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std:
   solver.precondition(force, smooth);
   if (parallel::any(mesh_.comm, kernel_->has_pressure()) && !is_symmetric(force, smooth)) {
     solver.forget_factors();
-    return {};
+    return 1;
   }
   modes::LowestQuotient softest;
   double least = 1;
@@ -222,7 +222,7 @@ SoftMotion FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std:
   }
   solver.forget_factors();
   if (least < 0 && -least <= spectral_rounding * stiffest_over(softest.x, elastic)) least = 0;
-  return {least, std::move(softest.x)};
+  return least;
 }
 
 /// K(u)^-1 times the change of load from the equilibrium `before` to `u`, which is the residual of `before`

@@ -171,7 +171,7 @@ void SolidStepper::accept_step() {
     if (linalg::ResidualProjection* projection = work.system->projection()) projection->accept();
   if (UpdatedLagrangian* updated = body_.updated_lagrangian()) updated->accept();
   if (LoadPath* path = body_.load_path())
-    path->accept(trial_.time, body_.softest_motion(last_.unknowns, trial_.known).stiffness);
+    path->accept(trial_.time, body_.lowest_stiffness(last_.unknowns, trial_.known));
   std::swap(state_, trial_);
   body_.place_expansion(state_.time);
 }

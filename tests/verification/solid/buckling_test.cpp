@@ -259,7 +259,7 @@ double stiffness_under(double part) {
   support::observe(*solid, 1, 1);
   const SolidBody& body = solid->body();
   const SolidState& now = solid->stepper().state();
-  return body.softest_motion(body.unknowns_of(now.cell_u, now.face_u), now.known).stiffness;
+  return body.lowest_stiffness(body.unknowns_of(now.cell_u, now.face_u), now.known);
 }
 
 TEST(Equilibrium, of_a_slender_column_is_told_apart_within_a_ten_thousandth_of_its_load) {
