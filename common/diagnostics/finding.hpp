@@ -64,7 +64,7 @@ struct FindingId {
   enum class About { answer, neglected } about;
   const char* id;
   const char* meaning;
-  /// Of a neglected effect, for --explain and docs/effects.md.
+  /// Facts of a neglected effect, which --explain and docs/effects.md print.
   struct Effect {
     const char* programs = "";  ///< that judge it, separated by blanks
     const char* key = "";       ///< that simulates it: "gravity", "analysis: dynamic"; empty if there is none

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What small strain neglects: by the largest gradient, by an expansion, and by the distance from buckling.
+// Judges what small strain neglects by the largest gradient, an expansion, and the distance from buckling.
 #include <algorithm>
 #include <memory>
 

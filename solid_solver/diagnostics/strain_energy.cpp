@@ -49,7 +49,8 @@ bool recovers(const SolidBody& body) {
   return body.is_dynamic() || body.seat() || has_finite_strain(body.parameters());
 }
 
-/// What the mesh misses of the strains within its cells; with another gradient than the symmetric one nothing is known. Collective.
+/// Finds what the mesh misses of the strains within its cells. Nothing is known with another gradient than the symmetric
+/// one. Collective.
 MissedStrain missed_within(const SolidBody& body, std::span<const double> unknowns,
                            std::span<const double> known) {
   if (!body.kernel().is_symmetric()) return {.is_one_row = true};

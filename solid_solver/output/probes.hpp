@@ -82,10 +82,11 @@ struct ReportedStress {
 Vec3 place_of_largest_stress(const SolidBody& body, const SolidFields& fields,
                              std::span<const double> points);
 
-/// Stresses at probes and, in static runs, the largest one. The relative error of the tensor is the residual of the recovery
-/// (StressRecovery::left_at_points). If the largest stress grows with refinement (clamped or reentrant corner), it stays large. NaN in motion, where errors
-/// travel that no patch of cells shows. In 81 readings on 14 bodies, 81 % are within a factor of 3 of the true error and
-/// none below a third (scripts/validate solid-accuracy). On rank 0, else empty. Collective.
+/// Stresses at probes and, in static runs, the largest one. The relative error of the tensor is the residual of the
+/// recovery (StressRecovery::left_at_points), which stays large where the stress grows with refinement (clamped or
+/// reentrant corner). It is NaN in motion, because no patch of cells shows errors that travel. In 81 readings on 14
+/// bodies, 81 % are within a factor of 3 of the true error and none below a third (scripts/validate solid-accuracy). On
+/// rank 0, else empty. Collective.
 std::vector<ReportedStress> reported_stresses(const SolidBody& body, const SolidFields& fields,
                                               const SolidProbes& probes);
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads nodes, elements, sets, surfaces and sections of an input deck of CalculiX or Abaqus (.inp). First part of the script that to_msh.py describes."""
 import itertools, math, os, sys
-# By family: dimension, faces S1, S2, ... by corners from 0, and type in a .msh.
+# Families of elements: dimension, faces S1, S2, ... by corners from 0, and type in a .msh.
 KINDS = {'C3D4': (3, 4, ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)), 4),
          'C3D8': (3, 8, ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)), 5),
          'C3D6': (3, 6, ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)), 6),

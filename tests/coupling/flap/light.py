@@ -74,7 +74,7 @@ def accurate(here):
     """The first steps are those of the implicit scheme."""
     # With the default time scheme semi-implicit steps converge to a tenth of the motion in 10 Pa s, and to half of it in 3 Pa s.
     # A uniform pressure of 1 kPa, beside which the rest of the load is small, hides nothing.
-    # Of a flap of 400 kg/m^3 the motion was 5 % off although only some percent of the load were missed.
+    # A flap of 400 kg/m^3 moved 5 % off although only some percent of the load were missed.
     for density, viscosity, pressure in ((1, 3, 0), (1, 10, 0), (1, 3, 1000), (400, 1, 0)):
         for scheme in ("auto", "implicit"):
             ended(f"{density} kg/m^3, {viscosity} Pa s, {pressure:g} Pa runs, {scheme}",

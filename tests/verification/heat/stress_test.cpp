@@ -47,7 +47,7 @@ Shrunk shrunk(int cells, int steps, const char* pull, bool again = false) {
   return found;
 }
 
-// What the error of a temperature that changes does to a displacement is not estimated.
+// No estimate knows how the error of a changing temperature moves the body.
 TEST(HeatInASolid, leaves_the_error_of_the_steps_unknown_over_a_restart_too) {
   for (const bool again : {false, true})
     EXPECT_TRUE(std::isnan(shrunk(8, 8, "0", again).parts.step)) << again;

@@ -30,7 +30,7 @@ TEST(FiniteStrain, bends_as_converged_finite_elements_do) {
   EXPECT_NEAR(deflection(*neo), 0.430758, 0.01 * 0.43);
 }
 
-/// Of the whole tip displacement, beside a mesh twice as fine. One row shows no slope of its bending.
+/// Compares the tip with that of a mesh twice as fine. One row of cells shows no slope of its bending.
 TEST(FiniteStrain, the_estimate_of_the_mesh_is_at_least_half_of_the_truth_or_unknown) {
   if (comm_size(MPI_COMM_WORLD) > 2) return;  // its many linear iterations wait for each other on few cores
   const auto tip = [](const Solid& solid) {

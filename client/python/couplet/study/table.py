@@ -101,7 +101,7 @@ def set_errors(rows, quantities, others=()):
                 if limit
             ]
             reference, word = None, "none: the values do not approach a limit"
-            # Of the series with the largest sizes the one with the smallest uncertainty: coarse ones look too certain.
+            # Coarse series look too certain: take the one with the smallest uncertainty among those with the largest sizes.
             if limits:
                 finest, best = min(limits, key=lambda pair: (-pair[0].point.size, pair[1].gci))
                 reference = best.value
