@@ -32,7 +32,8 @@ ERROR, STRAIN, FLOW, FRONT = ("solid_solver/diagnostics/error.cpp", "solid_solve
 SWITCHES = {  # program: {estimator: [(file, text, what stands there without it)]}; OFF is the condition
     "solid_solver": {
         "residual of a reconstruction": [(ERROR, "  if (displacement_)\n", "  if (displacement_ && !OFF)\n")],
-        "recovered strains": [(STRAIN, "    if (!recovered_) return;", "    if (!recovered_ || OFF) return;")],
+        "recovered strains": [(STRAIN, "  return body.is_dynamic() || body.seat() || has_finite_strain(body.parameters());",
+                               "  return !OFF && (body.is_dynamic() || body.seat() || has_finite_strain(body.parameters()));")],
         "variation within quadrilaterals": [("solid_solver/body/recovered_strain.cpp", "return mesh.dim == 2 && ", "return !OFF && mesh.dim == 2 && ")],
         "errors of the steps": [(ERROR, "parts.step = steps_.over_size();", "parts.step = OFF ? unknown : steps_.over_size();")],
         "residual of the solver": [(ERROR, "parts.linear = body_.is_dynamic()", "parts.linear = OFF ? 0. : body_.is_dynamic()")],

@@ -21,8 +21,8 @@ PLATE = {
 def turek_hron(job, case, keys, name, right, percent, of, drift=0.5):
     """One of the published quantities on meshes of which each has 2^(1/2) times as many cells along a side as the one
     before, and with its own keys, such as a step that shrinks alike. The finest is beside the published value, or
-    within the spread of the published (Featflow's last levels), and within `drift` percent of what the three tend
-    to."""
+    within the spread of the published (Featflow's last levels), and three meshes are within `drift` percent of what
+    they tend to."""
     found, minutes = [], []
     for (n, plate), key in zip(PLATE.items(), keys):
         meshes = [
@@ -37,22 +37,20 @@ def turek_hron(job, case, keys, name, right, percent, of, drift=0.5):
         for row in job.beside("configs/turek-hron/summary.py").rows(of)
         if row["source"].startswith("FF") and row.get(name)
     ]
-    limit = limit_of(list(PLATE), found)
-    off, apart = 100 * (found[-1] / right - 1), 100 * (found[-1] / limit.value - 1) if limit else math.nan
+    off = 100 * (found[-1] / right - 1)
     spread = f", published {min(published):.5g} to {max(published):.5g}" if len(published) > 1 else ""
-    tends = (
-        f"{apart:+.2f} % from the limit {limit.value:.5g} of the three, order {limit.order:.1f}"
-        if limit
-        else "the three tend to no limit"
-    )
     within = len(published) > 1 and min(published) <= abs(found[-1]) <= max(published)
-    return (
-        (
-            f"{', '.join(f'{v:.5g}' for v in found)} for {right:.5g}{spread}: {off:+.2f} %;"
-            f" {tends} ({', '.join(minutes)} processor minutes)"
-        ),
-        (abs(off) <= percent or within) and abs(apart) <= drift,
-    )
+    values = f"{', '.join(f'{v:.5g}' for v in found)} for {right:.5g}{spread}: {off:+.2f} %"
+    cost = f"({', '.join(minutes)} processor minutes)"
+    is_near = abs(off) <= percent or within
+    if len(found) < len(PLATE):
+        return f"{values} {cost}", is_near
+    limit = limit_of(list(PLATE), found)
+    if not limit:
+        return f"{values}; the three tend to no limit {cost}", False
+    apart = 100 * (found[-1] / limit.value - 1)
+    tends = f"{apart:+.2f} % from the limit {limit.value:.5g} of the three, order {limit.order:.1f}"
+    return f"{values}; {tends} {cost}", is_near and abs(apart) <= drift
 
 
 def band(job, which, low, high):
