@@ -11,7 +11,7 @@ namespace couplet::config {
 namespace {
 
 constexpr std::string_view fluid = "fluid_solver", solid = "solid_solver", plate = "plate_modal",
-                           mover = "mesh_mover";
+                           mover = "mesh_mover", tank = "thermocline", coupling;
 
 constexpr std::string_view
     no_plasticity = "no plasticity, creep or viscoelasticity",
@@ -99,8 +99,6 @@ constexpr MissingPhysics table[] = {
 struct Removed {
   std::string_view program, words, instead;
 };
-
-constexpr std::string_view coupling, tank = "thermocline";
 
 constexpr Removed removed[] = {
     {coupling, "error-estimate", "set 'diagnostics: without-errors' for 'error-estimate: false'"},

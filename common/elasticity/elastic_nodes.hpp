@@ -96,13 +96,6 @@ class ElasticNodes {
     }
   }
 
-  /// Copies the collected forces to the rows of the owned cells.
-  template <int D>
-  void take_forces(std::span<double> result) const {
-    for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
-      std::copy_n(force_.data() + std::size_t(c) * stride, D, result.data() + std::size_t(c) * D);
-  }
-
  private:
   const mesh::Mesh* mesh_;
   const ElasticOperator* rows_;

@@ -32,12 +32,6 @@ template <int D>
   std::memcpy(to, &value, sizeof value);
 }
 
-/// Stores only the D components; the memory behind them is not changed.
-template <int D>
-[[gnu::always_inline]] inline void store_components(double* to, const Lane<D>& value) {
-  std::memcpy(to, &value, sizeof(double) * D);
-}
-
 template <int D>
 [[gnu::always_inline]] inline void add(double* to, const Lane<D>& value) {
   store<D>(to, load<D>(to) + value);

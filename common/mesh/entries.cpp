@@ -85,26 +85,6 @@ constexpr std::uint64_t start_of_digest = 14695981039346656037ull;
 
 }  // namespace
 
-std::size_t count_of(const Mesh& mesh, Entries entries) {
-  switch (entries) {
-    case Entries::cells:
-      return std::size_t(mesh.cells.n_local());
-    case Entries::owned_cells:
-      return std::size_t(mesh.cells.n_owned());
-    case Entries::points:
-      return std::size_t(mesh.points.n_local());
-    case Entries::boundary:
-      return std::size_t(mesh.boundary.n_local());
-    case Entries::owned_boundary:
-      return std::size_t(mesh.boundary.n_owned());
-    case Entries::interior_faces:
-      return std::size_t(mesh.n_interior);
-    case Entries::flux_faces:
-      return std::size_t(mesh.n_flux_faces());
-  }
-  return 0;
-}
-
 const parallel::GlobalOrder& OrderOfEntries::of(Entries entries) {
   auto& order = orders_[static_cast<std::size_t>(entries)];
   if (!order) order = order_of(*mesh_, entries);

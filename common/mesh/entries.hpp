@@ -24,8 +24,6 @@ enum class Entries : std::uint8_t {
 };
 constexpr std::size_t n_kinds_of_entries = 7;
 
-std::size_t count_of(const Mesh& mesh, Entries entries);
-
 /// Orders of mesh entities that do not depend on the number of ranks. They follow the numbers in the mesh
 /// file; interior faces follow their owner cells. Each order is created on first use (collective).
 class OrderOfEntries {

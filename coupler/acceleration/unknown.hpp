@@ -43,9 +43,6 @@ class Unknown {
 
   /// Parts at the end of the step.
   std::span<const Part> parts() const { return {parts_.data(), n_parts_}; }
-  /// Number of values of this rank at the end of the step.
-  std::size_t n_unknown() const { return n_unknown_; }
-  std::size_t n_dependent() const { return n_dependent_; }
 
   /// Sets the times within the step from the given data, if some participant requests such values. Returns
   /// true if they changed.

@@ -104,10 +104,6 @@ struct Condition {
 const Condition& condition_of(const BoundaryParameters& boundary);
 inline bool is_wall(const BoundaryParameters& b) { return condition_of(b).wall; }
 inline bool gives_pressure(const BoundaryParameters& b) { return condition_of(b).row(b).pressure > 0; }
-/// True for a wall whose velocity the case gives.
-inline bool is_moving_wall(const BoundaryParameters& b) {
-  return is_wall(b) && condition_of(b).velocity == GivenBy::keys;
-}
 
 /// All names as a list, with `last` before the last one.
 std::string condition_names(const std::string& last);

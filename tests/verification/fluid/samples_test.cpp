@@ -2,6 +2,7 @@
 // Velocities from files and rotating inlets; lines and planes in the output, with means and rms.
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
+#include "tests/support/csv.hpp"
 
 namespace couplet::fluid::test::samples_test {
 using namespace mesh;
@@ -42,18 +43,6 @@ FluidParameters couette() {
   p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
   p.initial_pressure = config::ExpressionText{"0.7"};
   return p;
-}
-
-std::string head_of(const fs::path& file, std::vector<std::vector<double>>& rows) {
-  std::ifstream in(file);
-  std::string head;
-  std::getline(in, head);
-  for (std::string line; std::getline(in, line);) {
-    rows.emplace_back();
-    std::istringstream words(line);
-    for (std::string word; std::getline(words, word, ',');) rows.back().push_back(std::stod(word));
-  }
-  return head;
 }
 
 TEST(VelocityTable, is_linear_in_space_and_time_between_its_places) {
@@ -231,10 +220,9 @@ FluidParameters with_samples() {
 TEST(Samples, linear_fields_are_exact_on_lines_and_planes_with_their_means) {
   const fs::path folder = run(with_samples(), "samples");
   for (const std::string name : {"across", "sheet"}) {
-    std::vector<std::vector<double>> rows;
-    const std::string head = head_of(folder / ("sample-" + name + ".csv"), rows);
+    const auto [header, rows] = support::Csv(folder / ("sample-" + name + ".csv"));
     EXPECT_EQ(
-        head,
+        header,
         "time [s],along [-],up [-],x [m],y [m],z [m],velocity x [m/s],velocity y [m/s],pressure [Pa],"
         "velocity-mean x [m/s],velocity-mean y [m/s],pressure-mean [Pa],velocity-rms x [m/s],velocity-rms y "
         "[m/s],pressure-rms [Pa]");
@@ -252,11 +240,9 @@ TEST(Samples, linear_fields_are_exact_on_lines_and_planes_with_their_means) {
 
 TEST(Samples, a_run_from_a_checkpoint_writes_the_same_numbers) {
   const fs::path folder = run(with_samples(), "resumed");
-  std::vector<std::vector<double>> through, resumed;
-  head_of(folder / "sample-across.csv", through);
+  const support::Csv through(folder / "sample-across.csv");
   run(with_samples(), "resumed", 2);
-  head_of(folder / "sample-across.csv", resumed);
-  EXPECT_EQ(through, resumed);
+  EXPECT_EQ(through.rows, support::Csv(folder / "sample-across.csv").rows);
 }
 
 TEST(Samples, places_that_all_lie_outside_are_refused_and_none_are_written_unless_asked_for) {
@@ -300,19 +286,6 @@ CoefficientParameters floor_coefficients() {
   return c;
 }
 
-/// Rows of a CSV below its header, by column.
-std::vector<std::vector<double>> rows_of(const std::filesystem::path& file, std::string& header) {
-  std::ifstream in(file);
-  std::getline(in, header);
-  std::vector<std::vector<double>> rows;
-  for (std::string line; std::getline(in, line);) {
-    rows.emplace_back();
-    std::istringstream words(line);
-    for (std::string word; std::getline(words, word, ',');) rows.back().push_back(std::stod(word));
-  }
-  return rows;
-}
-
 std::filesystem::path run(const FluidParameters& p, const std::string& name, int steps = 3) {
   const auto folder = std::filesystem::temp_directory_path() /
                       ("couplet-" + name + "-" + std::to_string(parallel::comm_size(MPI_COMM_WORLD)));
@@ -344,8 +317,7 @@ TEST(WallOutput, coefficients_are_forces_and_moments_over_dynamic_pressure_and_a
   p.output.coefficients["turned"] = floor_coefficients();
   p.output.coefficients["turned"].axis = Vec3(0, 0, -2);
   p.output.coefficients["turned"].lift = Vec3(0, -1, 0);
-  std::string header;
-  const auto rows = rows_of(run(p, "coefficients") / "coefficients.csv", header);
+  const auto [header, rows] = support::Csv(run(p, "coefficients") / "coefficients.csv");
   EXPECT_EQ(header,
             "time [s],floor drag [-],floor lift [-],floor moment [-],turned drag [-],turned lift [-],turned "
             "moment [-]");
@@ -364,8 +336,7 @@ TEST(WallOutput, coefficients_are_forces_and_moments_over_dynamic_pressure_and_a
 }
 
 TEST(WallOutput, shear_and_wall_units_of_a_laminar_run) {
-  std::string header;
-  const auto rows = rows_of(run(couette(), "walls") / "walls.csv", header);
+  const auto [header, rows] = support::Csv(run(couette(), "walls") / "walls.csv");
   EXPECT_THAT(header, ::testing::HasSubstr("ymin mean shear [Pa],ymin largest shear [Pa],ymin mean y+ [-]"));
   ASSERT_EQ(rows.size(), 3u);
   // du/dy = 1: tau = mu; y+ = y (tau/rho)^(1/2) / nu at the first centre, y = 0.05 m

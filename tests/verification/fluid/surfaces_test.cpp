@@ -2,6 +2,7 @@
 // Fields on patches and fluxes through them, against flows whose loads are known.
 #include "fluid_case.hpp"
 #include "fluid_solver/participant.hpp"
+#include "tests/support/csv.hpp"
 #include "tests/support/surface_file.hpp"
 
 namespace couplet::fluid::test::surfaces_test {
@@ -37,23 +38,6 @@ FluidParameters couette() {
   return p;
 }
 
-Columns read_csv(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line, word;
-  std::getline(in, line);
-  std::vector<std::string> names;
-  for (std::istringstream head(line); std::getline(head, word, ',');) names.push_back(word);
-  Columns columns;
-  while (std::getline(in, line)) {
-    std::istringstream words(line);
-    for (const std::string& name : names) {
-      std::getline(words, word, ',');
-      columns[name].push_back(std::stod(word));
-    }
-  }
-  return columns;
-}
-
 class Written {
  public:
   Written(const FluidParameters& p, const std::string& name, int n, const RawMesh& raw, double dt = 0.01) {
@@ -84,7 +68,7 @@ class Written {
     if (parallel::comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(folder_);
   }
   const std::filesystem::path& folder() const { return folder_; }
-  Columns csv(const std::string& file) const { return read_csv(folder_ / file); }
+  Columns csv(const std::string& file) const { return support::Csv(folder_ / file).columns(); }
   SurfaceFile surface(const std::string& patch) const { return {folder_, patch}; }
 
  private:

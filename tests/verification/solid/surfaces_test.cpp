@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields on patches and moments of reactions, against solutions that are known.
 #include "solid_solver/solid.hpp"
+#include "tests/support/csv.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/support/surface_file.hpp"
 #include "tests/verification/solid/loads_support.hpp"
@@ -20,20 +21,6 @@ std::unique_ptr<Solid> write(const RawMesh& raw, const SolidParameters& p,
   solid->write_output(1, 1);
   MPI_Barrier(MPI_COMM_WORLD);
   return solid;
-}
-
-/// Last row of a CSV by its heads.
-std::map<std::string, double> last_row(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line, last, word;
-  std::getline(in, line);
-  std::istringstream heads(line);
-  while (std::getline(in, line)) last = line;
-  std::istringstream words(last);
-  std::map<std::string, double> row;
-  for (std::string head; std::getline(heads, head, ',') && std::getline(words, word, ',');)
-    row[head] = std::stod(word);
-  return row;
 }
 
 class SolidSurfaces : public ::testing::TestWithParam<BoxCells> {
@@ -90,9 +77,9 @@ TEST_P(SolidSurfaces, moments_of_the_reactions_balance_those_of_the_loads) {
     p.output.moments = true;
     const auto solid = write(box(), p, folder);
     const Resultant load = resultant(solid->body().mesh(), solid->body().geometry(), p);
-    const auto row = last_row(folder.path() / "reactions.csv");
+    const auto row = support::Csv(folder.path() / "reactions.csv").columns();
     const auto held = [&](const std::string& what) {
-      return row.at("xmin " + what) + (symmetric ? row.at("ymin " + what) : 0);
+      return row.at("xmin " + what).back() + (symmetric ? row.at("ymin " + what).back() : 0);
     };
     for (const char axis : {'x', 'y', 'z'}) {
       if (dim == 2 && axis != 'z') continue;
@@ -195,7 +182,7 @@ TEST(SolidSurfaces, are_not_written_unless_asked_for_and_only_of_patches) {
   write(raw, p, folder);
   for (const auto& file : std::filesystem::directory_iterator(folder.path()))
     EXPECT_THAT(file.path().filename().string(), ::testing::Not(::testing::StartsWith("surface")));
-  EXPECT_EQ(last_row(folder.path() / "reactions.csv").count("xmin moment z [N m]"), 0u);
+  EXPECT_EQ(support::Csv(folder.path() / "reactions.csv").columns().count("xmin moment z [N m]"), 0u);
   p.output.surfaces = {"xmim"};
   EXPECT_THAT([&] { make_solid(parallel::comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}, p); },
               ::testing::ThrowsMessage<Error>(::testing::HasSubstr(

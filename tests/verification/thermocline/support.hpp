@@ -3,29 +3,16 @@
 
 #include "common/base/numbers.hpp"
 #include "common/config/load.hpp"
+#include "tests/support/csv.hpp"
 #include "tests/support/test.hpp"
 #include "thermocline/bed/packed_bed.hpp"
 #include "thermocline/diagnostics/tank_diagnostic.hpp"
 
 namespace couplet::thermocline {
 
-/// Columns of a CSV by name; lines that begin with # are comments.
+/// Columns of a file of reference data by name.
 inline std::map<std::string, std::vector<double>> read_columns(const std::string& file) {
-  std::ifstream in(std::string(COUPLET_TEST_DATA) + "/" + file);
-  if (!in) throw Error("{} cannot be read", file);
-  std::map<std::string, std::vector<double>> columns;
-  std::vector<std::string> names;
-  for (std::string line, cell; std::getline(in, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::stringstream cells(line);
-    if (names.empty()) {
-      while (std::getline(cells, cell, ',')) names.push_back(cell);
-      continue;
-    }
-    for (std::size_t i = 0; std::getline(cells, cell, ','); ++i)
-      columns[names.at(i)].push_back(std::stod(cell));
-  }
-  return columns;
+  return support::Csv(std::string(COUPLET_TEST_DATA) + "/" + file).columns();
 }
 
 inline Fluid constant_fluid(double density, double specific_heat, double conductivity,
