@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bar of 200 x 40 x 20 mm with a hole of 20 mm for a pin, 30 mm from its end; triangles extruded to prisms.
-DefineConstant [ h = 0.005, layers = 4 ];
-L = 0.2; H = 0.02; c = 0.17; r = 0.01; thick = 0.02;
+DefineConstant [ h = 5, layers = 4 ];
+L = 200; H = 20; c = 170; r = 10; thick = 20; // mm
 Point(1) = {0, -H, 0, h}; Point(2) = {L, -H, 0, h}; Point(3) = {L, H, 0, h}; Point(4) = {0, H, 0, h};
 Point(5) = {c, 0, 0, h}; Point(6) = {c + r, 0, 0, h / 2}; Point(7) = {c, r, 0, h / 2}; Point(8) = {c - r, 0, 0, h / 2}; Point(9) = {c, -r, 0, h / 2};
 Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
