@@ -203,7 +203,7 @@ class Job:
     def case(self, case, keys=(), ranks=(), timeout=3600, flags=()):
         """Results of configs/<case>: a folder, a file 'folder/name' of it, or a path that ends in .yaml. `participant`
         is its first one; a key '.key' is one of that participant. `ranks`: ranks of the coupler and of the participants
-        in their order, or one number for the only participant. Runs with the same keys are made once. """
+        in their order, or one number for the only participant. Runs with the same keys are made once."""
 
         def make():
             file = self.root / (

@@ -196,7 +196,7 @@ def draw_surface(
 ) -> pathlib.Path:
     """Draws a field on a patch (`output.surfaces`) at one output: in 2-D over the arc length, in 3-D on its faces. `at`
     is a time [s]; `component` is "x", "y" or "z", without which a vector is drawn by its magnitude; displacements are
-    drawn `warp` times as large. Returns the picture's path. """
+    drawn `warp` times as large. Returns the picture's path."""
     surface = surface_of(pathlib.Path(folder), patch)
     i = output_near(surface, at)
     values, label, plane = (

@@ -52,14 +52,14 @@ class _Reader:
         self.data, self.at = data, 0
 
     def take(self, kind):
-        value, = struct.unpack_from("=" + kind, self.data, self.at)
+        (value,) = struct.unpack_from("=" + kind, self.data, self.at)
         self.at += 8
         return value
 
     def text(self):
         n = self.take("q")
         self.at += n
-        return bytes(self.data[self.at - n:self.at]).decode()
+        return bytes(self.data[self.at - n : self.at]).decode()
 
 
 class Client:
@@ -93,11 +93,23 @@ class Client:
         _wait(world.Iallgather(hello, everyone))
         if (everyone[0::4] != HELLO).any() or (everyone[1::4] != VERSION).any():
             others = sorted(set(everyone[1::4].tolist()) - {VERSION})
-            self._end("a process of the job speaks another protocol" +
-                      (f": version {others[0]}, but this client uses version {VERSION}" if others else ""))
+            self._end(
+                "a process of the job speaks another protocol"
+                + (f": version {others[0]}, but this client uses version {VERSION}" if others else "")
+            )
         world.Split(MPI.UNDEFINED, world.rank)
         number = os.environ.get("COUPLET_PART") or world.Get_attr(MPI.APPNUM) or 0
-        fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank), f"{os.getpid()}@{socket.gethostname()}"]
+        fields = [
+            program,
+            participant,
+            "(guest)",
+            "0",
+            "",
+            "1",
+            str(number),
+            str(world.rank),
+            f"{os.getpid()}@{socket.gethostname()}",
+        ]
         strings = self._all_strings(world, ("".join(f + "\x1f" for f in fields) + "\x1e").encode())
         participants = [s.split("\x1f")[1] for s in strings]
         problem, worst = numpy.zeros(1, "i8"), numpy.zeros(1, "i8")
@@ -127,7 +139,9 @@ class Client:
         """Declares vertices `xyz` (n, 3) [m] in the reference configuration. For dimension 2, z = 0, and all values are per meter of depth."""
         self._xyz, self._dimension = numpy.asarray(xyz, float).reshape(-1, 3), dimension
 
-    def faces(self, centres: numpy.ndarray, areas: numpy.ndarray, corners: Sequence[Sequence[int]] | None = None) -> None:
+    def faces(
+        self, centres: numpy.ndarray, areas: numpy.ndarray, corners: Sequence[Sequence[int]] | None = None
+    ) -> None:
         """Declares faces: centers [m] and areas out of this participant [m^2] (n, 3). `corners` lists vertex positions per face."""
         self._centres, self._areas = (numpy.asarray(a, float).reshape(-1, 3) for a in (centres, areas))
         self._corners = corners or [[] for _ in self._centres]
@@ -156,8 +170,10 @@ class Client:
                     return None
             self._receive_command()
             if self.operation == INITIALISE and self.sub_steps > 1:
-                self._end(f"'coupling.sub-steps' of '{self.participant}': this library takes one step per coupling step; remove it, and subdivide the "
-                          "step in your own program.")
+                self._end(
+                    f"'coupling.sub-steps' of '{self.participant}': this library takes one step per coupling step;"
+                    " remove it, and subdivide the step in your own program."
+                )
             if self.operation in EVENTS:
                 return EVENTS[self.operation]
 
@@ -257,7 +273,7 @@ class Client:
             values, at = numpy.frombuffer(self._receive(rank, INPUT_TAG), "f8"), 0
             for name, part in parts:
                 to = self._input[name][part]
-                to[...] = values[at:at + to.size].reshape(to.shape)
+                to[...] = values[at : at + to.size].reshape(to.shape)
                 at += to.size
 
     def _places(self, vertices, faces):
@@ -274,12 +290,20 @@ class Client:
         if first:
             self._dimension = self.comm.bcast(self._dimension, 0)
             self._vertex_cut, self._face_cut = self._cut(len(self._xyz)), self._cut(len(self._centres))
-        if self.operation == SOLVE and self._status == 0 and (missing := {d[0] for d in self._gives} - set(self._output)):
+        if (
+            self.operation == SOLVE
+            and self._status == 0
+            and (missing := {d[0] for d in self._gives} - set(self._output))
+        ):
             self._end(f"'{self.participant}' did not give {', '.join(sorted(missing))}")
         names = sorted(self._output) if self._status == 0 else []
         if self.comm.rank == 0:
             head = _integers(REPLY, VERSION, self._status) + _text(self._why)
-            head += _reals(time.monotonic() - self._started, self._advised, self.dt) + _integers(0) + _reals(math.nan, math.nan)
+            head += (
+                _reals(time.monotonic() - self._started, self._advised, self.dt)
+                + _integers(0)
+                + _reals(math.nan, math.nan)
+            )
             head += _integers(len(names)) + b"".join(map(_text, names)) + _integers(self._dimension, 0)
             for data in (self._takes, self._gives):
                 head += _integers(len(data) if first else 0)

@@ -14,7 +14,7 @@ class FieldSeries:
     """One <name>.h5 series: times, cells (lists of point numbers), coordinates and fields by name.
 
     `times` (outputs,) [s], `cells`: an array of point numbers per cell, `codes`: its XDMF code. Outputs are numbered
-    from 0; -1 is the last. """
+    from 0; -1 is the last."""
 
     def __init__(self, file: str | pathlib.Path):
         self.file = h5py.File(file, "r")

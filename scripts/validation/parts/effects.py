@@ -15,7 +15,9 @@ MATTERS = 0.1
 
 
 def scenes(only=""):
-    return {name: one for name, one in yaml.safe_load((DATA / "scenes.yaml").read_text())["scenes"].items() if only in name}
+    return {
+        name: one for name, one in yaml.safe_load((DATA / "scenes.yaml").read_text())["scenes"].items() if only in name
+    }
 
 
 def run(job, name, one, with_effect=False):
@@ -27,7 +29,10 @@ def run(job, name, one, with_effect=False):
     else:
         who = next(iter(case["participants"]))
     settings = {**(one.get("set") or {}), **(one["with"] if with_effect else {})}
-    sets = [f"{key if key.startswith(('simulation.', 'coupling.', 'participants.')) else f'participants.{who}.{key}'}={json.dumps(value)}" for key, value in settings.items()]
+    sets = [
+        f"{key if key.startswith(('simulation.', 'coupling.', 'participants.')) else f'participants.{who}.{key}'}={json.dumps(value)}"
+        for key, value in settings.items()
+    ]
     return folder / "out", error_estimates.launched(job, folder, case, [*sets, "simulation.diagnostics=full"])
 
 
@@ -39,7 +44,12 @@ def truth(job, name, one):
 
 def said(job, name, one):
     """Returns the share that the run states, NaN if it does not know it, and None if it does not name the effect as one that matters."""
-    found = [f for report in run(job, name, one)[1].values() for f in report["findings"] if f["id"] == one["effect"] and f["severity"] != "note"]
+    found = [
+        f
+        for report in run(job, name, one)[1].values()
+        for f in report["findings"]
+        if f["id"] == one["effect"] and f["severity"] != "note"
+    ]
     return max((math.nan if f["share"] is None else f["share"] for f in found), default=None)
 
 
@@ -54,8 +64,18 @@ def verdicts(job, matters, most, only=""):
         elif matters and not 0.5 <= share / one["truth"] <= 2:
             near.append(f"{name}: {'unknown' if math.isnan(share) else format(share, '.2g')} for {one['truth']:g}")
     good = len(chosen) - len(wrong) - len(near)
-    shares = f"; share within a factor of 2 in {good} ({good / len(chosen):.0%}), not: {'; '.join(near) or 'none'}" if matters else ""
-    return f"{len(wrong)} of {len(chosen)} {'wrong or silent' if matters else 'called otherwise'}{': ' if wrong else ''}{'; '.join(wrong)}{shares}", len(wrong) <= most and (not matters or good >= 0.8 * len(chosen))
+    shares = (
+        f"; share within a factor of 2 in {good} ({good / len(chosen):.0%}), not: {'; '.join(near) or 'none'}"
+        if matters
+        else ""
+    )
+    return (
+        (
+            f"{len(wrong)} of"
+            f" {len(chosen)} {'wrong or silent' if matters else 'called otherwise'}{': ' if wrong else ''}{'; '.join(wrong)}{shares}"
+        ),
+        len(wrong) <= most and (not matters or good >= 0.8 * len(chosen)),
+    )
 
 
 def truths(job, only=""):
@@ -81,5 +101,9 @@ def unstable(job, *names):
             if now.outcome != atlas.REFUSED:
                 (holding if now.outcome == atlas.HOLDS else wrong).append(f"{name}, {key[0]}, {key[1]:g}, {key[2]:g}")
     said = [f"{stopped} of {stopped + len(holding) + len(wrong)} stop"]
-    said += [f"{word}: {'; '.join(those)}" for word, those in (("hold within 5 %", holding), ("run on unsound", wrong)) if those]
+    said += [
+        f"{word}: {'; '.join(those)}"
+        for word, those in (("hold within 5 %", holding), ("run on unsound", wrong))
+        if those
+    ]
     return ", ".join(said), not wrong

@@ -19,13 +19,31 @@ NAN = math.nan
 DAYS = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)  # per month of a reference year
 # Written column: description, names in other formats, and their units as {unit: (factor, offset)}. The first unit is written.
 QUANTITIES = {
-    "dni_W_m2": ("direct normal irradiance", ("dni", "beam", "beam normal irradiance", "direct normal irradiance", "gb(n)"),
-                 {"w/m2": (1, 0), "wh/m2": (1, 0), "kw/m2": (1000, 0), "kwh/m2": (1000, 0), "mj/m2": (1e6 / 3600, 0)}),
-    "T_degC": ("air temperature", ("temperature", "tdry", "dry-bulb", "air temperature", "temp", "t2m"),
-               {"degc": (1, 0), "c": (1, 0), "k": (1, -273.15), "f": (5 / 9, -160 / 9), "degf": (5 / 9, -160 / 9)}),
-    "wind_m_s": ("wind speed", ("wind speed", "wspd", "windspeed", "ws10m"), {"m/s": (1, 0), "km/h": (1 / 3.6, 0), "kn": (1852 / 3600, 0), "mph": (0.44704, 0)}),
-    "rh_pct": ("relative humidity", ("relative humidity", "rh", "rhum"), {"%": (1, 0), "percent": (1, 0), "1": (100, 0)}),
-    "p_Pa": ("pressure", ("pressure", "pres", "surface pressure", "sp"), {"pa": (1, 0), "mbar": (100, 0), "hpa": (100, 0), "kpa": (1000, 0), "bar": (1e5, 0)}),
+    "dni_W_m2": (
+        "direct normal irradiance",
+        ("dni", "beam", "beam normal irradiance", "direct normal irradiance", "gb(n)"),
+        {"w/m2": (1, 0), "wh/m2": (1, 0), "kw/m2": (1000, 0), "kwh/m2": (1000, 0), "mj/m2": (1e6 / 3600, 0)},
+    ),
+    "T_degC": (
+        "air temperature",
+        ("temperature", "tdry", "dry-bulb", "air temperature", "temp", "t2m"),
+        {"degc": (1, 0), "c": (1, 0), "k": (1, -273.15), "f": (5 / 9, -160 / 9), "degf": (5 / 9, -160 / 9)},
+    ),
+    "wind_m_s": (
+        "wind speed",
+        ("wind speed", "wspd", "windspeed", "ws10m"),
+        {"m/s": (1, 0), "km/h": (1 / 3.6, 0), "kn": (1852 / 3600, 0), "mph": (0.44704, 0)},
+    ),
+    "rh_pct": (
+        "relative humidity",
+        ("relative humidity", "rh", "rhum"),
+        {"%": (1, 0), "percent": (1, 0), "1": (100, 0)},
+    ),
+    "p_Pa": (
+        "pressure",
+        ("pressure", "pres", "surface pressure", "sp"),
+        {"pa": (1, 0), "mbar": (100, 0), "hpa": (100, 0), "kpa": (1000, 0), "bar": (1e5, 0)},
+    ),
     "dew": ("dew point", ("dew point", "tdew", "dewpoint", "dew-point", "dew point temperature"), {}),
 }
 QUANTITIES["dew"] = (*QUANTITIES["dew"][:2], QUANTITIES["T_degC"][2])
@@ -33,12 +51,30 @@ WRITTEN = [name for name in QUANTITIES if name != "dew"]
 MISSING_BELOW = -90  # codes such as -9999, in the unit of the file
 # EnergyPlus: columns from 0 in the order of WRITTEN. Values from this one on mean "missing".
 EPW = ((14, 9999), (6, 99.9), (21, 999), (8, 999), (9, 999999))
-TIMES = ("month", "day", "hour", "minute", "date (mm/dd/yyyy)", "time (hh:mm)", "time(utc)", "time", "date", "datetime", "timestamp")
+TIMES = (
+    "month",
+    "day",
+    "hour",
+    "minute",
+    "date (mm/dd/yyyy)",
+    "time (hh:mm)",
+    "time(utc)",
+    "time",
+    "date",
+    "datetime",
+    "timestamp",
+)
 
 
 def declare(parser):
     parser.add_argument("file", type=pathlib.Path, metavar="FILE", help="weather file to convert")
-    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="OUT.csv", help="CSV to write, compressed if its name ends in .gz (default: NAME_weather.csv beside FILE)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=pathlib.Path,
+        metavar="OUT.csv",
+        help="CSV to write, compressed if its name ends in .gz (default: NAME_weather.csv beside FILE)",
+    )
 
 
 class Source:
@@ -59,7 +95,7 @@ class Source:
 
     def cells(self, i):
         try:
-            return [cell.strip() for cell in next(csv.reader(self.lines[i:i + 1], delimiter=self.separator), [])]
+            return [cell.strip() for cell in next(csv.reader(self.lines[i : i + 1], delimiter=self.separator), [])]
         except csv.Error as error:
             raise Wrong(f"{self.file}:{i + 1}: {error}.") from None
 
@@ -72,7 +108,11 @@ class Source:
         if text in ("", "nan", "NaN", "NA"):
             return NAN
         plain = text.replace(",", ".") if self.separator == ";" else text
-        self.expect(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", plain, re.A), i, f"'{text}' is not a number; expected the {name} here.")
+        self.expect(
+            re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", plain, re.A),
+            i,
+            f"'{text}' is not a number; expected the {name} here.",
+        )
         return float(plain)
 
     def whole(self, text, i, name, low, high):
@@ -83,19 +123,33 @@ class Source:
 
     def width(self, cells, n, i):
         self.expect(len(cells) >= n, i, f"{len(cells)} values, but the file has {n} columns.")
-        self.expect(not any(cells[n:]), i, f"{len(cells)} values, but the file has {n} columns. If commas are decimal commas, use decimal points.")
+        self.expect(
+            not any(cells[n:]),
+            i,
+            f"{len(cells)} values, but the file has {n} columns. If commas are decimal commas, use decimal points.",
+        )
 
     def site(self, latitude, longitude, zone, i):
-        values = [self.number(text, i, name) for text, name in ((latitude, "latitude"), (longitude, "longitude"), (zone, "time zone"))]
-        self.expect(abs(values[0]) <= 90 and abs(values[1]) <= 180 and abs(values[2]) <= 14, i,
-                    "latitude {:g}, longitude {:g} and time zone {:g} are not a valid location.".format(*values))
+        values = [
+            self.number(text, i, name)
+            for text, name in ((latitude, "latitude"), (longitude, "longitude"), (zone, "time zone"))
+        ]
+        self.expect(
+            abs(values[0]) <= 90 and abs(values[1]) <= 180 and abs(values[2]) <= 14,
+            i,
+            "latitude {:g}, longitude {:g} and time zone {:g} are not a valid location.".format(*values),
+        )
         return values
 
 
 def hour_of_year(source, i, month, day, hour):
     """Hour of the year from 0, or None on 29 February, which a reference year does not have."""
-    source.expect(1 <= month <= 12 and 1 <= day <= DAYS[month - 1] or (month, day) == (2, 29), i, f"'{month:02d}-{day:02d}' is not a date of a year of 365 days.")
-    return None if (month, day) == (2, 29) else 24 * (sum(DAYS[:month - 1]) + day - 1) + hour
+    source.expect(
+        1 <= month <= 12 and 1 <= day <= DAYS[month - 1] or (month, day) == (2, 29),
+        i,
+        f"'{month:02d}-{day:02d}' is not a date of a year of 365 days.",
+    )
+    return None if (month, day) == (2, 29) else 24 * (sum(DAYS[: month - 1]) + day - 1) + hour
 
 
 def humidity_of(temperature, dew):
@@ -120,14 +174,20 @@ class Head:
                 continue  # another name of a quantity already found
             source.expect(quantity not in self.at, i, f"the column '{cell}' appears twice.")
             known, unit = QUANTITIES[quantity][2], unit or units.get(quantity)
-            source.expect(unit, i, f"the unit of the column '{cell}' is missing; write for example '{cell} [{list(known)[1]}]'.")
+            source.expect(
+                unit, i, f"the unit of the column '{cell}' is missing; write for example '{cell} [{list(known)[1]}]'."
+            )
             key = re.sub(r"[\s^°*]", "", unit.lower().replace("²", "2"))
             source.expect(key in known, i, f"the unit of '{cell}' is '{unit}'; supported: {', '.join(known)}.")
             self.at[quantity] = (column, *known[key])
         for name in WRITTEN:
             what, names, _ = QUANTITIES[name]
             names += QUANTITIES["dew"][1] if name == "rh_pct" else ()
-            source.expect(name in self.at or name == "rh_pct" and "dew" in self.at, i, f"the column for the {what} is missing; it may be named {', '.join(names)}.")
+            source.expect(
+                name in self.at or name == "rh_pct" and "dew" in self.at,
+                i,
+                f"the column for the {what} is missing; it may be named {', '.join(names)}.",
+            )
 
     def values(self, cells, i):
         self.source.width(cells, self.n, i)
@@ -163,7 +223,9 @@ def epw(source):
         month, day = (source.whole(cells[c], i, name, 0, 99) for c, name in ((1, "month"), (2, "day")))
         hour = hour_of_year(source, i, month, day, source.whole(cells[3], i, "hour", 1, 24) - 1)
         values = [source.number(cells[column], i, QUANTITIES[name][0]) for name, (column, _) in zip(WRITTEN, EPW)]
-        yield i, hour, source.whole(cells[4], i, "minute", 0, 60), [NAN if v >= missing else v for v, (_, missing) in zip(values, EPW)]
+        yield i, hour, source.whole(cells[4], i, "minute", 0, 60), [
+            NAN if v >= missing else v for v, (_, missing) in zip(values, EPW)
+        ]
 
 
 def table(source, first, head):
@@ -185,7 +247,11 @@ def table(source, first, head):
             match = re.fullmatch(r"(\d+)/(\d+)/\d+ (\d+):(\d+)", f"{date} {clock}", re.A)
             source.expect(match, i, f"'{date},{clock}' is not a date MM/DD/YYYY and time HH:MM.")
             month, day, hour = int(match[1]), int(match[2]), int(match[3]) - 1
-            source.expect(0 <= hour < 24 and int(match[4]) == 0, i, f"the time is {clock}; a TMY3 file has full hours from 01:00 to 24:00.")
+            source.expect(
+                0 <= hour < 24 and int(match[4]) == 0,
+                i,
+                f"the time is {clock}; a TMY3 file has full hours from 01:00 to 24:00.",
+            )
         elif set(at) - {"hour"}:
             stamp = " ".join(cells[column] for name, column in at.items() if name != "hour")
             match = re.fullmatch(r"\d{4}-?(\d\d)-?(\d\d)[T :]+(\d\d):?(\d\d)(?::00)?Z?", stamp, re.A)
@@ -198,7 +264,11 @@ def table(source, first, head):
         source.expect(0 <= hour < 24, i, f"the hour is {hour}; it must be from 0 to 23.")
         yield i, hour_of_year(source, i, month, day, hour), minute, head.values(cells, i)
     for late in range(i, len(source.lines)) if "time(utc)" in at else ():
-        source.expect(late == i or not re.match(r"\d{8}:\d{4},", source.lines[late]), late, f"a record after the empty line {i + 1}, which ends the records of a PVGIS file.")
+        source.expect(
+            late == i or not re.match(r"\d{8}:\d{4},", source.lines[late]),
+            late,
+            f"a record after the empty line {i + 1}, which ends the records of a PVGIS file.",
+        )
 
 
 def hourly(source, records):
@@ -208,7 +278,14 @@ def hourly(source, records):
         if hour is None:
             continue
         if hours and hours[-1][0] == hour:
-            source.expect(minute > minutes[-1], i, f"minute {minute} of hour {hour} of the year comes after minute {minutes[-1]}: each record must appear once, in order.")
+            source.expect(
+                minute > minutes[-1],
+                i,
+                (
+                    f"minute {minute} of hour {hour} of the year comes after minute {minutes[-1]}: each record must"
+                    " appear once, in order."
+                ),
+            )
             hours[-1][1].append(values)
             several = True
         else:
@@ -223,7 +300,9 @@ def behind(source, first, word, without=None):
     for i in range(first):
         if source.lines[i].strip().startswith(word) and ":" in source.lines[i]:
             return i, source.lines[i].partition(":")[2]
-    source.expect(without is not None, 0, f"the first lines of a PVGIS file must contain '{word} (decimal degrees): ...'.")
+    source.expect(
+        without is not None, 0, f"the first lines of a PVGIS file must contain '{word} (decimal degrees): ...'."
+    )
     return 0, without
 
 
@@ -243,15 +322,23 @@ def pvgis(source, first, head):
     source.expect(abs(offset) <= 1, 0, f"the irradiance time offset is {offset:g} h; expected -1 to 1.")
     records = list(table(source, first, head))
     for i, _, minute, _ in records:
-        source.expect(minute == records[0][2], i, f"the minute is {minute}; all records of a PVGIS file must have the same.")
+        source.expect(
+            minute == records[0][2], i, f"the minute is {minute}; all records of a PVGIS file must have the same."
+        )
     hours, minutes, _ = hourly(source, records)
-    expect(all(hour == hours[0][0] + k for k, (hour, _) in enumerate(hours)), f"{source.file}: hours are missing; a typical year of PVGIS has them all.")
+    expect(
+        all(hour == hours[0][0] + k for k, (hour, _) in enumerate(hours)),
+        f"{source.file}: hours are missing; a typical year of PVGIS has them all.",
+    )
     for row, mean in zip(hours, means_of_moments(hours, minutes[0] / 60 + offset)):
         row[1][0] = mean
     zone = int(math.copysign(math.floor(abs(site[1]) / 15 + 0.5), site[1]))
     begin = hours[0][0]
     hours = [[begin + k, hours[(k - zone) % len(hours)][1]] for k in range(len(hours))]
-    print(f"the clock of {source.file.name} is UTC; that of the result is {zone:+d} h ahead, the standard time of its longitude")
+    print(
+        f"the clock of {source.file.name} is UTC; that of the result is {zone:+d} h ahead, the standard time of its"
+        " longitude"
+    )
     return hours, [*site[:2], float(zone)], 60.0 * minutes[0]
 
 
@@ -260,8 +347,15 @@ def sam_units(source, first):
     names, values = (source.cells(first - 2), source.cells(first - 1)) if first >= 2 else ([], [])
     about = {name.lower(): value for name, value in zip(names, values) if value}
     units = {"p_Pa": "mbar"}
-    for quantity, key in (("dni_W_m2", "dni units"), ("T_degC", "temperature units"), ("dew", "dew point units"), ("wind_m_s", "wind speed"),
-                          ("wind_m_s", "wind speed units"), ("rh_pct", "relative humidity units"), ("p_Pa", "pressure units")):
+    for quantity, key in (
+        ("dni_W_m2", "dni units"),
+        ("T_degC", "temperature units"),
+        ("dew", "dew point units"),
+        ("wind_m_s", "wind speed"),
+        ("wind_m_s", "wind speed units"),
+        ("rh_pct", "relative humidity units"),
+        ("p_Pa", "pressure units"),
+    ):
         if key in about:
             units[quantity] = about[key]
     place = [about.get(key) for key in ("latitude", "longitude", "time zone")]
@@ -271,7 +365,11 @@ def sam_units(source, first):
 def read(source):
     """Returns (format, hours, location or None, seconds of the states after the full hour)."""
     if source.lines[0].startswith("LOCATION,") or ".epw" in source.file.suffixes:
-        source.expect(len(source.lines) > 8 and source.lines[0].startswith("LOCATION,"), 0, "this is not an EPW file: it must start with a line LOCATION,... and have 8 header lines.")
+        source.expect(
+            len(source.lines) > 8 and source.lines[0].startswith("LOCATION,"),
+            0,
+            "this is not an EPW file: it must start with a line LOCATION,... and have 8 header lines.",
+        )
         place = source.cells(0)
         source.expect(len(place) >= 9, 0, "the line LOCATION must contain latitude, longitude and time zone.")
         hours, minutes, several = hourly(source, epw(source))
@@ -279,16 +377,37 @@ def read(source):
     source.expect(".json" not in source.file.suffixes, 0, "JSON is not supported; request the same year as CSV or EPW.")
     known = lambda cell: cell.lower() in TIMES or quantity_of(cell)[0] is not None
     first = next((i for i in range(min(100, len(source.lines))) if sum(map(known, source.cells(i))) >= 2), None)
-    source.expect(first is not None, 0, "this is no weather file that is known: EPW, SAM or NSRDB, TMY3, the typical year of PVGIS, or a table with named columns.")
+    source.expect(
+        first is not None,
+        0,
+        (
+            "this is no weather file that is known: EPW, SAM or NSRDB, TMY3, the typical year of PVGIS, or a table with"
+            " named columns."
+        ),
+    )
     usual = {name: next(iter(units)) for name, (_, _, units) in QUANTITIES.items() if name != "p_Pa"}
     times = {cell.lower() for cell in source.cells(first) if cell.lower() in TIMES}
-    source.expect(times, first, "a column of the time is missing: month, day and hour, or time, or hour (of the year, from 0).")
+    source.expect(
+        times, first, "a column of the time is missing: month, day and hour, or time, or hour (of the year, from 0)."
+    )
     if "time(utc)" in times:
         return ("PVGIS", *pvgis(source, first, Head(source, first, {**usual, "p_Pa": "pa"})))
     if {"date (mm/dd/yyyy)", "time (hh:mm)"} <= times:
         place = source.cells(0)
-        source.expect(first > 0 and len(place) >= 7, 0, "the first line of a TMY3 file must contain number, name, state, time zone, latitude, longitude and elevation.")
-        return "TMY3", hourly(source, table(source, first, Head(source, first, usual)))[0], source.site(place[4], place[5], place[3], 0), 3600.0
+        source.expect(
+            first > 0 and len(place) >= 7,
+            0,
+            (
+                "the first line of a TMY3 file must contain number, name, state, time zone, latitude, longitude and"
+                " elevation."
+            ),
+        )
+        return (
+            "TMY3",
+            hourly(source, table(source, first, Head(source, first, usual)))[0],
+            source.site(place[4], place[5], place[3], 0),
+            3600.0,
+        )
     sam = {"month", "day", "hour"} <= times
     units, site = sam_units(source, first) if sam else ({}, None)
     hours, minutes, several = hourly(source, table(source, first, Head(source, first, {**usual, **units})))
@@ -312,5 +431,8 @@ def run(arguments):
     lines += [",".join([str(hour), *map(text_of, values)]) for hour, values in hours]
     text = ("\n".join(lines) + "\n").encode()
     files.write(output.parent, output.name, gzip.compress(text) if output.suffix == ".gz" else text)
-    print(f"{kind}: {len(hours)} hours written to {shlex.quote(str(output))}" + ("" if site else "; it has no location, so a run cannot compare its clock with the sun"))
+    print(
+        f"{kind}: {len(hours)} hours written to {shlex.quote(str(output))}"
+        + ("" if site else "; it has no location, so a run cannot compare its clock with the sun")
+    )
     return 0

@@ -7,16 +7,47 @@ import numpy as np
 from couplet.peers import elements, mesh
 from couplet.peers.values import field, number, only, refuse, settled, vector
 
-HERE = {"program", "mesh", "mesh-scale", "mesh-parameters", "dimension", "plane", "analysis", "kinematics", "material", "boundaries", "gravity",
-        "solution-method", "probes", "output", "time-scheme"}  # the last ones affect how it is solved, not what
-MATERIAL = {"density", "youngs-modulus", "poissons-ratio", "yield-strength", "conductivity", "specific-heat", "expansion"}
-PATCHES = {"free": set(), "fixed-displacement": {"value", "components", "traction"}, "traction": {"value"}, "pressure": {"value"}, "force": {"value"},
-           "symmetry": set(), "frictionless": set()}
+HERE = {
+    "program",
+    "mesh",
+    "mesh-scale",
+    "mesh-parameters",
+    "dimension",
+    "plane",
+    "analysis",
+    "kinematics",
+    "material",
+    "boundaries",
+    "gravity",
+    "solution-method",
+    "probes",
+    "output",
+    "time-scheme",
+}  # the last ones affect how it is solved, not what
+MATERIAL = {
+    "density",
+    "youngs-modulus",
+    "poissons-ratio",
+    "yield-strength",
+    "conductivity",
+    "specific-heat",
+    "expansion",
+}
+PATCHES = {
+    "free": set(),
+    "fixed-displacement": {"value", "components", "traction"},
+    "traction": {"value"},
+    "pressure": {"value"},
+    "force": {"value"},
+    "symmetry": set(),
+    "frictionless": set(),
+}
 
 
 @dataclasses.dataclass
 class Solid:
     """Checked participant `name` of the sections `data`. Keys without a counterpart in `program` are rejected by name."""
+
     data: dict
     name: str
     folder: object
@@ -30,20 +61,30 @@ class Solid:
         settled(self.data)
         only(s, self.where, HERE, self.program)
         if s.get("analysis", "dynamic") != "static":
-            refuse(f"{self.where}.analysis", f"'{s.get('analysis', 'dynamic')}' is not exported to {self.program}; static is")
+            refuse(
+                f"{self.where}.analysis",
+                f"'{s.get('analysis', 'dynamic')}' is not exported to {self.program}; static is",
+            )
         if s.get("kinematics", "small-strain") != "small-strain":
-            refuse(f"{self.where}.kinematics", f"'{s['kinematics']}' is not exported to {self.program}; small-strain is")
+            refuse(
+                f"{self.where}.kinematics", f"'{s['kinematics']}' is not exported to {self.program}; small-strain is"
+            )
         if not isinstance(s.get("material"), dict):
             refuse(f"{self.where}.material", "is needed")
         only(s["material"], f"{self.where}.material", MATERIAL, self.program)
         self.dimension, self.plane = int(s.get("dimension", 3)), s.get("plane", "strain")
-        self.young, self.poisson, self.density = (number(s["material"].get(k, 0), f"{self.where}.material.{k}")
-                                                  for k in ("youngs-modulus", "poissons-ratio", "density"))
+        self.young, self.poisson, self.density = (
+            number(s["material"].get(k, 0), f"{self.where}.material.{k}")
+            for k in ("youngs-modulus", "poissons-ratio", "density")
+        )
         self.time = number(self.data["simulation"]["end-time"], "simulation.end-time")
         for patch, given in self.boundaries.items():
             kind = given.get("type")
             if kind not in PATCHES:
-                refuse(f"{self.where}.boundaries.{patch}.type", f"'{kind}' has no counterpart in {self.program}; {', '.join(PATCHES)} have")
+                refuse(
+                    f"{self.where}.boundaries.{patch}.type",
+                    f"'{kind}' has no counterpart in {self.program}; {', '.join(PATCHES)} have",
+                )
             only(given, f"{self.where}.boundaries.{patch}", PATCHES[kind] | {"type"}, self.program)
 
     @property
@@ -53,7 +94,9 @@ class Solid:
     def mesh(self, order):
         """Mesh of first or second order, created once."""
         if order not in self.meshes:
-            self.meshes[order] = mesh.of_participant(self.section, self.folder, self.where, self.work, order, self.trusted)
+            self.meshes[order] = mesh.of_participant(
+                self.section, self.folder, self.where, self.work, order, self.trusted
+            )
             mesh.check_patches(self.meshes[order], self.boundaries, self.where)
         return self.meshes[order]
 
@@ -64,7 +107,7 @@ class Solid:
     def normal_axis(self, body, patch):
         """Axis 0, 1 or 2 normal to a symmetry plane. Other planes are rejected."""
         points = body.points[body.nodes_of(patch)]
-        spread = np.ptp(points, axis=0)[:self.dimension]
+        spread = np.ptp(points, axis=0)[: self.dimension]
         if spread.min() > 1e-9 * np.ptp(body.points, axis=0).max():
             refuse(f"{self.where}.boundaries.{patch}.type", "a symmetry plane across no axis is not exported")
         return int(np.argmin(spread))
@@ -90,7 +133,9 @@ class Solid:
         if kind == "pressure":
             return -field(given.get("value", 0), f"{where}.value", points, self.time)[:, None] * outward
         if kind in ("traction", "force"):
-            return vector(given.get("value"), f"{where}.value", points, self.time, self.dimension) / (area if kind == "force" else 1)
+            return vector(given.get("value"), f"{where}.value", points, self.time, self.dimension) / (
+                area if kind == "force" else 1
+            )
         if kind == "fixed-displacement" and given.get("traction"):
             return vector(given["traction"], f"{where}.traction", points, self.time, self.dimension)
         return None
@@ -117,7 +162,10 @@ class Solid:
             points = body.points[faces]
             places = np.einsum("qn,fnc->fqc", N, points)
             along = np.einsum("qdn,fnc->fqdc", dN, points)
-            normal = np.cross(along[:, :, 0], along[:, :, 1]) if shape != "line" else np.stack(
-                [along[:, :, 0, 1], -along[:, :, 0, 0], 0 * along[:, :, 0, 0]], axis=-1)
+            normal = (
+                np.cross(along[:, :, 0], along[:, :, 1])
+                if shape != "line"
+                else np.stack([along[:, :, 0, 1], -along[:, :, 0, 0], 0 * along[:, :, 0, 0]], axis=-1)
+            )
             size = np.linalg.norm(normal, axis=2)
             yield faces, places, size * weight, normal / size[:, :, None] * sides[shape][:, None, None], N

@@ -52,11 +52,18 @@ class Import:
         words = MAPPED[e.name if e.name in MAPPED else "mapping:rbf"].split()
         for key in e.attributes:
             if key not in words:
-                self._refuse(e, f"<{e.name}>: the attribute '{key}' is not known" + (f", only: {', '.join(words)}" if words else ""))
+                self._refuse(
+                    e,
+                    f"<{e.name}>: the attribute '{key}' is not known"
+                    + (f", only: {', '.join(words)}" if words else ""),
+                )
 
     def ask_library(self, file):
         """Returns the parts of the configuration that the library would refuse at the start of its programs. Its rules are not repeated here."""
-        places_of = [os.environ.get("COUPLET_PRECICE_LIBRARY", ""), *(places.build() / part / "libprecice.so.3" for part in ("precice/lib", "lib/couplet/precice/lib"))]
+        places_of = [
+            os.environ.get("COUPLET_PRECICE_LIBRARY", ""),
+            *(places.build() / part / "libprecice.so.3" for part in ("precice/lib", "lib/couplet/precice/lib")),
+        ]
         library = next((path for path in map(pathlib.Path, places_of) if path.is_file()), None)
         if library is None:
             return self._note(self.root, f"not checked by the library, which is not at {places_of[1]}")
@@ -65,7 +72,9 @@ class Import:
         for name in self.case["participants"]:
             if problem := ask(os.fsencode(file), name.encode()).decode(errors="replace").removesuffix("."):
                 line, _, why = problem.removeprefix(f"{file}:").partition(": ")
-                self.refusals.append((int(line), why) if line.isdigit() else (self.root.line, problem.removeprefix(f"{file}: ")))
+                self.refusals.append(
+                    (int(line), why) if line.isdigit() else (self.root.line, problem.removeprefix(f"{file}: "))
+                )
 
     def _names(self):
         """Checks for unknown names, and for data that are read but never exchanged, which would be zero."""
@@ -73,15 +82,21 @@ class Import:
         meshes, people = ([e.get("name") for e in self.root.all(kind)] for kind in ("mesh", "participant"))
         exchanges = [e for s in self.schemes for e in s.all("exchange")]
         named = [e for p in self.root.all("participant") for e in p.all("write-data", "read-data")]
-        named = [(e, {"name": data, "mesh": meshes}) for e in named] + [(e, {"data": data, "mesh": meshes, "from": people, "to": people}) for e in exchanges]
+        named = [(e, {"name": data, "mesh": meshes}) for e in named] + [
+            (e, {"data": data, "mesh": meshes, "from": people, "to": people}) for e in exchanges
+        ]
         named += [(m, {"data": data, "mesh": meshes}) for s in self.schemes for m in s.all(*MEASURES)]
         for element, known in named:
             for key, names in known.items():
                 if element.get(key) not in ("", *names):
-                    self._refuse(element, f"<{element.name}>: the {key} '{element.get(key)}' is not one of: {', '.join(names)}")
+                    self._refuse(
+                        element, f"<{element.name}>: the {key} '{element.get(key)}' is not one of: {', '.join(names)}"
+                    )
         for p in self.root.all("participant"):
             for e in p.all("read-data"):
-                if e.get("name") in data and not any((x.get("data"), x.get("to")) == (e.get("name"), p.get("name")) for x in exchanges):
+                if e.get("name") in data and not any(
+                    (x.get("data"), x.get("to")) == (e.get("name"), p.get("name")) for x in exchanges
+                ):
                     self._refuse(e, f"'{p.get('name')}' reads '{e.get('name')}', but no <exchange> brings it there")
 
     # -- the scheme ---------------------------------------------------------------------------------------------------
@@ -89,14 +104,19 @@ class Import:
         first = self.schemes[0]
         kinds = {s.name.split(":")[1] for s in self.schemes}
         if len(kinds) > 1:
-            self._refuse(self.schemes[1], f"schemes of several kinds together are not supported: {', '.join(sorted(kinds))}")
+            self._refuse(
+                self.schemes[1], f"schemes of several kinds together are not supported: {', '.join(sorted(kinds))}"
+            )
         if len(self.schemes) > 1 and "implicit" in first.name:
             self._refuse(self.schemes[1], "several implicit schemes are not supported; <coupling-scheme:multi> is")
         implicit = "explicit" not in first.name
         order = "serial" if "serial" in first.name else "parallel"
         members = self._members()
         self.case["simulation"] = self._times()
-        self.case["coupling"] = coupling = {"scheme": "implicit" if implicit else "explicit", "exchange": {"participants": members, "order": order, "digest": digest(self.root)}}
+        self.case["coupling"] = coupling = {
+            "scheme": "implicit" if implicit else "explicit",
+            "exchange": {"participants": members, "order": order, "digest": digest(self.root)},
+        }
         if implicit:
             self._convergence(first, coupling)
             self._acceleration(first, coupling)
@@ -163,7 +183,13 @@ class Import:
         if len(set(limits)) > 1 or len(set(absolute)) > 1:
             self._note(measures[0], "one limit holds for all data that are iterated on: the strictest")
         if not measures:
-            self._note(scheme, "without a convergence measure each window takes max-iterations, and that it has not converged is accepted")
+            self._note(
+                scheme,
+                (
+                    "without a convergence measure each window takes max-iterations, and that it has not converged is"
+                    " accepted"
+                ),
+            )
             self.case["simulation"]["accept"] = ["error-estimate", "unconverged-step"]
         coupling["convergence"] = {"relative": min(limits, default=1e-14)}
         if absolute and limits and any(not m.name.startswith("absolute-or") for m in measures):
@@ -195,7 +221,10 @@ class Import:
             return None
         if re.fullmatch("[0-9]{1,5}", element.get("value")) and 1 <= int(element.get("value")) <= 10000:
             return int(element.get("value"))
-        self._refuse(element, f"<{element.name}>: '{element.get('value')}' is not supported; expected a whole number from 1 to 10000")
+        self._refuse(
+            element,
+            f"<{element.name}>: '{element.get('value')}' is not supported; expected a whole number from 1 to 10000",
+        )
         return None
 
     def _acceleration(self, scheme, coupling):
@@ -206,8 +235,11 @@ class Import:
         a = found[0]
         kind = a.name.split(":")[1]
         values = {"type": ACCELERATIONS.get(kind, kind)}
-        for element, key, whole in (("relaxation", "initial-relaxation", False), ("initial-relaxation", "initial-relaxation", False),
-                                    ("time-windows-reused", "reused-steps", True)):
+        for element, key, whole in (
+            ("relaxation", "initial-relaxation", False),
+            ("initial-relaxation", "initial-relaxation", False),
+            ("time-windows-reused", "reused-steps", True),
+        ):
             if (e := a.one(element)) and (number := self._number(e)) is not None:
                 values[key] = int(number) if whole else number
         if (m := a.one("max-used-iterations")) and self._number(m) is not None:

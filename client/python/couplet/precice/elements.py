@@ -43,7 +43,10 @@ def read(file):
         (stack[-1].children if stack else roots).append(element)
         stack.append(element)
         expect(len(stack) < 64, f"{file}:{element.line}: elements are nested too deeply.")
-        expect(not any(map(CONTROL.search, attributes.values())), f"{file}:{element.line}: <{name}> contains a control character; remove it.")
+        expect(
+            not any(map(CONTROL.search, attributes.values())),
+            f"{file}:{element.line}: <{name}> contains a control character; remove it.",
+        )
 
     def document_type(*_):
         expect(False, f"{file}:{parser.CurrentLineNumber}: document types are not read.")
@@ -54,7 +57,13 @@ def read(file):
         parser.Parse(data, True)
     except xml.parsers.expat.ExpatError as error:
         expect(False, f"{file}:{error.lineno}: {xml.parsers.expat.errors.messages[error.code]}.")
-    expect(roots[0].name == "precice-configuration", f"{file}:{roots[0].line}: <precice-configuration> of preCICE's version 3 is expected, this is <{roots[0].name}>.")
+    expect(
+        roots[0].name == "precice-configuration",
+        (
+            f"{file}:{roots[0].line}: <precice-configuration> of preCICE's version 3 is expected, this is"
+            f" <{roots[0].name}>."
+        ),
+    )
     return roots[0]
 
 
@@ -83,32 +92,73 @@ MAPS = "direction from to constraint"
 RADIAL = MAPS + " polynomial x-dead y-dead z-dead shape-parameter support-radius solver-rtol"
 MEASURE = "limit data mesh strict suffices"
 MAPPED = {
-    "precice-configuration": "experimental wait-in-finalize allow-remeshing", "data:scalar": "name waveform-degree", "data:vector": "name waveform-degree", "mesh": "name dimensions",
-    "use-data": "name", "participant": "name control", "provide-mesh": "name", "receive-mesh": "name from safety-factor geometric-filter direct-access api-access",
-    "write-data": "name mesh", "read-data": "name mesh", "exchange": "data mesh from to initialize substeps",
-    "mapping:nearest-neighbor": MAPS, "mapping:nearest-projection": MAPS, "mapping:rbf": RADIAL, "mapping:rbf-global-direct": RADIAL, "mapping:rbf-global-iterative": RADIAL,
+    "precice-configuration": "experimental wait-in-finalize allow-remeshing",
+    "data:scalar": "name waveform-degree",
+    "data:vector": "name waveform-degree",
+    "mesh": "name dimensions",
+    "use-data": "name",
+    "participant": "name control",
+    "provide-mesh": "name",
+    "receive-mesh": "name from safety-factor geometric-filter direct-access api-access",
+    "write-data": "name mesh",
+    "read-data": "name mesh",
+    "exchange": "data mesh from to initialize substeps",
+    "mapping:nearest-neighbor": MAPS,
+    "mapping:nearest-projection": MAPS,
+    "mapping:rbf": RADIAL,
+    "mapping:rbf-global-direct": RADIAL,
+    "mapping:rbf-global-iterative": RADIAL,
     "mapping:rbf-pum-direct": RADIAL + " vertices-per-cluster relative-overlap project-to-input",
-    "coupling-scheme:serial-explicit": "", "coupling-scheme:parallel-explicit": "", "coupling-scheme:serial-implicit": "", "coupling-scheme:parallel-implicit": "", "coupling-scheme:multi": "",
-    "participants": "first second", "max-time": "value", "max-time-windows": "value", "time-window-size": "value method", "max-iterations": "value", "min-iterations": "value",
-    "relative-convergence-measure": MEASURE, "absolute-convergence-measure": MEASURE, "absolute-or-relative-convergence-measure": "abs-limit rel-limit data mesh strict suffices",
-    "acceleration:constant": "", "acceleration:aitken": "", "acceleration:IQN-ILS": "reduced-time-grid", "acceleration:IQN-IMVJ": "reduced-time-grid always-build-jacobian",
-    "relaxation": "value", "initial-relaxation": "value enforce", "max-used-iterations": "value", "time-windows-reused": "value", "filter": "type limit",
+    "coupling-scheme:serial-explicit": "",
+    "coupling-scheme:parallel-explicit": "",
+    "coupling-scheme:serial-implicit": "",
+    "coupling-scheme:parallel-implicit": "",
+    "coupling-scheme:multi": "",
+    "participants": "first second",
+    "max-time": "value",
+    "max-time-windows": "value",
+    "time-window-size": "value method",
+    "max-iterations": "value",
+    "min-iterations": "value",
+    "relative-convergence-measure": MEASURE,
+    "absolute-convergence-measure": MEASURE,
+    "absolute-or-relative-convergence-measure": "abs-limit rel-limit data mesh strict suffices",
+    "acceleration:constant": "",
+    "acceleration:aitken": "",
+    "acceleration:IQN-ILS": "reduced-time-grid",
+    "acceleration:IQN-IMVJ": "reduced-time-grid always-build-jacobian",
+    "relaxation": "value",
+    "initial-relaxation": "value enforce",
+    "max-used-iterations": "value",
+    "time-windows-reused": "value",
+    "filter": "type limit",
 }
 # Elements that do not affect the result and are not used.
 SILENT = {"log", "sink", "profiling", "m2n:", "intra-comm:", "master:", "data", "executor:", "imvj-restart-mode"}
 # Refused by the library itself.
-SILENT |= {"mapping:nearest-neighbor-gradient", "mapping:axial-geometric-multiscale", "mapping:radial-geometric-multiscale", "use-mesh"}
+SILENT |= {
+    "mapping:nearest-neighbor-gradient",
+    "mapping:axial-geometric-multiscale",
+    "mapping:radial-geometric-multiscale",
+    "use-mesh",
+}
 # Elements without influence on the answer, and their replacements.
 WITHOUT_EFFECT = {
     "export:": "every program writes its own fields, and `coupling.watch` has integrals",
-    "watch-point": "no watch at a point: `coupling.watch` has integrals", "watch-integral": "`coupling.watch` has integrals over interfaces",
-    "preconditioner": "data of several kinds are scaled once by their first size", "basis-function:": "`projection` takes a local interpolant where a mesh has no faces",
+    "watch-point": "no watch at a point: `coupling.watch` has integrals",
+    "watch-integral": "`coupling.watch` has integrals over interfaces",
+    "preconditioner": "data of several kinds are scaled once by their first size",
+    "basis-function:": "`projection` takes a local interpolant where a mesh has no faces",
 }
 # Elements that the library and the coupler do not support.
 REFUSED = {
-    "action:": "actions on data", "mapping:linear-cell-interpolation": "interpolation inside cells of a volume",
-    "residual-relative-convergence-measure": "convergence against the first residual of a window", "min-iteration-convergence-measure": "a least number of iterations",
-    "coupling-scheme:compositional": "schemes composed by hand", "acceleration:broyden": "Broyden's acceleration", "extrapolation-order": "extrapolation of preCICE's version 2",
+    "action:": "actions on data",
+    "mapping:linear-cell-interpolation": "interpolation inside cells of a volume",
+    "residual-relative-convergence-measure": "convergence against the first residual of a window",
+    "min-iteration-convergence-measure": "a least number of iterations",
+    "coupling-scheme:compositional": "schemes composed by hand",
+    "acceleration:broyden": "Broyden's acceleration",
+    "extrapolation-order": "extrapolation of preCICE's version 2",
 }
 
 

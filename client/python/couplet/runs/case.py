@@ -138,7 +138,7 @@ def content_of(file, time, size):
 class Case:
     """One case. `file` is the YAML, its folder, or a YAML with another study of a case beside it ({case: case.yaml,
     study: ...}). `build` is the folder with bin/. `data` has the sections, and `participants` those of the
-    participants. Raises Wrong with file and line for what cannot be read. """
+    participants. Raises Wrong with file and line for what cannot be read."""
 
     def __init__(self, file: str | pathlib.Path, build: str | pathlib.Path | None = None):
         self.file, self.build = pathlib.Path(file), pathlib.Path(build or places.build())
@@ -235,7 +235,7 @@ class Case:
     def guest(self, participant: str, played_by: Mapping[str, Sequence] | None = None) -> Sequence | None:
         """Command of an external program, which does not read the case: the given one, else a file of that name beside
         the case, with the participant's name. None for our programs, and if there is none: another program beside ours,
-        such as a shell, is never started. """
+        such as a shell, is never started."""
         if played_by and participant in played_by:
             return played_by[participant]
         program = self.program(participant)
@@ -258,7 +258,7 @@ class Case:
     ) -> list[tuple[int, list[str]]]:
         """Programs of a job in the order of their ranks: [(number of ranks, words)]. `alone` runs only this
         participant; `ranks` is {participant or coupler: number}; `raw` are further --set arguments; `flags` are
-        arguments of all our programs; `played_by` is {participant: command}. """
+        arguments of all our programs; `played_by` is {participant: command}."""
         sets = [*(word for a in (*self.assignments(changes), *raw) for word in ("--set", a)), *flags]
         names = (
             [alone or next(iter(self.participants))]

@@ -101,7 +101,7 @@ def checkpoint(folder):
 def checkpoints(folder):
     """Names of the complete checkpoints that the recorded run wrote, else of the one that it started from, latest
     first. Those of another run in the folder may belong to another case. The id of a run begins with its start, which a
-    copy of the folder keeps. Incomplete ones are named and left out. """
+    copy of the folder keeps. Incomplete ones are named and left out."""
     all_sets = pathlib.Path(folder).absolute() / "checkpoints"
     damaged = sorted(filter(is_damaged, all_sets.glob("step-*/set.txt")))
     for file in damaged:
