@@ -15,6 +15,7 @@
 #include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/linalg/petsc.hpp"
 #include "common/mesh/load.hpp"
+#include "solid_solver/body/method_choice.hpp"
 #include "solid_solver/method/mixed_form.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/solid.hpp"
@@ -22,7 +23,6 @@
 namespace couplet::benchmark {
 
 using namespace linalg;
-
 using namespace solid;
 namespace {
 

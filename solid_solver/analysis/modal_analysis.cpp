@@ -17,6 +17,7 @@
 #include "common/mesh/mesh.hpp"
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/method_choice.hpp"
 #include "solid_solver/body/recovered_strain.hpp"
 
 namespace couplet::solid {

@@ -11,8 +11,8 @@
 #include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
 #include "solid_solver/equilibrium/small_strain.hpp"
-#include "solid_solver/equilibrium/updated_lagrangian.hpp"
 #include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/thesis/updated_lagrangian.hpp"
 
 namespace couplet::solid {
 namespace {

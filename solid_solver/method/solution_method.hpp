@@ -72,10 +72,6 @@ class SolutionMethod {
   friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);
 };
 
-/// Creates the requested method. `automatic` chooses by size and case; the name states the reason.
-std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
-                                                     const MethodParameters& parameters);
-
 /// Euclidean norm over all ranks.
 double norm(MPI_Comm comm, std::span<const double> values);
 

@@ -9,6 +9,7 @@
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/body/method_choice.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
 #include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All solution methods give the same answer, and the same on any number of ranks.
-#include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/body/method_choice.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing::methods_test {

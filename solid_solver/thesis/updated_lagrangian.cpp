@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/equilibrium/updated_lagrangian.hpp"
+#include "solid_solver/thesis/updated_lagrangian.hpp"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
-#include "solid_solver/method/segregated.hpp"
 #include "solid_solver/method/solution_method.hpp"
+#include "solid_solver/thesis/segregated.hpp"
 
 namespace couplet::solid {
 

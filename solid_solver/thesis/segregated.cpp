@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/method/segregated.hpp"
+#include "solid_solver/thesis/segregated.hpp"
 
 #include <fmt/format.h>
 
@@ -52,14 +52,11 @@ linalg::Acceleration acceleration_of(const MethodParameters& parameters) {
 }
 
 std::string segregated_name(const MethodParameters& parameters) {
-  switch (parameters.acceleration) {
-    case MethodParameters::Acceleration::aitken:
-      return fmt::format("segregated (Aitken every {} iterations)", aitken_interval);
-    case MethodParameters::Acceleration::anderson:
-      return fmt::format("segregated (Anderson over {} iterations)", anderson_history);
-    default:
-      return "segregated";
-  }
+  using Choice = MethodParameters::Acceleration;
+  if (parameters.acceleration == Choice::none) return "segregated";
+  if (parameters.acceleration == Choice::aitken)
+    return fmt::format("segregated (Aitken every {} iterations)", aitken_interval);
+  return fmt::format("segregated (Anderson over {} iterations)", anderson_history);
 }
 
 ScalarSystems::ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/method/block_coupled.hpp"
+#include "solid_solver/thesis/block_coupled.hpp"
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -13,16 +13,10 @@ constexpr GlobalIndex direct_up_to = 60000, direct_up_to_static = 200000;
 
 linalg::LinearMethod linear_method(const SolidProblem& problem, const MethodParameters& parameters) {
   using Choice = MethodParameters::LinearSolver;
-  switch (parameters.linear_solver) {
-    case Choice::direct:
-      return linalg::LinearMethod::direct;
-    case Choice::bicgstab_ilu:
-      return linalg::LinearMethod::bicgstab_ilu;
-    case Choice::gmres_multigrid:
-      return linalg::LinearMethod::gmres_multigrid;
-    case Choice::automatic:
-      break;
-  }
+  const Choice choice = parameters.linear_solver;
+  if (choice == Choice::direct) return linalg::LinearMethod::direct;
+  if (choice == Choice::bicgstab_ilu) return linalg::LinearMethod::bicgstab_ilu;
+  if (choice == Choice::gmres_multigrid) return linalg::LinearMethod::gmres_multigrid;
   const GlobalIndex n =
       parallel::sum(problem.mesh.comm, static_cast<GlobalIndex>(problem.elastic.n_unknowns()));
   return n <= (problem.is_static() ? direct_up_to_static : direct_up_to) ? linalg::LinearMethod::direct
@@ -38,14 +32,9 @@ linalg::LinearOptions options_of(linalg::LinearMethod method, const MethodParame
 }
 
 const char* name_of(linalg::LinearMethod method) {
-  switch (method) {
-    case linalg::LinearMethod::direct:
-      return "block-coupled (direct)";
-    case linalg::LinearMethod::bicgstab_ilu:
-      return "block-coupled (BiCGStab, ILU)";
-    default:
-      return "block-coupled (GMRES, multigrid)";
-  }
+  if (method == linalg::LinearMethod::direct) return "block-coupled (direct)";
+  if (method == linalg::LinearMethod::bicgstab_ilu) return "block-coupled (BiCGStab, ILU)";
+  return "block-coupled (GMRES, multigrid)";
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include "common/elasticity/finite/finite_law.hpp"
 #include "common/linalg/acceleration.hpp"
 #include "solid_solver/equilibrium/large_strain.hpp"
-#include "solid_solver/method/segregated.hpp"
 #include "solid_solver/parameters/parameters.hpp"
+#include "solid_solver/thesis/segregated.hpp"
 
 namespace couplet::solid {
 
