@@ -14,7 +14,7 @@
 #include "common/io/probes/probe.hpp"
 #include "solid_solver/analysis/modal_analysis.hpp"
 #include "solid_solver/output/quantities.hpp"
-#include "solid_solver/thermal/thermal_strain.hpp"
+#include "solid_solver/thermal/thermal_load.hpp"
 
 namespace couplet::solid {
 
@@ -50,7 +50,7 @@ coupling::Exchange Solid::solve(const coupling::Exchange& in) {
 
 coupling::StepReport Solid::accept_step() {
   stepper_.accept_step();
-  ThermalStrain* thermal = body_.thermal();
+  ThermalLoad* thermal = body_.thermal();
   if (thermal && thermal->wants_stress())
     thermal->take_stress(fields_.cell_stress(fields_.point_displacement()));
   if (is_loaded_by_case_) {  // a run at rest is a finding

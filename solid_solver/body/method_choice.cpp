@@ -21,8 +21,7 @@ using Preconditioner = MethodParameters::Preconditioner;
 
 // Smaller bodies have no coarser mesh.
 constexpr GlobalIndex fewest_for_multigrid = 64;
-// Set-up time of factors for a hard system, at any number of solves [s]: 60 000 cells in 2-D, 1500 hexahedra
-// in 3-D.
+// Set-up time of factors for a hard system, at any number of solves [s]: 60 000 cells in 2-D, 1500 hexahedra in 3-D.
 constexpr double set_up_of_hard = 4.5;
 // K/mu above which CG takes longer than the mixed form or does not converge: nu = 0.49.
 constexpr double bulk_of_mixed_form = 49;

@@ -36,14 +36,12 @@ class InnerVariation {
   std::vector<double> volume_;   // sum V_fP
 };
 
-/// Compares face strains with recovered ones: a linear strain per cell, fitted to the means of cells that
-/// share a vertex. The energy of the difference, over the faces' pyramids, estimates the mesh error
-/// (Zienkiewicz and Zhu, IJNME 33 (1992) 1331):
+/// Compares face strains with recovered ones: a linear strain per cell, fitted to the means of cells that share a vertex. The energy of the
+/// difference, over the faces' pyramids, estimates the mesh error (Zienkiewicz and Zhu, IJNME 33 (1992) 1331):
 ///   sum_f V_f (e_f - e*(x_f)) : C : (e_f - e*(x_f)) / sum_f V_f e_f : C : e_f
-/// The volume strain of faces does not count where that of cells has the energy. Ratio to the true displacement
-/// error (scripts/validate solid-accuracy): 0.8-2 on plates, 0.6-4 on hexahedral beams, 0.3-3 on bent
-/// tetrahedra. It is smallest if long cells make the body too stiff, and about ten for a single layer of
-/// hexahedra, see is_one_row(). Needs two passes over faces.
+/// The volume strain of faces does not count where that of cells has the energy. Ratio to the true displacement error (scripts/validate
+/// solid-accuracy): 0.8-2 on plates, 0.6-4 on hexahedral beams, 0.3-3 on bent tetrahedra. It is smallest if long cells make the body too
+/// stiff, and about ten for a single layer of hexahedra, see is_one_row(). Needs two passes over faces.
 class RecoveredStrain {
  public:
   /// Keeps references.
@@ -57,11 +55,9 @@ class RecoveredStrain {
   void compare(Index face, const Tensor3& strain);
   /// Relative energy of the difference; 0 if there is no energy. Collective.
   double missed() const;
-  /// True if most cells have no neighbors along some axis. A slope is not recovered there, and all bending would
-  /// be missed. Collective.
+  /// True if most cells have no neighbors along some axis. A slope is not recovered there, and all bending would be missed. Collective.
   bool is_one_row() const;
-  /// Part of a strain at a face that the recovered one of the cell has not; zero for a cell that was not
-  /// recovered.
+  /// Part of a strain at a face that the recovered one of the cell has not; zero for a cell that was not recovered.
   Tensor3 gap(Index face, Index cell, const Tensor3& strain) const;
   /// a : C : b of a cell [Pa], without the volume strain where cells have their own.
   double product(Index cell, const Tensor3& a, const Tensor3& b) const;

@@ -82,7 +82,7 @@ SolidBody::SolidBody(mesh::LoadedMesh body, SolidParameters parameters)
     body_force_ = fv::make_expressions(parameters_.body_force, mesh_.dim, "body-force");
   if (parameters_.heat || parameters_.temperature ||
       (parameters_.interface_data && parameters_.interface_data->temperature))
-    thermal_ = std::make_unique<ThermalStrain>(mesh_, elastic_, parameters_);
+    thermal_ = std::make_unique<ThermalLoad>(mesh_, elastic_, parameters_);
 }
 
 void SolidBody::make_equilibrium() {

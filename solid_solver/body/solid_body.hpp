@@ -16,7 +16,7 @@
 #include "solid_solver/equilibrium/equilibrium.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
 #include "solid_solver/parameters/parameters.hpp"
-#include "solid_solver/thermal/thermal_strain.hpp"
+#include "solid_solver/thermal/thermal_load.hpp"
 
 namespace couplet::solid {
 
@@ -27,8 +27,7 @@ struct BodyField {
   std::span<const double> cells, faces, points;
 };
 
-/// Deformable body: mesh, material law, operator, boundary rows and loads except those of the interface. Has
-/// no time.
+/// Deformable body: mesh, material law, operator, boundary rows and loads except those of the interface. Has no time.
 class SolidBody final {
  public:
   /// Throws Error for an invalid case. Collective over mesh.comm.
@@ -60,8 +59,9 @@ class SolidBody final {
   /// Rigid seat that its faces may touch; nullptr if there is none.
   const Seat* seat() const { return seat_.get(); }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
-  /// Temperature and its load; nullptr if the case has no temperature.
-  ThermalStrain* thermal() const { return thermal_.get(); }
+  /// Load of the temperature, and the temperature itself; nullptr if the case has none.
+  ThermalLoad* thermal() const { return thermal_.get(); }
+  TemperatureField* temperature() const { return thermal_ ? &thermal_->temperature() : nullptr; }
   /// True if the kernel has its own mass, so that all its nodes have inertia.
   bool has_mass() const { return has_mass_; }
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
@@ -70,8 +70,7 @@ class SolidBody final {
   /// [kg/m^3]
   double density(Index cell) const { return materials_[mesh_.material_of(cell)].density; }
 
-  /// Sets the temperature-dependent elastic constants. Returns true if data made for the old ones are
-  /// invalid. Collective.
+  /// Sets the temperature-dependent elastic constants. Returns true if data made for the old ones are invalid. Collective.
   bool apply_stiffness();
   /// Loads of the boundaries at time t that are no pressures of the equilibrium, see SolidBoundaries::add_forces().
   std::vector<double> dead_loads(double t) const;
@@ -89,8 +88,7 @@ class SolidBody final {
   /// Sets the thermal strains at time t in the equilibrium (large strain). Collective.
   void place_expansion(double t) const;
   bool has_body_forces() const { return !body_force_.empty() || !parameters_.gravity.empty(); }
-  /// Body forces and weight of the owned cells, moved by `shift`, at time t [N], `dim` values each; empty if
-  /// there are none.
+  /// Body forces and weight of the owned cells, moved by `shift`, at time t [N], `dim` values each; empty if there are none.
   std::vector<double> body_forces(double t, const Vec3& shift = Vec3::Zero()) const;
   /// Acceleration of the known columns over [start, start + dt], dim values each; empty at rest. Uses the
   /// change of velocity, not second differences, so that its work equals the growth of kinetic energy.
@@ -139,7 +137,7 @@ class SolidBody final {
   PrescribedDisplacement prescribed_;
   RigidPatches rigid_;
   std::vector<fv::Expression> body_force_;
-  std::unique_ptr<ThermalStrain> thermal_;  // nullptr if there is no temperature
+  std::unique_ptr<ThermalLoad> thermal_;  // nullptr if there is no temperature
 };
 
 }  // namespace couplet::solid

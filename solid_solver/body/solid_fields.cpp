@@ -28,8 +28,7 @@ Vec3 normal_at(const mesh::Mesh& mesh, const mesh::Geometry& geometry, Index fac
   return area.normalized();
 }
 
-/// Converts displacement gradients, entry (i, j) = d u_j/d x_i, to strains: at large strain Green's,
-/// (F^T F - I)/2.
+/// Converts displacement gradients, entry (i, j) = d u_j/d x_i, to strains: at large strain Green's, (F^T F - I)/2.
 void to_strain(bool is_large, std::span<Tensor3> gradients) {
   for (Tensor3& g : gradients) {
     const Tensor3 linear = 0.5 * (g + g.transpose());
@@ -150,7 +149,7 @@ DiscreteStress SolidFields::discrete_stress(std::span<const double> points) cons
                        state_.cell_u,
                        state_.face_u,
                        known_tractions()};
-  const ThermalStrain* thermal = body_.thermal();
+  const ThermalLoad* thermal = body_.thermal();
   if (!thermal) return found;
   found.other_in_cells.assign(found.cells.size(), Tensor3::Zero());
   found.other_on_faces.assign(found.faces.size(), Tensor3::Zero());
@@ -186,8 +185,7 @@ SidedTensors SolidFields::strain_sides(std::span<const double> points) const {
 
 // Gradients of the displacement in cells, from which stress and strain follow.
 
-/// Mean of the face gradients weighted by the pyramids over the faces; exact for linear gradients if those of
-/// the faces are.
+/// Mean of the face gradients weighted by the pyramids over the faces; exact for linear gradients if those of the faces are.
 std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) const {
   const Index n_owned = mesh_.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
@@ -288,7 +286,7 @@ elastic::ElasticLoads SolidFields::loads_now() const {
   for (std::size_t i = 0; i < last_.interface.size(); ++i) loads.faces[i] += last_.interface[i];
   if (body_.seat() && !last_.contact.empty()) body_.seat()->add_to_faces(last_.contact, loads.faces);
   loads.cells = body_.body_forces(state_.time);
-  if (ThermalStrain* thermal = body_.thermal()) loads.pressure = thermal->pressure(state_.time);
+  if (ThermalLoad* thermal = body_.thermal()) loads.pressure = thermal->pressure(state_.time);
   return loads;
 }
 

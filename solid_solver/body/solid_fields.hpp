@@ -39,9 +39,8 @@ class SolidFields final {
   std::vector<double> point_velocity() const;
   /// Requires wants_acceleration().
   std::vector<double> point_acceleration() const;
-  /// On each side of the joints of materials: at small strain recovered from patches of cells (StressRecovery), else
-  /// interpolated from the stress in the cells and on the boundary faces. `wanted`: flags of local points, empty means all; others
-  /// may hold anything.
+  /// On each side of the joints of materials: at small strain recovered from patches of cells (StressRecovery), else interpolated from the
+  /// stress in the cells and on the boundary faces. `wanted`: flags of local points, empty means all; others may hold anything.
   SidedTensors stress_sides(std::span<const double> points, std::span<const std::uint8_t> wanted = {}) const;
   /// The recovery of a body with recovers_stress(), and what it starts from.
   const StressRecovery& recovery() const;

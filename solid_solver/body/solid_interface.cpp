@@ -22,13 +22,13 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
         "interface: no patch has 'type: interface', so there is no face to receive a "
         "temperature at.");
   takes_temperature_ = true;
-  body.thermal()->set_interface(description_.face_centres, map_->faces());
+  body.temperature()->set_interface(description_.face_centres, map_->faces());
 }
 
 void SolidInterface::take_temperature(const coupling::Exchange& in) const {
   const auto found = in.find("temperature");
   const std::vector<double> faces = found == in.end() ? std::vector<double>{} : found->second;
-  body_.thermal()->take_temperature(faces);
+  body_.temperature()->take(faces);
 }
 
 std::vector<double> SolidInterface::load(const coupling::Exchange& in) const {

@@ -49,8 +49,7 @@ struct SolidState {
   SolidEnergies energies;           ///< if requested
   double load_work = 0;             ///< work of the loads since the start, dynamic runs, this rank [J]
   double error = 0;                 ///< estimated for the last step if the step size is controlled, rms [m]
-  // If the acceleration is requested: at `time` in cells and on faces, and its mean over the last step in
-  // cells.
+  // If the acceleration is requested: at `time` in cells and on faces, and its mean over the last step in cells.
   std::vector<double> acceleration, face_acceleration, mean_acceleration;
 };
 

@@ -31,9 +31,8 @@ using SidedTensors = std::vector<std::vector<double>>;
 /// One tensor per point: at a joint that of the side with the larger equivalent value.
 std::vector<double> worst_side(SidedTensors sides);
 
-/// Symmetric tensors at points from those in cells and on boundary faces, exact for linear fields (the vertex
-/// interpolation of the displacement, all faces of the boundary taking part). At symmetry planes the mirrored
-/// tensor is averaged in: no shear there.
+/// Symmetric tensors at points from those in cells and on boundary faces, exact for linear fields (the vertex interpolation of the
+/// displacement, all faces of the boundary taking part). At symmetry planes the mirrored tensor is averaged in: no shear there.
 class PointTensors {
  public:
   /// `is_symmetry`: one flag per patch. `inside`: any interpolation, kept by reference. Collective.

@@ -32,11 +32,10 @@ struct DiscreteStress {
 /// of its material, to their boundary faces, and to the tractions known there; a point takes the mean of its cells of each
 /// material. At planes of symmetry the patch goes on as its mirror image.
 ///
-/// The fit uses the stress, whose cell means are more accurate than derived values (Zienkiewicz and Zhu,
-/// IJNME 33 (1992) 1331; with tractions, Blacker and Belytschko, ibid. 37 (1994) 517). For triangles and
-/// tetrahedra at a surface it uses the displacement, whose gradient keeps peaks at curved surfaces that face
-/// strains smooth (Naga and Zhang, SIAM J. Numer. Anal. 42 (2004) 1780). It uses stress there too if mean
-/// stresses are per cell (ElasticOperator::volume_by_cells).
+/// The fit uses the stress, whose cell means are more accurate than derived values (Zienkiewicz and Zhu, IJNME 33 (1992) 1331; with
+/// tractions, Blacker and Belytschko, ibid. 37 (1994) 517). For triangles and tetrahedra at a surface it uses the displacement, whose
+/// gradient keeps peaks at curved surfaces that face strains smooth (Naga and Zhang, SIAM J. Numer. Anal. 42 (2004) 1780). It uses stress
+/// there too if mean stresses are per cell (ElasticOperator::volume_by_cells).
 class StressRecovery {
  public:
   /// Keeps references to both. `plane_stress`: true if there is no stress across the plane.

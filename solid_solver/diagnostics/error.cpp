@@ -160,7 +160,7 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
   if (view_.now().steps == 0) return;
   if (!body_.is_dynamic() && !view_.stepper.step().is_last)
     find_displacement_error();  // a partner's load may be the last
-  const Heat* heat = body_.thermal() ? body_.thermal()->heat() : nullptr;
+  const Heat* heat = body_.temperature() ? body_.temperature()->heat() : nullptr;
   const bool is_heated = heat && !heat->is_steady() && body_.parameters().expansion;
   if (body_.is_dynamic() && !is_heated) parts.step = steps_.over_size();
   parts.misses_step = std::isnan(parts.step) && (body_.is_dynamic() || is_heated);

@@ -346,14 +346,13 @@ class NeglectedOfHeat final : public diagnostics::Diagnostic {
 
   void look(diagnostics::Report& report) override {
     const SolidParameters& p = view_.body.parameters();
-    const ThermalStrain& thermal = *view_.body.thermal();
-    const auto [low, high] = thermal.temperatures_seen();
+    const auto [low, high] = view_.body.temperature()->seen();
     const double reference = p.expansion.value_or(ThermalExpansion{}).reference_temperature;
     const double gradient = view_.fields.deformation(view_.fields.point_displacement()).gradient;
     largest_gradient_ = std::max(largest_gradient_, gradient);
     add(report, neglected_thermal_strain(p, largest_gradient_, high - low,
                                          std::max(std::abs(high - reference), std::abs(low - reference))));
-    if (const double number = thermal.coupling_number(); number > 0)
+    if (const double number = view_.body.thermal()->coupling_number(); number > 0)
       add(report, thermoelastic_coupling(p, number));
   }
 

@@ -78,7 +78,7 @@ void add_diagnostics(const SolidView& view, diagnostics::Diagnostics& all) {
   const bool is_small = !view.body.large_strain(), is_static = !view.body.is_dynamic();
   RunOfSolid run{view, is_small ? std::make_shared<StrainEnergy>(view) : nullptr,
                  !is_small && is_static ? std::make_shared<Stability>(view, all.is_full()) : nullptr,
-                 view.body.thermal() ? view.body.thermal()->heat() : nullptr};
+                 view.body.temperature() ? view.body.temperature()->heat() : nullptr};
   if (!has_finite_strain(view.body.parameters())) {
     run.buckling = std::make_shared<LinearBuckling>(view, all.is_full());
     run.large_strain = std::make_shared<LargeStrainChange>(view);

@@ -29,8 +29,7 @@ struct SolidSystem {
 struct EquilibriumLoad {
   std::span<const double> rows;   ///< b
   std::span<const double> known;  ///< columns of the operator; empty if zero
-  /// Known columns of the first guess, from which a linear first step leads to `known`; empty if the
-  /// guess already has them.
+  /// Known columns of the first guess, from which a linear first step leads to `known`; empty if the guess already has them.
   std::span<const double> before;
   double mass_factor = 0;  ///< m
   /// Use the stress that conserves energy and momenta from the accepted state on.
@@ -56,8 +55,7 @@ struct Displaced {
 class Equilibrium {
  public:
   virtual ~Equilibrium() = default;
-  /// `u`: first guess on entry. The residual of the statistics is relative at large strain. Throws SolveFailure;
-  /// `u` is then undefined.
+  /// `u`: first guess on entry. The residual of the statistics is relative at large strain. Throws SolveFailure; `u` is then undefined.
   virtual linalg::SolveStatistics find(const EquilibriumLoad& load, SolidSystem& system,
                                        std::span<double> u) = 0;
   /// Internal forces A(u); those of a follower pressure have the opposite sign.

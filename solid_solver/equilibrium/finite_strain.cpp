@@ -169,8 +169,7 @@ void FiniteStrain::predict_pressures(std::span<const double> change, std::span<c
   kernel_->accept_pressures();
 }
 
-/// Moves the body with its known columns by one linear step, because the first guess would make a jump in
-/// adjacent cells.
+/// Moves the body with its known columns by one linear step, because the first guess would make a jump in adjacent cells.
 void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::span<double> u) {
   std::vector<double> change(load.known.begin(), load.known.end());
   double size = 0;

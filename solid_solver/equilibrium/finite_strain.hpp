@@ -25,10 +25,9 @@ struct NewtonIterate {
   int linear = 0;       ///< iterations of the linear solver
 };
 
-/// Equilibrium of a body at large strain, including inertia: M m u + dE/du(u) = b. Uses Newton's method with
-/// the consistent tangent and a line search that keeps det F positive. The linear tolerance follows
-/// [eisenstat1996] (formula 2.6: eta = 0.9 (r/r_before)^2, between 1e-4 and 0.05). The residual may grow
-/// temporarily: a bending beam passes states with far larger membrane forces than at either end.
+/// Equilibrium of a body at large strain, including inertia: M m u + dE/du(u) = b. Uses Newton's method with the consistent tangent and a
+/// line search that keeps det F positive. The linear tolerance follows [eisenstat1996] (formula 2.6: eta = 0.9 (r/r_before)^2, between 1e-4
+/// and 0.05). The residual may grow temporarily: a bending beam passes states with far larger membrane forces than at either end.
 class FiniteStrain final : public LargeStrain {
  public:
   /// Throws Error for unsupported cases. Keeps references to mesh and rows. Collective.
@@ -46,9 +45,8 @@ class FiniteStrain final : public LargeStrain {
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
-  /// Sensitivity of a static equilibrium: relative change of the displacement if the whole body became
-  /// softer, over the relative softening. 1 for a linear body under loads, large near buckling. Prescribed
-  /// displacements do not respond and count as 1. Throws SolveFailure.
+  /// Sensitivity of a static equilibrium: relative change of the displacement if the whole body became softer, over the relative softening.
+  /// 1 for a linear body under loads, large near buckling. Prescribed displacements do not respond and count as 1. Throws SolveFailure.
   double softness(std::span<const double> unknowns, std::span<const double> known);
   /// Smallest x . K x of the tangent K at an equilibrium, over that of `elastic`. 1 without load, negative if
   /// unstable (an upper bound, and so a proof). 1 also for follower pressures on a surface with a free rim,
@@ -86,8 +84,7 @@ class FiniteStrain final : public LargeStrain {
   void search_path(PathSearch& path, std::span<double> u, double change, double most);
   void leave(PathSearch& path, TangentSolver& solver, std::span<double> u);
   void correct(PathSearch& path, TangentSolver& solver, std::span<double> u);
-  /// Residual over the load at which round-off ended the iteration. Reports a large one once; 0 without load.
-  /// Collective.
+  /// Residual over the load at which round-off ended the iteration. Reports a large one once; 0 without load. Collective.
   double judge_rounding(const Load& load, double scale, double left);
   TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia,
                             const Pressing* pressing = nullptr);

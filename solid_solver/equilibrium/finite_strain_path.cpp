@@ -225,8 +225,7 @@ double FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::spa
   return least;
 }
 
-/// K(u)^-1 times the change of load from the equilibrium `before` to `u`, which is the residual of `before`
-/// under the new load.
+/// K(u)^-1 times the change of load from the equilibrium `before` to `u`, which is the residual of `before` under the new load.
 std::vector<double> FiniteStrain::backward_motion(const Load& load, std::span<const double> before,
                                                   std::span<const double> u) {
   TangentSolver& solver = solver_for(0, {});

@@ -29,8 +29,7 @@ class LargeStrain : public Equilibrium {
 
   /// Name for the log.
   virtual std::string name() const = 0;
-  /// Sets the pressures that remain normal to the moving surface and so are part of A [Pa], one value per
-  /// boundary face of owned cells.
+  /// Sets the pressures that remain normal to the moving surface and so are part of A [Pa], one value per boundary face of owned cells.
   virtual void set_pressure(std::vector<double> of_faces) = 0;
   /// Resultant of the pressures at the last evaluated state on this rank [N].
   virtual Vec3 pressure_force() const = 0;
@@ -59,10 +58,9 @@ double rounding_of_motion(const mesh::Mesh& mesh, const elastic::ElasticOperator
 /// Describes the face with the smallest det F of all ranks. `face`: a face of this rank, or -1. Collective.
 std::string worst_cell(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double ratio, Index face);
 
-/// Reports a free face next to a fixed one that has moved beyond the plane of the fixed one. A compressed
-/// bonded block folds onto its platens there, the earlier the finer the mesh, but contact with them is not
-/// modeled. Returns a description with the patch and the distance; empty if there is none. `displacement`: returns the
-/// displacement of a local node (cells, then boundary faces). Collective.
+/// Reports a free face next to a fixed one that has moved beyond the plane of the fixed one. A compressed bonded block folds onto its
+/// platens there, the earlier the finer the mesh, but contact with them is not modeled. Returns a description with the patch and the
+/// distance; empty if there is none. `displacement`: returns the displacement of a local node (cells, then boundary faces). Collective.
 std::string folded_support(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                            const std::function<Vec3(Index)>& displacement);
 

@@ -82,8 +82,7 @@ class ContactNewton {
     return norm(p_.comm, r_);
   }
 
-  /// Newton's method for the current multipliers. Returns the number of corrections, zero for a converged
-  /// rigid seat.
+  /// Newton's method for the current multipliers. Returns the number of corrections, zero for a converged rigid seat.
   int equilibrate() {
     double size = residual();
     int i = 0;

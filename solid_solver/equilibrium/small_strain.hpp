@@ -10,7 +10,7 @@
 #include "solid_solver/equilibrium/equilibrium.hpp"
 #include "solid_solver/method/solution_method.hpp"
 #include "solid_solver/parameters/parameters.hpp"
-#include "solid_solver/thermal/thermal_strain.hpp"
+#include "solid_solver/thermal/thermal_load.hpp"
 
 namespace couplet::solid {
 
@@ -25,10 +25,9 @@ struct ContactProblem {
   int most_iterations;            ///< of the linear solver
 };
 
-/// Semi-smooth Newton method [hueber2005]. The forces derive from a convex energy, so with exact line search
-/// it converges at any stiffness. The tangent K + C^T k C is solved by CG with the preconditioner of K. A
-/// body clear of the seat is solved by the method of K and checked once. `u`: first guess on entry. Throws
-/// SolveFailure. Collective.
+/// Semi-smooth Newton method [hueber2005]. The forces derive from a convex energy, so with exact line search it converges at any stiffness.
+/// The tangent K + C^T k C is solved by CG with the preconditioner of K. A body clear of the seat is solved by the method of K and checked
+/// once. `u`: first guess on entry. Throws SolveFailure. Collective.
 linalg::SolveStatistics solve_with_contact(const ContactProblem& problem, std::span<const double> b,
                                            std::span<double> u);
 
@@ -40,7 +39,7 @@ class SmallStrain final : public Equilibrium {
  public:
   /// Keeps references.
   SmallStrain(const mesh::Mesh& mesh, const elastic::ElasticKernel& kernel,
-              const elastic::ElasticOperator& rows, const std::unique_ptr<ThermalStrain>& thermal,
+              const elastic::ElasticOperator& rows, const std::unique_ptr<ThermalLoad>& thermal,
               const SolidParameters& parameters)
       : mesh_(mesh), kernel_(kernel), rows_(rows), thermal_(thermal), parameters_(parameters) {}
 
@@ -57,7 +56,7 @@ class SmallStrain final : public Equilibrium {
   const mesh::Mesh& mesh_;
   const elastic::ElasticKernel& kernel_;
   const elastic::ElasticOperator& rows_;
-  const std::unique_ptr<ThermalStrain>& thermal_;  // created after it; nullptr without temperature
+  const std::unique_ptr<ThermalLoad>& thermal_;  // created after it; nullptr without temperature
   const SolidParameters& parameters_;
 };
 

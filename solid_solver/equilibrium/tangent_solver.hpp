@@ -14,16 +14,14 @@
 
 namespace couplet::solid {
 
-/// Solves K(u) du = r for the tangent of a deformed body by CG. The preconditioner is the compact
-/// component-wise operator of the undeformed body, applied in frames that rotate with the cells. Bodies that
-/// are not small add the rigid motions of aggregates in their present position. That operator is unsuitable
-/// near incompressibility, so small bodies use factors of the tangent itself, recomputed when older ones are
-/// no longer good enough.
+/// Solves K(u) du = r for the tangent of a deformed body by CG. The preconditioner is the compact component-wise operator of the undeformed
+/// body, applied in frames that rotate with the cells. Bodies that are not small add the rigid motions of aggregates in their present
+/// position. That operator is unsuitable near incompressibility, so small bodies use factors of the tangent itself, recomputed when older
+/// ones are no longer good enough.
 class TangentSolver {
  public:
   enum class By { frames, factors };
-  /// `node_inertia`: mass factor times mass of the unknown nodes [N/m]; empty if static. Keeps references.
-  /// Collective.
+  /// `node_inertia`: mass factor times mass of the unknown nodes [N/m]; empty if static. Keeps references. Collective.
   TangentSolver(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, elastic::FiniteKernel& kernel,
                 double mass_factor, std::span<const double> node_inertia, By by);
 
@@ -32,8 +30,7 @@ class TangentSolver {
   void meet(const Pressing* pressing) { pressing_ = pressing; }
   /// Discards factors for a new load or step, so that a restarted run is identical.
   void forget_factors() { factors_.reset(); }
-  /// Updates the frames, and with `with_modes` the rigid motions, to the last linearise() of the kernel.
-  /// Collective.
+  /// Updates the frames, and with `with_modes` the rigid motions, to the last linearise() of the kernel. Collective.
   void follow(bool with_modes);
   /// Returns the correction in du. Throws SolveFailure. Collective.
   linalg::SolveStatistics solve(std::span<const double> r, std::span<double> du, double relative_tolerance,

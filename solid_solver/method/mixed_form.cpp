@@ -17,16 +17,14 @@ namespace couplet::solid {
 
 namespace {
 
-// Empirical scales of the elastic part (2-D: Cook's membrane, 8 to 64 cells per side; 3-D: elliptic plate; nu
-// 1/3 to 0.4999).
+// Empirical scales of the elastic part (2-D: Cook's membrane, 8 to 64 cells per side; 3-D: elliptic plate; nu 1/3 to 0.4999).
 constexpr double elastic_of_gradients(int dim) { return dim == 2 ? 1.5 : 1; }
 constexpr double elastic_of_faces(int dim) { return dim == 2 ? 3 : 2; }
 // Weight of p relative to its gradient times the cell size, squared; constants have no gradient.
 constexpr double of_values = 0.01;
 // Factor for free faces, where p does more work than between cells.
 constexpr double free_face = 2;
-// Tolerance of CG with multigrid in 3-D, where factors fill quickly (37 000 hexahedra: 545 MB). It costs a
-// fifth more outer iterations.
+// Tolerance of CG with multigrid in 3-D, where factors fill quickly (37 000 hexahedra: 545 MB). It costs a fifth more outer iterations.
 constexpr double close_enough = 0.01;
 // Inertia over mu V/h^2 from which a step counts as short.
 constexpr double inertia_rules = 0.1;

@@ -13,15 +13,13 @@
 
 namespace couplet::solid {
 
-/// Approximate inverse of the Schur complement S = V/K_P + B (K' + mM)^-1 B^T. Uses one scalar matrix per
-/// rank, made once (factors in 2-D, CG with multigrid in 3-D). V/mu, as for stable elements in Stokes flow,
-/// works only for smooth pressures: B^T p uses face means p_f, so pressures alternating between cells (rows,
-/// checkerboards) do almost no work, and with V/mu the iterations grow with the mesh.
+/// Approximate inverse of the Schur complement S = V/K_P + B (K' + mM)^-1 B^T. Uses one scalar matrix per rank, made once (factors in 2-D,
+/// CG with multigrid in 3-D). V/mu, as for stable elements in Stokes flow, works only for smooth pressures: B^T p uses face means p_f, so
+/// pressures alternating between cells (rows, checkerboards) do almost no work, and with V/mu the iterations grow with the mesh.
 ///
-/// Quadrilaterals, hexahedra, prisms: S ~ V [s mu L + m rho V]^-1 W + V/K_P, where W is the cell part of B^T
-/// (the Gauss gradient of p_f) squared over V, and L the two-point Laplacian, which equals W only for smooth
-/// p (commutators as in [elman2006], inertia as in [cahouet1988]). Triangles and tetrahedra, if inertia does
-/// not dominate: S ~ sum_f V_f/(s mu) p_f^2 + V/K_P.
+/// Quadrilaterals, hexahedra, prisms: S ~ V [s mu L + m rho V]^-1 W + V/K_P, where W is the cell part of B^T (the Gauss gradient of p_f)
+/// squared over V, and L the two-point Laplacian, which equals W only for smooth p (commutators as in [elman2006], inertia as in
+/// [cahouet1988]). Triangles and tetrahedra, if inertia does not dominate: S ~ sum_f V_f/(s mu) p_f^2 + V/K_P.
 class PressureSchur {
  public:
   explicit PressureSchur(const SolidProblem& problem);
@@ -44,10 +42,9 @@ class PressureSchur {
 /// Symmetric operator with the mean stresses p of its cells as additional unknowns [boffi2013],
 ///   [ K' + mM    B^T   ] [u]   [b]
 ///   [    B     -V / K_P] [p] = [0].
-/// The iterations hardly grow as nu goes to 1/2, whereas those of CG on K = K' + B^T (K_P/V) B diverge. The
-/// preconditioner is block triangular: PressureSchur for p, and the compact component-wise operator of K' +
-/// mM (ElasticPreconditioner) for u. p is not part of the state. The stress of u is K_P theta, so residuals
-/// of volume rows are weighted by it.
+/// The iterations hardly grow as nu goes to 1/2, whereas those of CG on K = K' + B^T (K_P/V) B diverge. The preconditioner is block
+/// triangular: PressureSchur for p, and the compact component-wise operator of K' + mM (ElasticPreconditioner) for u. p is not part of the
+/// state. The stress of u is K_P theta, so residuals of volume rows are weighted by it.
 class MixedForm final : public SolutionMethod {
  public:
   MixedForm(const SolidProblem& problem, const MethodParameters& parameters);

@@ -84,9 +84,8 @@ elastic::DeformedBody at_rest(const mesh::Mesh& mesh) {
 NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
     : problem_(problem), options_{parameters.relative_tolerance, parameters.max_iterations, true} {
   using Preconditioner = MethodParameters::Preconditioner;
-  // In a small step the right-hand side is mostly inertia, rho V u 4/dt^2, and its residual would act as a
-  // force. The energy of free vibration drifted by 4e-3 in 1e5 steps at an elastic Courant number of 0.01.
-  // The tolerance therefore refers to the elastic part.
+  // In a small step the right-hand side is mostly inertia, rho V u 4/dt^2, and its residual would act as a force. The energy of free
+  // vibration drifted by 4e-3 in 1e5 steps at an elastic Courant number of 0.01. The tolerance therefore refers to the elastic part.
   options_.relative_tolerance =
       std::max(finest_tolerance, options_.relative_tolerance / std::max(1., heaviness(problem)));
   if (!problem.is_static()) options_.carried = steps_carried;

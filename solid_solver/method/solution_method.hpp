@@ -15,8 +15,7 @@
 
 namespace couplet::solid {
 
-/// Linear system (diag(inertia) + A) u = b with the rows and unknowns of ElasticOperator. All references must
-/// outlive the method.
+/// Linear system (diag(inertia) + A) u = b with the rows and unknowns of ElasticOperator. All references must outlive the method.
 struct SolidProblem {
   const mesh::Mesh& mesh;
   const elastic::ElasticOperator& elastic;

@@ -46,10 +46,10 @@ void SolidSurfaces::write(double time, std::span<const double> points, std::span
   fields.add("traction", "Pa", Place::cells, dim, std::move(traction));
   fields.add_tensor("stress", "Pa", Place::points, dim, stress);
   fields.add("equivalent-stress", "Pa", Place::points, 1, std::move(equivalent));
-  if (const ThermalStrain* thermal = body_.thermal()) {
-    fields.add("temperature", "K", Place::points, 1, thermal->point_temperature());
-    if (thermal->heat())
-      fields.add("heat-flux", "W/m^2", Place::cells, 1, thermal->heat()->boundary_inflow());
+  if (const TemperatureField* temperature = body_.temperature()) {
+    fields.add("temperature", "K", Place::points, 1, temperature->of_points());
+    if (temperature->heat())
+      fields.add("heat-flux", "W/m^2", Place::cells, 1, temperature->heat()->boundary_inflow());
   }
   for (std::size_t i = 0; i < series_.patches().size(); ++i) series_.write(i, time, places, fields.list);
 }
@@ -120,9 +120,9 @@ void SolidOutput::write_volume(double time, std::span<const double> points, std:
     fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, derived_.cell_strain(points)));
   if (chosen.point_stress)
     fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
-  if (const ThermalStrain* thermal = body_.thermal()) {
-    fields.add("temperature", "K", Place::points, 1, thermal->point_temperature());
-    fields.add("cell-temperature", "K", Place::cells, 1, thermal->cell_temperature());
+  if (const TemperatureField* temperature = body_.temperature()) {
+    fields.add("temperature", "K", Place::points, 1, temperature->of_points());
+    fields.add("cell-temperature", "K", Place::cells, 1, temperature->of_cells());
   }
   fields_->write(time, places, fields.list);
 }

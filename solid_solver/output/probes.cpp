@@ -112,7 +112,7 @@ void SolidProbes::add_columns(const std::string& probe, const std::string& field
     for (const char* i : {"1", "2", "3"}) columns_.push_back(probe + " principal-stress-" + i + " [Pa]");
     return;
   }
-  if (!body_.thermal())
+  if (!body_.temperature())
     throw Error("probes: the field '{}' is requested, but nothing in this scene computes it.", field);
   columns_.push_back(probe + " temperature [K]");
 }
@@ -155,7 +155,7 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
           values.assign(principal.begin(), principal.end());
         }
       } else {
-        values = watched.probe.sample(body_.thermal()->point_temperature(), 1);
+        values = watched.probe.sample(body_.temperature()->of_points(), 1);
       }
       row.insert(row.end(), values.begin(), values.end());
     }

@@ -20,12 +20,10 @@ namespace couplet::solid {
 /// hundredth of the initial residual. Boundary unknowns follow from their own rows.
 class ScalarSystems {
  public:
-  /// `inertia`: inertia of each owned cell [N/m], empty if static. Keeps references to mesh (reference geometry) and
-  /// rows. Collective.
+  /// `inertia`: inertia of each owned cell [N/m], empty if static. Keeps references to mesh (reference geometry) and rows. Collective.
   ScalarSystems(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows,
                 std::span<const double> inertia);
-  /// Computes the correction `step` for a residual, both packed as the rows. Returns the iterations.
-  /// Collective.
+  /// Computes the correction `step` for a residual, both packed as the rows. Returns the iterations. Collective.
   int find_step(std::span<const double> residual, std::span<double> step);
 
  private:
@@ -47,9 +45,8 @@ std::string segregated_name(const MethodParameters& parameters);
 /// Acceleration of the outer iterations.
 linalg::Acceleration acceleration_of(const MethodParameters& parameters);
 
-/// Segregated method of the thesis. Each outer iteration solves one scalar system per displacement component
-/// (ScalarSystems); the other terms use the last iterate. Outer iterations are plain, or accelerated by
-/// Aitken (2.70) or Anderson.
+/// Segregated method of the thesis. Each outer iteration solves one scalar system per displacement component (ScalarSystems); the other
+/// terms use the last iterate. Outer iterations are plain, or accelerated by Aitken (2.70) or Anderson.
 class Segregated final : public SolutionMethod {
  public:
   Segregated(const SolidProblem& problem, const MethodParameters& parameters);

@@ -230,8 +230,7 @@ double UpdatedLagrangian::residual(const EquilibriumLoad& load, std::span<const 
 
 std::string UpdatedLagrangian::where_worst() const { return worst_cell(mesh_, geometry_, least_, worst_); }
 
-/// Moves the body with its known columns as a linear one, because the first guess would make a jump in
-/// adjacent cells.
+/// Moves the body with its known columns as a linear one, because the first guess would make a jump in adjacent cells.
 void UpdatedLagrangian::follow_known(const EquilibriumLoad& load, std::span<double> u) {
   std::vector<double> change(load.known.begin(), load.known.end());
   for (std::size_t i = 0; i < change.size(); ++i) change[i] -= load.before[i];

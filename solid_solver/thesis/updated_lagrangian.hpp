@@ -15,8 +15,7 @@
 
 namespace couplet::solid {
 
-/// The thesis's operators on a displaced body: the same mesh with moved vertices, steps 5 to 7 of the
-/// algorithm in thesis 2.7.1.
+/// The thesis's operators on a displaced body: the same mesh with moved vertices, steps 5 to 7 of the algorithm in thesis 2.7.1.
 class UpdatedFrame {
  public:
   /// `rows`: conditions and constants of the undeformed body. Keeps a reference to the mesh. Collective.

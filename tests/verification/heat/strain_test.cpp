@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thermal strain that must be exact: free and constrained bodies at a uniform temperature.
 #include "common/io/checkpoint.hpp"
-#include "solid_solver/thermal/thermal_strain.hpp"
+#include "solid_solver/thermal/thermal_load.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing::strain_test {
@@ -221,7 +221,7 @@ TEST(ThermoelasticCoupling, a_stretched_body_cools_and_a_compressed_one_warms) {
     for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, {u, "0", "0"});
     const auto solid = make_solid(distorted_box(BoxCells::mixed), p);
     for (int i = 0; i < 22; ++i) step(*solid, 0.05);
-    const auto& effect = *solid->body().thermal();
+    auto& effect = *solid->body().thermal();
     // (3 K alpha)^2 T / ((lambda + 2 mu) rho c), thesis (2.27); here 3 K alpha = E alpha / (1 - 2 nu).
     const double stress_per_kelvin = modulus * alpha / (1 - 2 * nu),
                  stiffness = modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
@@ -229,7 +229,7 @@ TEST(ThermoelasticCoupling, a_stretched_body_cools_and_a_compressed_one_warms) {
                 stress_per_kelvin * stress_per_kelvin * 300 / (stiffness * 7800 * 480), 1e-4);
     const double rate = modulus / (1 - 2 * nu) * alpha / (7800 * 480);
     const double exact = 300 * (std::exp(-rate * strain) - 1);
-    const std::vector<double>& t = effect.heat()->accepted().cells;
+    const std::vector<double>& t = effect.temperature().heat()->accepted().cells;
     double error = 0;
     for (Index c = 0; c < solid->body().mesh().cells.n_owned(); ++c)
       error = std::max(error, std::abs((t[c] - 300) / exact - 1));
@@ -260,8 +260,8 @@ TEST(ThermoelasticCoupling, of_a_sheet_in_plane_stress_counts_its_own_expansion)
   const double sheet = modulus / (1 - nu), bulk = modulus / (1 - 2 * nu);  // 3 K
   const double exact =
       -large * 300 * sheet * strain / (capacity + large * large * 300 * (3 * bulk - 2 * sheet));
-  const auto& effect = *solid->body().thermal();
-  const std::vector<double>& t = effect.heat()->accepted().cells;
+  auto& effect = *solid->body().thermal();
+  const std::vector<double>& t = effect.temperature().heat()->accepted().cells;
   for (Index c = 0; c < solid->body().mesh().cells.n_owned(); ++c)
     ASSERT_NEAR((t[c] - 300) / exact, 1, 2e-3) << c;
 }

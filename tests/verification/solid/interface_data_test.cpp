@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pressure and temperature taken at an interface patch: a box that expands and is pressed, whose displacement
 // is linear in space and therefore exact.
-#include "solid_solver/thermal/thermal_strain.hpp"
+#include "solid_solver/thermal/temperature_field.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::interface_data_test {
@@ -168,7 +168,7 @@ TEST(InterfaceData, the_solid_has_the_given_temperature_along_the_interface) {
     in["temperature"][f] = 300 + 40 * interface.face_centres[f].y();
   take(*solid, in);
   int found = 0;
-  const std::vector<double> points = solid->body().thermal()->point_temperature();
+  const std::vector<double> points = solid->body().temperature()->of_points();
   const auto& places = solid->body().geometry().points;
   for (std::size_t v = 0; v < points.size(); ++v, ++found)
     if (places[v].y() > 0.2 && places[v].y() < 0.8) {
