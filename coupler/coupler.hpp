@@ -94,7 +94,7 @@ class Coupler {
   Pass pass_;
   SchemeChoice scheme_;
   std::unique_ptr<Accelerator> accelerator_;  // nullptr with one pass per step
-  History history_;                           // of accepted steps; empty until all data have been given
+  CouplingHistory history_;                   // of accepted steps; empty until all data have been given
   FixedPointResult last_;                     // of the step just solved
   double last_dt_ = 0;
   long iterations_ = 0;

@@ -15,7 +15,7 @@ int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters
   coupler::CouplingParameters parameters = read.in_force();
   parameters.loads_at_rest = job.has_linear_structures();
   std::vector<std::unique_ptr<coupling::Channel>> channels;
-  for (const app::Member& m : job.members)
+  for (const app::JobMember& m : job.members)
     if (m.participant != app::coupler_name)
       channels.push_back(
           std::make_unique<coupling::MpiChannel>(m.participant, job.connect(m.participant), job.comm));

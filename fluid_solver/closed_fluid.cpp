@@ -62,7 +62,7 @@ void check_walls_at_rest(const Fluid<D>& fluid, std::span<const Vec3> points, do
   for (std::size_t v = 0; v < points.size(); ++v) largest = std::max(largest, (points[v] - before[v]).norm());
   largest = parallel::max(mesh.comm, largest);
   for (const mesh::Patch& patch : mesh.patches) {
-    const Condition& condition = condition_of(fluid.parameters().boundaries.at(patch.name));
+    const FlowCondition& condition = condition_of(fluid.parameters().boundaries.at(patch.name));
     const bool rests =
         condition.velocity == GivenBy::rest || (condition.velocity == GivenBy::structure && !coupled);
     if (!condition.wall || !rests) continue;

@@ -52,9 +52,9 @@ struct Distortion {
   }
 
   /// b_k . d2W/dF2 . b_l for the columns of `b`; it may be negative.
-  struct Curvature {
+  struct SecondDerivative {
     Matrix b, a, c, ac;
-    Curvature(const Matrix& f, const Matrix& columns)
+    SecondDerivative(const Matrix& f, const Matrix& columns)
         : b(columns), a(f.inverse().transpose() * f.inverse()), c(f.inverse().transpose() * b), ac(a * c) {}
     Matrix operator()(int k, int l) const {
       return 2 * (b.col(k).dot(b.col(l)) * Matrix::Identity() + c.col(k).dot(c.col(l)) * a +

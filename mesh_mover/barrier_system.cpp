@@ -307,7 +307,7 @@ void BarrierSystem::add_simplices(std::span<const double> u, std::span<const dou
         }
     };
     if (hessian == Hessian::exact) {
-      set(typename Distortion<D>::Curvature(f, inverse.transpose()));
+      set(typename Distortion<D>::SecondDerivative(f, inverse.transpose()));
     } else {
       const auto t = Distortion<D>::tangent(f);
       const Matrix gradients = t.v.transpose() * inverse.transpose();  // of corners 1 .. D, turned
@@ -370,7 +370,7 @@ void BarrierSystem::finish_rows(std::vector<double>& residual) {
 Vec3 BarrierSystem::worst_place(std::span<const double> u) const {
   const auto [simplex, energy] = dim_ == 2 ? worst_here(SimplexEdges<2>{mesh_, geometry_, simplices_}, u)
                                            : worst_here(SimplexEdges<3>{mesh_, geometry_, simplices_}, u);
-  struct Entry {
+  struct EnergyPoint {
     double energy;
     std::array<double, 3> place{};
   } here{energy};
@@ -379,8 +379,8 @@ Vec3 BarrierSystem::worst_place(std::span<const double> u) const {
     for (int c = 0; c < dim_; ++c)
       here.place[c] += (geometry_.points[v][c] + u[std::size_t(v) * dim_ + c]) / (dim_ + 1);
   }
-  const std::vector<Entry> all = parallel::all_gather(mesh_.comm, std::vector<Entry>{here});
-  const Entry& worst = *std::ranges::max_element(all, {}, &Entry::energy);
+  const std::vector<EnergyPoint> all = parallel::all_gather(mesh_.comm, std::vector<EnergyPoint>{here});
+  const EnergyPoint& worst = *std::ranges::max_element(all, {}, &EnergyPoint::energy);
   return {worst.place[0], worst.place[1], worst.place[2]};
 }
 

@@ -247,7 +247,7 @@ void Laplacian::make_shapes(int c) {
     mesh_.cells.update_ghosts(cells, dim_);
     interpolate(c, prescribed, cells, points);
     mesh_.points.update_ghosts(points, dim_);
-    Shape& shape = shapes_[c].emplace_back();
+    MotionShape& shape = shapes_[c].emplace_back();
     for (std::size_t i = c; i < cells.size(); i += dim_) shape.cells.push_back(cells[i]);
     for (std::size_t i = c; i < points.size(); i += dim_) shape.points.push_back(points[i]);
   }

@@ -28,15 +28,15 @@ bool least_is_worst(int measure) {
 
 /// Extreme value over all ranks; ties go to the lowest cell number. Collective.
 void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
-  struct Entry {
+  struct ExtremeCell {
     double value, number;
     double x, y, z;
   };
   const double none = least_is_worst(measure) ? std::numeric_limits<double>::infinity() : -1;
-  const Entry here{any_here ? worst.value : none, static_cast<double>(worst.cell), worst.place.x(),
-                   worst.place.y(), worst.place.z()};
-  const std::vector<Entry> all = parallel::all_gather(comm, std::vector<Entry>{here});
-  const Entry& best = *std::ranges::min_element(all, [&](const Entry& a, const Entry& b) {
+  const ExtremeCell here{any_here ? worst.value : none, static_cast<double>(worst.cell), worst.place.x(),
+                         worst.place.y(), worst.place.z()};
+  const std::vector<ExtremeCell> all = parallel::all_gather(comm, std::vector<ExtremeCell>{here});
+  const ExtremeCell& best = *std::ranges::min_element(all, [&](const ExtremeCell& a, const ExtremeCell& b) {
     if (a.value != b.value) return least_is_worst(measure) ? a.value < b.value : a.value > b.value;
     return a.number < b.number;
   });

@@ -86,11 +86,11 @@ class Laplacian final : public MotionMethod {
   std::vector<double> weight_;       // per entry of around_.index
   std::array<std::shared_ptr<Equation>, 3> equation_;
   std::vector<double> cell_displacement_;  // dim per local cell; also the next initial guess
-  struct Shape {
+  struct MotionShape {
     std::vector<double> cells, points;  // per local cell and point
   };
-  std::array<std::unique_ptr<AffineFit>, 3> fit_;  // of the moved points, per component
-  std::array<std::vector<Shape>, 3> shapes_;       // per component, empty if not needed so far
+  std::array<std::unique_ptr<AffineFit>, 3> fit_;   // of the moved points, per component
+  std::array<std::vector<MotionShape>, 3> shapes_;  // per component, empty if not needed so far
   linalg::SolveStatistics last_;
 };
 

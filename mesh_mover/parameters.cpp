@@ -5,7 +5,7 @@ namespace couplet::mesh_mover {
 
 namespace {
 
-void declare_boundary(config::Section& s, Boundary& b) {
+void declare_boundary(config::Section& s, PatchMotion& b) {
   const auto nothing = [](config::Section&) {};
   s.variant(
       "type", b.motion,
@@ -78,8 +78,8 @@ void declare(config::Section& section, Parameters& p) {
   section.section(
       "guard", [&p](config::Section& g) { declare_guard(g, p.guard); },
       "further limits; a motion beyond one is rejected with the cell and its location, so the step is halved");
-  section.map<Boundary>("boundaries", p.boundaries, declare_boundary, "patch",
-                        "motion of the points of each patch of the mesh; every patch needs an entry");
+  section.map<PatchMotion>("boundaries", p.boundaries, declare_boundary, "patch",
+                           "motion of the points of each patch of the mesh; every patch needs an entry");
   section.section(
       "linear-solver",
       [&](config::Section& s) {

@@ -26,7 +26,7 @@ inline bool is_given(BoundaryMotion m) {
   return m == BoundaryMotion::interface || m == BoundaryMotion::moving;
 }
 
-struct Boundary {
+struct PatchMotion {
   BoundaryMotion motion = BoundaryMotion::fixed;
   fv::MotionParameters prescribed;  ///< of `moving`
   std::string partner;              ///< of `periodic`
@@ -57,7 +57,7 @@ struct Parameters {
   /// Pseudo-solid only.
   double poisson_ratio = 0;
   QualityLimits guard;
-  std::map<std::string, Boundary> boundaries;
+  std::map<std::string, PatchMotion> boundaries;
   linalg::LinearOptions linear{
       .method = linalg::LinearMethod::direct_symmetric, .relative_tolerance = 1e-10, .max_iterations = 500};
 };

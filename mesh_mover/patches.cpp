@@ -37,7 +37,7 @@ MovingPatches::MovingPatches(const mesh::Mesh& mesh, const mesh::Geometry& geome
                              const Parameters& parameters)
     : mesh_(mesh), geometry_(geometry) {
   for (const mesh::Patch& patch : mesh.patches) {
-    const Boundary& boundary = parameters.boundaries.at(patch.name);
+    const PatchMotion& boundary = parameters.boundaries.at(patch.name);
     if (boundary.motion == BoundaryMotion::moving)
       patches_.push_back(
           {patch.name, points_of(mesh, patch), fv::PrescribedMotion(boundary.prescribed, mesh.dim)});
@@ -178,7 +178,7 @@ CurvedSlide::CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
     Curved curved;
     curved.points = points_of(mesh, patch);
     std::erase_if(curved.points, [&](Index v) { return held[v] != 0; });
-    std::vector<Part> mine;
+    std::vector<SurfacePiece> mine;
     const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
       const Vec3 centre = (a + b + c) / 3;
       mine.push_back(
@@ -191,7 +191,7 @@ CurvedSlide::CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
       for (std::size_t i = 2; i < v.size(); ++i) add(x(0), x(i - 1), x(i));
     }
     std::vector<double> flat_parts;
-    for (const Part& part : mine)
+    for (const SurfacePiece& part : mine)
       for (const Vec3& corner : {part.a, part.b, part.c})
         flat_parts.insert(flat_parts.end(), corner.data(), corner.data() + 3);
     const std::vector<double> all = parallel::all_gather(mesh.comm, flat_parts);
@@ -207,7 +207,7 @@ CurvedSlide::CurvedSlide(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
 Vec3 CurvedSlide::nearest(const Curved& patch, const Vec3& x) const {
   Vec3 best = x;
   double least = std::numeric_limits<double>::infinity();
-  for (const Part& part : patch.parts) {
+  for (const SurfacePiece& part : patch.parts) {
     const double reach = least + part.radius;
     if ((part.centre - x).squaredNorm() >= reach * reach) continue;
     const auto consider = [&](const auto& nearest) {

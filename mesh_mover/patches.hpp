@@ -83,13 +83,13 @@ class CurvedSlide {
   void put_back(std::vector<double>& displacement) const;
 
  private:
-  struct Part {  // segment or triangle within `radius` of `centre`
+  struct SurfacePiece {  // segment or triangle within `radius` of `centre`
     Vec3 a, b, c, centre;
     double radius;
   };
   struct Curved {
-    std::vector<Index> points;  // local
-    std::vector<Part> parts;    // of all ranks
+    std::vector<Index> points;        // local
+    std::vector<SurfacePiece> parts;  // of all ranks
   };
   Vec3 nearest(const Curved& patch, const Vec3& x) const;
 

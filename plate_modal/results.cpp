@@ -58,7 +58,7 @@ SurfacePlace nearest_place(const modes::ModalModel& model, const Vec3& point) {
     const auto corners = model.faces[f];
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
       const std::array<Index, 3> v{corners[0], corners[i], corners[i + 1]};
-      const base::Nearest<3> nearest =
+      const base::NearestPoint<3> nearest =
           base::nearest_on_triangle(model.vertices[v[0]], model.vertices[v[1]], model.vertices[v[2]], point);
       if (nearest.distance >= best.distance) continue;
       best = {{v.begin(), v.end()}, {nearest.weights.begin(), nearest.weights.end()}, nearest.distance};
@@ -226,7 +226,7 @@ void PlateResults::write_energies(double time) {
 }
 
 void PlateResults::write_contact(double time) {
-  Contact::Result seat;
+  Contact::ContactResult seat;
   structure_.contact()->look(structure_.state().q, seat);
   series(contact_, "contact.csv", {"time [s]", "force [N]", "penetration [m]", "energy [J]"})
       .row(std::vector<double>{time, seat.total, seat.penetration, seat.energy});

@@ -85,7 +85,7 @@ Structure::~Structure() = default;
 void Structure::refuse_wound_springs() const {
   double size = 0;
   for (const Vec3& x : surface_.centres()) size = std::max(size, (x - surface_.centres().front()).norm());
-  const Contact::Place place = contact_->deepest(state_.q);
+  const Contact::DeepestPoint place = contact_->deepest(state_.q);
   if (place.depth <= 1e-9 * size) return;
   throw Error(
       "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower "

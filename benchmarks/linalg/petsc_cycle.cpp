@@ -18,8 +18,8 @@ struct Component {
   ::Vec b = nullptr, x = nullptr;
 };
 
-Component component_of(const ComponentMultigrid::Rows& rows, const ComponentMultigrid::Options& options,
-                       int c) {
+Component component_of(const ComponentMultigrid::Rows& rows,
+                       const ComponentMultigrid::MultigridOptions& options, int c) {
   Component made;
   const PetscInt n = rows.size();
   const auto number = [&](Index i) { return static_cast<PetscInt>(options.map->global(i)); };
@@ -52,7 +52,7 @@ Component component_of(const ComponentMultigrid::Rows& rows, const ComponentMult
 }  // namespace
 
 elastic::ComponentCycle petsc_cycle(ComponentMultigrid::Rows rows,
-                                    const ComponentMultigrid::Options& options) {
+                                    const ComponentMultigrid::MultigridOptions& options) {
   auto components = std::make_shared<std::vector<Component>>();
   for (int c = 0; c < ComponentMultigrid::lanes; ++c) {
     float off = 0;  // unused lanes are empty

@@ -7,6 +7,6 @@ namespace couplet::benchmark {
 
 /// Replaces ComponentMultigrid by a PETSc preconditioner per component (options without prefix). Collective.
 elastic::ComponentCycle petsc_cycle(linalg::ComponentMultigrid::Rows rows,
-                                    const linalg::ComponentMultigrid::Options& options);
+                                    const linalg::ComponentMultigrid::MultigridOptions& options);
 
 }  // namespace couplet::benchmark

@@ -211,7 +211,7 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
     job.members = members(attendants);
     const int world_rank = parallel::comm_rank(MPI_COMM_WORLD);
     int color = 0, rank = 0;
-    for (const Member& m : job.members)
+    for (const JobMember& m : job.members)
       if (m.participant == file.participant) color = int(&m - job.members.data());
     for (const Attendant& a : attendants)
       rank += a.participant == file.participant && a.world_rank < world_rank;
@@ -262,15 +262,15 @@ int attend(const CommandLine& command_line, const Program& program, const CaseFi
 
 }  // namespace
 
-const Member* Job::find(const std::string& participant) const {
-  for (const Member& m : members)
+const JobMember* Job::find(const std::string& participant) const {
+  for (const JobMember& m : members)
     if (m.participant == participant) return &m;
   return nullptr;
 }
 
 bool Job::has_linear_structures() const {
   bool found = false;
-  for (const Member& m : members) {
+  for (const JobMember& m : members) {
     if (m.program != "solid_solver" && m.program != "plate_modal") continue;
     if (config::text_of(*document, "participants." + m.participant + ".kinematics") == "finite-strain")
       return false;
@@ -280,7 +280,7 @@ bool Job::has_linear_structures() const {
 }
 
 MPI_Comm Job::connect(const std::string& participant) const {
-  const Member* other = find(participant);
+  const JobMember* other = find(participant);
   if (other == nullptr)
     throw Error("Cannot connect '{}' to '{}', which is not part of the job.", name, participant);
   MPI_Comm peers;

@@ -21,7 +21,7 @@ struct Job {
   int rank = 0;
   std::string name;    ///< of this participant
   bool alone = false;  ///< standalone run
-  std::vector<Member> members;
+  std::vector<JobMember> members;
   const config::Document* document = nullptr;
   SimulationParameters simulation;
   std::filesystem::path case_folder;               ///< folder of the YAML
@@ -38,7 +38,7 @@ struct Job {
     supervisor->enter(phase);
     faults->at(couplet::app::name(phase));
   }
-  const Member* find(const std::string& participant) const;
+  const JobMember* find(const std::string& participant) const;
   /// True if all structures of the job obey linear theory, so that loads act on their undeformed surfaces.
   bool has_linear_structures() const;
   /// Intercommunicator between this participant and another. Both must call it in a deadlock-free order: the

@@ -68,21 +68,21 @@ class UseOfCase final : public diagnostics::Diagnostic {
   }
 
  private:
-  struct Seen {
+  struct UseRange {
     double lowest, highest, unseen, unseen_at, last_time;
     Vec3 place;
   };
   /// Uses over all ranks.
   std::map<std::string, Use> together() const {
     std::map<std::string, Use> all = fv::uses();
-    std::vector<Seen> mine;
+    std::vector<UseRange> mine;
     for (const auto& [name, use] : all)
       mine.push_back({use.lowest, use.highest, use.unseen, use.unseen_at, use.last_time, use.place});
-    const std::vector<Seen> seen = parallel::all_gather(comm_, mine);
+    const std::vector<UseRange> seen = parallel::all_gather(comm_, mine);
     for (std::size_t i = 0; i < seen.size(); i += mine.size()) {
       std::size_t j = i;
       for (auto& [name, use] : all) {
-        const Seen& there = seen[j++];
+        const UseRange& there = seen[j++];
         if (std::max(-there.lowest, there.highest) > use.largest()) use.place = there.place;
         if (there.unseen > use.unseen) use.unseen = there.unseen, use.unseen_at = there.unseen_at;
         use.lowest = std::min(use.lowest, there.lowest);

@@ -30,16 +30,16 @@ using Found = std::remove_reference_t<decltype(nanoflann::RadiusResultSet<double
 
 }  // namespace
 
-struct PointTree::State {
+struct PointTree::TreeState {
   Cloud cloud;
   Tree tree;
-  explicit State(const std::vector<Vec3>& points)
+  explicit TreeState(const std::vector<Vec3>& points)
       : cloud{points}, tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
     tree.buildIndex();
   }
 };
 
-PointTree::PointTree(const std::vector<Vec3>& points) : state_(std::make_unique<State>(points)) {}
+PointTree::PointTree(const std::vector<Vec3>& points) : state_(std::make_unique<TreeState>(points)) {}
 PointTree::~PointTree() = default;
 
 std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
@@ -90,7 +90,7 @@ std::vector<Index> PointTree::within(const Vec3& p, double distance) const {
   return indices;
 }
 
-Nearest<2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
+NearestPoint<2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
   const Vec3 d = b - a;
   const double square = d.squaredNorm();
   const double s = square > 0 ? std::clamp((x - a).dot(d) / square, 0.0, 1.0) : 0.0;
@@ -98,7 +98,7 @@ Nearest<2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
   return {{1 - s, s}, place, (x - place).norm()};
 }
 
-Nearest<3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+NearestPoint<3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
   const Vec3 n = (b - a).cross(c - a);
   const double square = n.squaredNorm();
   if (square > 0) {
@@ -108,10 +108,10 @@ Nearest<3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, cons
           {u, v, 1 - u - v}, u * a + v * b + (1 - u - v) * c, std::abs((x - a).dot(n)) / std::sqrt(square)};
   }
   const std::array<const Vec3*, 3> corner{&a, &b, &c};
-  Nearest<3> best;
+  NearestPoint<3> best;
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3;
-    const Nearest<2> edge = nearest_on_segment(*corner[i], *corner[next], x);
+    const NearestPoint<2> edge = nearest_on_segment(*corner[i], *corner[next], x);
     if (i > 0 && edge.distance >= best.distance) continue;
     best = {{}, edge.place, edge.distance};
     best.weights[i] = edge.weights[0];

@@ -24,23 +24,23 @@ class PointTree {
   std::vector<Index> within(const Vec3& p, double distance) const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct TreeState;
+  std::unique_ptr<TreeState> state_;
 };
 
 /// Point of a segment (n = 2) or triangle (n = 3) that is nearest to another point.
 template <int n>
-struct Nearest {
+struct NearestPoint {
   std::array<double, n> weights{};  ///< barycentric coordinates: from 0 to 1, their sum is 1
   Vec3 place = Vec3::Zero();        ///< [m]
   double distance = 0;              ///< to the other point [m]
 };
 
 /// Point of the segment a-b that is nearest to x [m]. A segment without length is a point.
-Nearest<2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x);
+NearestPoint<2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x);
 
 /// Point of the triangle a-b-c that is nearest to x [m]. Uses barycentric coordinates from areas (Ericson,
 /// Real-Time Collision Detection, 2005, section 3.4), then the edges.
-Nearest<3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x);
+NearestPoint<3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x);
 
 }  // namespace couplet::base

@@ -87,14 +87,14 @@ class Inspection {
   }
 
   void look_at_map(const YAML::Node& node, const std::string& path, int depth) {
-    std::map<std::string, Place> seen;
+    std::map<std::string, Origin> seen;
     for (const auto& item : node) {
       if (!item.first.IsScalar()) {
         messages.push_back({place_of(item.first), path, "a key must be a single word."});
         continue;
       }
       const std::string& name = item.first.Scalar();
-      const Place place = place_of(item.first);
+      const Origin place = place_of(item.first);
       if (!check_text(item.first, path, true)) continue;
       if (name.size() > longest_name) {
         messages.push_back(
@@ -202,7 +202,7 @@ YAML::Node step_into(const YAML::Node& node, const std::string& path, const std:
   }
   if (!node.IsMap())
     throw Error("{}: {} is a single value, so '{}' cannot be set below it.", option, describe(path), part);
-  const Entry entry = find(node, part);
+  const MapEntry entry = find(node, part);
   if (!entry.found)
     throw Error(
         "{}: '{}' does not exist {}. {} (A missing mapping can be set as a whole: --set '{}={{key: "
@@ -296,7 +296,7 @@ void Document::set(const std::string& assignment) {
           throw Error("{}: there is no '{}' to remove. {}", option, join_path(walked, parts[i]),
                       base::did_you_mean(parts[i], key_names(node), "keys"));
         node.remove(parts[i]);
-      } else if (const Entry entry = find(node, parts[i]); entry.found) {
+      } else if (const MapEntry entry = find(node, parts[i]); entry.found) {
         YAML::Node target = entry.node;
         target = value;
       } else {
@@ -370,7 +370,7 @@ bool same_value(const std::string& a, const std::string& b) {
   return std::abs(x->value - y->value) <= 1e-14 * std::max(std::abs(x->value), std::abs(y->value));
 }
 
-Place place_of(const YAML::Node& node) {
+Origin place_of(const YAML::Node& node) {
   const YAML::Mark mark = node.Mark();
   if (mark.is_null()) return {};
   return {mark.line + 1, mark.column + 1, ""};
@@ -392,7 +392,7 @@ std::vector<std::string> key_names(const YAML::Node& map) {
   return names;
 }
 
-Entry find(const YAML::Node& map, std::string_view name) {
+MapEntry find(const YAML::Node& map, std::string_view name) {
   if (map.IsMap())
     for (const auto& item : map)
       if (item.first.Scalar() == name) return {true, place_of(item.first), item.second};
@@ -400,7 +400,7 @@ Entry find(const YAML::Node& map, std::string_view name) {
 }
 
 std::string format(const std::string& file, const Message& message) {
-  const Place& place = message.place;
+  const Origin& place = message.place;
   std::string where = file;
   if (!place.override_text.empty())
     where = place.override_text;

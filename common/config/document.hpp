@@ -18,17 +18,17 @@ struct Document::Content {
 };
 
 /// Location that a message refers to. Overridden values come after everything in the file.
-struct Place {
+struct Origin {
   int line = 0, column = 0;   ///< 1-based; 0 if unknown
   std::string override_text;  ///< "--set a.b=v" if the value comes from there
 };
 
 struct Message {
-  Place place;
+  Origin place;
   std::string path, text;
 };
 
-Place place_of(const YAML::Node& node);
+Origin place_of(const YAML::Node& node);
 /// Formats "case.yaml:12:5: participants.solid: text".
 std::string format(const std::string& file, const Message& message);
 /// Sorts the messages in file order and removes duplicates.
@@ -44,12 +44,12 @@ bool is_below(std::string_view path, std::string_view above);
 std::vector<std::string> key_names(const YAML::Node& map);
 
 /// Entry of a mapping. `found` is false if it does not exist.
-struct Entry {
+struct MapEntry {
   bool found = false;
-  Place place;      ///< of the key
+  Origin place;     ///< of the key
   YAML::Node node;  ///< of the value
 };
-Entry find(const YAML::Node& map, std::string_view name);
+MapEntry find(const YAML::Node& map, std::string_view name);
 
 /// All scalar values of the document including --set, by dotted path: "participants.solid.mesh",
 /// "participants.solid.boundaries.top.value[0]". Empty mappings and lists appear as "{}" and "[]".

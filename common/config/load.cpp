@@ -18,13 +18,13 @@ namespace couplet::config {
 namespace {
 
 /// Fills the members from a mapping and collects all errors.
-class Reader final {
+class Loader final {
  public:
-  explicit Reader(const Document::Content& content, CheckExpression check_expression = {})
+  explicit Loader(const Document::Content& content, CheckExpression check_expression = {})
       : content_(content), check_expression_(std::move(check_expression)) {}
 
   /// Reads a mapping. If `node` is undefined, defaults apply, and required keys are missing at `place`.
-  void read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
+  void read_mapping(const YAML::Node& node, const Origin& place, const std::string& path,
                     const Section::Declare& declare);
   const std::vector<Message>& messages() const { return messages_; }
   /// Possible but implausible values.
@@ -34,7 +34,7 @@ class Reader final {
   /// Mapping that is being read.
   struct Frame {
     YAML::Node node;
-    Place place;
+    Origin place;
     std::string path;
     std::vector<std::string> known;
     std::vector<std::pair<std::string, std::string>> elsewhere;  ///< key and the variant case it belongs to
@@ -48,17 +48,17 @@ class Reader final {
   /// Reads the contents of a section, optional, map or list.
   void below(const Declaration& declaration);
   void variant(const Declaration& declaration);
-  Entry take(std::string_view name);
-  Message message(const Place& place, const std::string& path, const std::string& text) const;
-  void report(const Place& place, const std::string& path, const std::string& text);
-  void report_key(const Place& place, const std::string& path, const std::string& text);
+  MapEntry take(std::string_view name);
+  Message message(const Origin& place, const std::string& path, const std::string& text) const;
+  void report(const Origin& place, const std::string& path, const std::string& text);
+  void report_key(const Origin& place, const std::string& path, const std::string& text);
   void report_unknown_keys();
   /// Sentence about missing physics that a key, or else a word of its value, asks for. Empty if there is none.
   std::string limit_named_by(const std::string& key, const YAML::Node& value) const;
   /// Text of a wrong value: `problem`, or the missing physics that it asks for.
   std::string wrong_value(const YAML::Node& value, const char* problem) const;
   /// Text " Its keys: a, b." for a value that should be a mapping.
-  std::string keys_of(const Place& place, const std::string& path, const Section::Declare& declare);
+  std::string keys_of(const Origin& place, const std::string& path, const Section::Declare& declare);
   /// Applies a rule across keys, unless a key that it may depend on is invalid.
   void apply_rule(const Declaration& declaration);
   /// Removes the message about a missing key, because a misspelled required key is one mistake.
@@ -105,34 +105,34 @@ std::string kind_of(const YAML::Node& node) {
   return fmt::format("'{}' and {} characters more", text.substr(0, longest), text.size() - longest);
 }
 
-Message Reader::message(const Place& place, const std::string& path, const std::string& text) const {
-  Place where = place;
+Message Loader::message(const Origin& place, const std::string& path, const std::string& text) const {
+  Origin where = place;
   for (const auto& [changed, option] : content_.overrides)
     if (is_below(path, changed)) where.override_text = option;
   return {where, path, text};
 }
 
-void Reader::report(const Place& place, const std::string& path, const std::string& text) {
+void Loader::report(const Origin& place, const std::string& path, const std::string& text) {
   messages_.push_back(message(place, path, text));
 }
 
-void Reader::report_key(const Place& place, const std::string& path, const std::string& text) {
+void Loader::report_key(const Origin& place, const std::string& path, const std::string& text) {
   frames_.back().wrong_key = true;
   report(place, path, text);
 }
 
-void Reader::forget_missing(const std::string& path) {
+void Loader::forget_missing(const std::string& path) {
   std::erase_if(messages_,
                 [&](const Message& m) { return m.path == path && m.text.starts_with(missing_key); });
 }
 
-Entry Reader::take(std::string_view name) {
+MapEntry Loader::take(std::string_view name) {
   Frame& frame = frames_.back();
   frame.known.emplace_back(name);
   return find(frame.node, name);
 }
 
-std::string Reader::keys_of(const Place& place, const std::string& path, const Section::Declare& declare) {
+std::string Loader::keys_of(const Origin& place, const std::string& path, const Section::Declare& declare) {
   constexpr std::size_t most = 12;
   const std::vector<Message> kept = messages_, kept_doubts = doubts_;
   frames_.push_back({YAML::Node(YAML::NodeType::Map), place, path, {}, {}, messages_.size(), {}, false});
@@ -148,7 +148,7 @@ std::string Reader::keys_of(const Place& place, const std::string& path, const S
   return fmt::format(" Its keys: {}{}.", base::join(keys), all ? "" : ", ...");
 }
 
-void Reader::read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
+void Loader::read_mapping(const YAML::Node& node, const Origin& place, const std::string& path,
                           const Section::Declare& declare) {
   const bool is_empty = !node.IsDefined() || node.IsNull();
   if (!is_empty && !node.IsMap()) {
@@ -165,7 +165,7 @@ void Reader::read_mapping(const YAML::Node& node, const Place& place, const std:
   frames_.pop_back();
 }
 
-void Reader::report_unknown_keys() {
+void Loader::report_unknown_keys() {
   const Frame frame = frames_.back();
   constexpr int most = 20;  // per mapping, because suggestions for more are slow and unread
   int unknown = 0;
@@ -198,8 +198,8 @@ void Reader::report_unknown_keys() {
     report(frame.place, frame.path, fmt::format("{} more unknown keys follow.", unknown - most));
 }
 
-std::string Reader::limit_named_by(const std::string& key, const YAML::Node& value) const {
-  const Entry program = find(frames_.front().node, "program");
+std::string Loader::limit_named_by(const std::string& key, const YAML::Node& value) const {
+  const MapEntry program = find(frames_.front().node, "program");
   const std::string name = program.found && program.node.IsScalar() ? program.node.Scalar() : "";
   if (const std::string limit = config::limit_named_by(key, name); !limit.empty() || !value.IsDefined())
     return limit;
@@ -213,14 +213,14 @@ std::string Reader::limit_named_by(const std::string& key, const YAML::Node& val
   return "";
 }
 
-std::string Reader::wrong_value(const YAML::Node& value, const char* problem) const {
+std::string Loader::wrong_value(const YAML::Node& value, const char* problem) const {
   const std::string limit = limit_named_by("", value);
   return limit.empty()
              ? problem
              : fmt::format("{} is not available. {}", value.IsMap() ? "a mapping" : kind_of(value), limit);
 }
 
-std::string Reader::problem_of(const KeyFacts& facts, const Slot& slot) const {
+std::string Loader::problem_of(const KeyFacts& facts, const Slot& slot) const {
   if (!check_expression_) return "";
   if (const auto* text = std::get_if<ExpressionText*>(&slot)) return check_expression_(**text);
   if (const auto* text = std::get_if<std::optional<ExpressionText>*>(&slot))
@@ -238,10 +238,10 @@ std::string Reader::problem_of(const KeyFacts& facts, const Slot& slot) const {
   return "";
 }
 
-void Reader::key(const KeyFacts& facts, const Slot& slot) {
+void Loader::key(const KeyFacts& facts, const Slot& slot) {
   Frame& frame = frames_.back();
   const std::string path = join_path(frame.path, facts.name);
-  const Entry entry = take(facts.name);
+  const MapEntry entry = take(facts.name);
   if (!entry.found) {
     if (!facts.required) return;
     const Word* word = std::get_if<Word>(&slot);
@@ -264,12 +264,12 @@ void Reader::key(const KeyFacts& facts, const Slot& slot) {
   }
 }
 
-void Reader::below(const Declaration& d) {
+void Loader::below(const Declaration& d) {
   using Kind = Declaration::Kind;
-  const Place outside = frames_.back().place;
+  const Origin outside = frames_.back().place;
   const std::string path = join_path(frames_.back().path, d.facts.name);
-  const Entry entry = take(d.facts.name);
-  const auto read = [&](const YAML::Node& node, const Place& place, const std::string& at,
+  const MapEntry entry = take(d.facts.name);
+  const auto read = [&](const YAML::Node& node, const Origin& place, const std::string& at,
                         const std::string& name, std::size_t i) {
     read_mapping(node, place, at, [&](Section& s) { d.declare(s, name, i); });
   };
@@ -299,11 +299,11 @@ void Reader::below(const Declaration& d) {
     read(entry.node[i], place_of(entry.node[i]), fmt::format("{}[{}]", path, i), "", i);
 }
 
-void Reader::variant(const Declaration& d) {
+void Loader::variant(const Declaration& d) {
   const KeyFacts& facts = d.facts;
   const std::string path = join_path(frames_.back().path, facts.name);
   const Word& declared = std::get<Word>(d.slot);
-  const Entry entry = take(facts.name);
+  const MapEntry entry = take(facts.name);
   std::string chosen = declared.current;
   if (entry.found || facts.required) {
     try {
@@ -334,7 +334,7 @@ void Reader::variant(const Declaration& d) {
   }
 }
 
-void Reader::apply_rule(const Declaration& d) {
+void Loader::apply_rule(const Declaration& d) {
   const Frame& frame = frames_.back();
   // The rule may depend on any key of the surrounding mappings.
   const bool wrong_key =
@@ -344,9 +344,9 @@ void Reader::apply_rule(const Declaration& d) {
   if (text.empty()) return;
   if (text.back() != '.') text += '.';
   const std::string& key = d.facts.name;
-  Entry entry{.found = true, .place = frame.place, .node = frame.node};
+  MapEntry entry{.found = true, .place = frame.place, .node = frame.node};
   for (const std::string& part : base::split(key, '.')) {
-    const Entry next = find(entry.node, part);
+    const MapEntry next = find(entry.node, part);
     entry.found = next.found;
     if (!next.found) break;
     entry.place = next.place;
@@ -357,7 +357,7 @@ void Reader::apply_rule(const Declaration& d) {
       .push_back(message(entry.place, key.empty() ? frame.path : join_path(frame.path, key), text));
 }
 
-void Reader::on(const Declaration& d) {
+void Loader::on(const Declaration& d) {
   switch (d.kind) {
     case Declaration::Kind::key:
       return key(d.facts, d.slot);
@@ -374,7 +374,7 @@ void Reader::on(const Declaration& d) {
 /// Node at a dotted path and the location of its key. If a part is missing, found is false, and the location
 /// is that of the last existing mapping with path `reached`.
 struct Located {
-  Entry entry;
+  MapEntry entry;
   std::string reached, missing;
   std::vector<std::string> present;
 };
@@ -387,7 +387,7 @@ Located locate(const Document::Content& content, const std::string& path) {
   result.entry.node.reset(content.root);
   if (path.empty()) return result;
   for (const std::string& part : base::split(path, '.')) {
-    const Entry next = find(result.entry.node, part);
+    const MapEntry next = find(result.entry.node, part);
     result.entry.found = next.found;
     if (!next.found) {
       result.missing = part;
@@ -419,7 +419,7 @@ std::vector<std::string> load(const Document& document, const std::string& path,
     return format_all(content.name,
                       {{located.entry.place, join_path(located.reached, located.missing), text}});
   }
-  Reader reader(content, check_expression);
+  Loader reader(content, check_expression);
   reader.read_mapping(located.entry.node, located.entry.place, path, declare);
   if (doubts != nullptr) *doubts = format_all(content.name, reader.doubts());
   return format_all(content.name, reader.messages());
@@ -453,7 +453,7 @@ std::vector<std::string> texts_of(const Document& document, const std::string& p
 
 std::string where(const Document& document, const std::string& path) {
   const Document::Content& content = document.content();
-  Place place = locate(content, path).entry.place;
+  Origin place = locate(content, path).entry.place;
   for (const auto& [changed, option] : content.overrides)
     if (is_below(path, changed)) place.override_text = option;
   std::string text = format(content.name, {place, path, ""});

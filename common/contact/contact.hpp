@@ -32,16 +32,16 @@ struct ContactParameters {
 void declare(config::Section& section, ContactParameters& parameters, const char* default_direction);
 
 /// Contact force over kappa [m] and its derivative with respect to the penetration.
-struct Push {
+struct ContactForce {
   double force = 0, slope = 0;
 };
 
 /// Contact force of (4.32) for the penetration delta at the point of equilibrium of the scheme.
-inline Push push(double delta) { return {std::max(delta, 0.), delta > 0 ? 1. : 0.}; }
+inline ContactForce push(double delta) { return {std::max(delta, 0.), delta > 0 ? 1. : 0.}; }
 
 /// Mean force of a step from `before` to `now`, (V(now) - V(before)) / (now - before) with V = <delta>^2 / 2.
 /// Its work equals the change of energy for any step [gonzalez2000]. It grows with `now`: unique solution.
-inline Push push(double before, double now) {
+inline ContactForce push(double before, double now) {
   if (now > 0 && before > 0) return {0.5 * (now + before), 0.5};
   if (now > 0)  // contact begins
     return {0.5 * now * now / (now - before),

@@ -10,7 +10,7 @@
 
 namespace couplet::coupling {
 
-std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs) {
+std::vector<Exchanged> exchanged(const Partition& mine, int rank, const Partition& theirs) {
   std::map<int, Slice> by_rank;
   for (const Overlap& o : overlaps(mine.vertices, rank, theirs.vertices))
     by_rank[o.rank].first_vertex = o.first, by_rank[o.rank].vertices = o.count;
@@ -38,7 +38,7 @@ void MpiChannel::send(const Command& command) {
 namespace {
 
 /// Checks that the surface is distributed over the participant's ranks.
-void check_cut(const Cut& cut, int ranks) {
+void check_cut(const Partition& cut, int ranks) {
   for (const Starts* starts : {&cut.vertices, &cut.faces})
     if (starts->size() != std::size_t(ranks) + 1)
       throw Error("it partitions its interface over {} ranks, but runs on {}", starts->size() - 1, ranks);
@@ -52,7 +52,7 @@ void check_names(const std::vector<Interface::Datum>& list) {
 }
 
 /// Compares received vertices and faces with the announced ones.
-void check_places(const Interface& interface, const Cut& mine, int rank, const std::string& whose) {
+void check_places(const Interface& interface, const Partition& mine, int rank, const std::string& whose) {
   const auto here = [&](const Starts& starts) {
     return std::size_t(starts[std::size_t(rank) + 1] - starts[std::size_t(rank)]);
   };
@@ -69,7 +69,7 @@ void check_places(const Interface& interface, const Cut& mine, int rank, const s
 }  // namespace
 
 // Checks a guest's message before using it.
-Reply MpiChannel::unpacked(const std::vector<char>& head, Cut& cut) const {
+Reply MpiChannel::unpacked(const std::vector<char>& head, Partition& cut) const {
   try {
     Reply reply = unpack_reply(head, cut);
     if (pending_ != Op::initialise || reply.status != Reply::Status::ok) return reply;
@@ -92,7 +92,7 @@ Reply MpiChannel::receive() {
   if (parallel::comm_rank(comm_) == 0) head = receive_bytes(peers_, 0, reply_tag, what, longest_head);
   broadcast_bytes(comm_, head, "");
   waiting_seconds_ += processor_seconds() - begun;
-  Cut cut;
+  Partition cut;
   Reply reply = unpacked(head, cut);
   if (reply.status != Reply::Status::ok) return reply;
   if (pending_ == Op::initialise) {

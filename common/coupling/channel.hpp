@@ -42,7 +42,7 @@ class MpiChannel final : public Channel {
   double waiting_seconds() const override { return waiting_seconds_; }
 
  private:
-  Reply unpacked(const std::vector<char>& head, Cut& cut) const;
+  Reply unpacked(const std::vector<char>& head, Partition& cut) const;
   void receive_places(Interface& interface, Surfaces& surfaces);
   void receive_values(Exchange& data);
 
@@ -53,7 +53,7 @@ class MpiChannel final : public Channel {
   std::vector<Interface::Datum> takes_, gives_;
   Exchange spare_;
   double waiting_seconds_ = 0;
-  Cut theirs_, mine_;  // the same entities, distributed over the participant's and the coupler's ranks
+  Partition theirs_, mine_;  // the same entities, distributed over the participant's and the coupler's ranks
 };
 
 /// Entities, both vertices and faces, that this rank exchanges with a rank of the other side.
@@ -61,7 +61,7 @@ struct Exchanged {
   int rank;
   Slice slice;
 };
-std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs);
+std::vector<Exchanged> exchanged(const Partition& mine, int rank, const Partition& theirs);
 
 /// Executes one command on a participant; only here do messages become calls. A SolveFailure becomes a
 /// failure reply, other exceptions propagate. Collective over `comm`; rank 0 fills data and interface.

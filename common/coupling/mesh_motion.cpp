@@ -21,7 +21,7 @@ const char* const fluid_name = "the fluid";
 enum class Status : int { moved, failed };
 
 /// Points that one rank of the other program sends or receives.
-struct Peer {
+struct PeerPoints {
   int rank;
   std::vector<Index> points;
 };
@@ -101,9 +101,9 @@ bool any_of_source(MPI_Comm peers, MPI_Comm own, bool is_source, bool value) {
       detail);
 }
 
-class Source final : public MeshMotionSource {
+class PeerSource final : public MeshMotionSource {
  public:
-  Source(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> places)
+  PeerSource(MPI_Comm peers, const mesh::Mesh& mesh, std::span<const Vec3> places)
       : peers_(peers), dim_(mesh.dim), n_points_(mesh.points.n_local()) {
     meet(peers, mover_name);
     const auto owned = exchange_owned_ids(peers, mesh);
@@ -136,7 +136,7 @@ class Source final : public MeshMotionSource {
     std::vector<double> values(std::size_t(n_points_) * dim_);
     velocity_.clear();
     bool failed = false;
-    for (const Peer& peer : from_) {
+    for (const PeerPoints& peer : from_) {
       const std::vector<char> bytes = receive_bytes(peers_, peer.rank, motion_tag, mover_name);
       const auto message = parallel::detail::from_bytes<double>(bytes);
       if (message.at(0) != double(Status::moved)) {
@@ -157,7 +157,7 @@ class Source final : public MeshMotionSource {
   const std::vector<double>& velocity() const override { return velocity_; }
 
  private:
-  void take(const Peer& peer, std::span<const double> from, std::vector<double>& values) const {
+  void take(const PeerPoints& peer, std::span<const double> from, std::vector<double>& values) const {
     for (std::size_t i = 0; i < peer.points.size(); ++i)
       for (int c = 0; c < dim_; ++c) values[std::size_t(peer.points[i]) * dim_ + c] = from[i * dim_ + c];
   }
@@ -183,7 +183,7 @@ class Source final : public MeshMotionSource {
   MPI_Comm peers_;
   int dim_;
   Index n_points_;
-  std::vector<Peer> from_;
+  std::vector<PeerPoints> from_;
   std::vector<double> velocity_;
 };
 
@@ -260,7 +260,7 @@ void MeshMotionSink::send_failure() {
 
 std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const mesh::Mesh& mesh,
                                                           std::span<const Vec3> points) {
-  return std::make_unique<Source>(peers, mesh, points);
+  return std::make_unique<PeerSource>(peers, mesh, points);
 }
 
 }  // namespace couplet::coupling

@@ -100,7 +100,7 @@ Command unpack_command(std::span<const char> bytes) {
   return c;
 }
 
-std::vector<char> pack(const Reply& r, const Cut& cut) {
+std::vector<char> pack(const Reply& r, const Partition& cut) {
   Packer out;
   out.put(reply_mark);
   out.put(protocol_version);
@@ -139,7 +139,7 @@ void take_out_within(std::vector<Interface::Datum>& takes, Surfaces& surfaces) {
 
 }  // namespace
 
-Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
+Reply unpack_reply(std::span<const char> bytes, Partition& cut) {
   Unpacker in(bytes, reply_mark, "reply");
   Reply r;
   r.status = Reply::Status(in.integer(0, 3, "the status"));

@@ -107,18 +107,18 @@ struct Reply {
 };
 
 /// Distribution of a participant's surface over its ranks, part of the reply to initialise.
-struct Cut {
+struct Partition {
   Starts vertices{0}, faces{0};
 };
 
 /// Packs the head of a message: everything but the values at vertices and faces, which it only names. Sent
 /// between the ranks 0.
 std::vector<char> pack(const Command& command);
-std::vector<char> pack(const Reply& reply, const Cut& cut);
+std::vector<char> pack(const Reply& reply, const Partition& cut);
 /// Unpacks a head. Throws Error if the bytes are not such a message of this protocol version. The data get
 /// their names, but no values.
 Command unpack_command(std::span<const char> bytes);
-Reply unpack_reply(std::span<const char> bytes, Cut& cut);
+Reply unpack_reply(std::span<const char> bytes, Partition& cut);
 
 /// Part of a rank's values that goes to another rank. All data of `names` follow one another, each at the
 /// vertices or faces of the slice. Data without values are omitted. Throws Error if an array does not have

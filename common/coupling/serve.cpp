@@ -21,7 +21,7 @@ void check_lists(MPI_Comm comm, const Interface& interface) {
     Reply lists;
     lists.interface.dim = interface.dim;
     lists.interface.takes = takes, lists.interface.gives = gives;
-    return pack(lists, Cut{});
+    return pack(lists, Partition{});
   };
   const std::vector<char> here = described(interface.takes, interface.gives);
   std::vector<char> first = here;
@@ -81,7 +81,7 @@ void dispatch(const Command& command, Participant& participant, const std::strin
               static_cast<long>(command.op));
 }
 
-Cut cut_of(MPI_Comm comm, const Interface& interface) {
+Partition cut_of(MPI_Comm comm, const Interface& interface) {
   const auto cut = [&](std::size_t n) {
     return starts_of(parallel::all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
   };
@@ -95,7 +95,7 @@ class Ranks {
       : coupler_(coupler), comm_(comm), name_(std::move(name)) {}
 
   /// Sends vertices and faces. `announced` holds dimension and data of rank 0.
-  void send_places(const Interface& interface, const Interface& announced, const Cut& cut) {
+  void send_places(const Interface& interface, const Interface& announced, const Partition& cut) {
     interface_ = announced;
     mine_ = cut;
     int ranks = 0;
@@ -150,7 +150,7 @@ class Ranks {
   MPI_Comm coupler_, comm_;
   std::string name_;
   Interface interface_;  // only takes and gives
-  Cut mine_;
+  Partition mine_;
   std::vector<Exchanged> plan_;
 };
 
@@ -190,7 +190,7 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
     observer.done(command);
     if (command.op == Op::accept_step) observer.accepted(command, reply.report);
     const bool described = reply.status == Reply::Status::ok && command.op == Op::initialise;
-    Cut cut = described ? cut_of(comm, reply.interface) : Cut{};
+    Partition cut = described ? cut_of(comm, reply.interface) : Partition{};
     if (root)
       head = pack(reply, cut), send_bytes(coupler, 0, reply_tag, head,
                                           "the coupler to receive a "

@@ -21,27 +21,27 @@ constexpr double nothing = 0.1;
 // a fifth, beyond which the atlas calls a result wrong.
 constexpr double questionable_error = 0.15;
 
-struct Kind {
+struct ErrorKind {
   const char* name;
   double ErrorParts::*value;
   const char* words;
 };
 
-constexpr std::array<Kind, 5> kinds{{{"mesh", &ErrorParts::mesh, "mesh"},
-                                     {"step", &ErrorParts::step, "step"},
-                                     {"linear", &ErrorParts::linear, "linear tolerance"},
-                                     {"coupling", &ErrorParts::coupling, "coupling tolerance"},
-                                     {"model", &ErrorParts::model, "model"}}};
+constexpr std::array<ErrorKind, 5> kinds{{{"mesh", &ErrorParts::mesh, "mesh"},
+                                          {"step", &ErrorParts::step, "step"},
+                                          {"linear", &ErrorParts::linear, "linear tolerance"},
+                                          {"coupling", &ErrorParts::coupling, "coupling tolerance"},
+                                          {"model", &ErrorParts::model, "model"}}};
 
-struct Part {
-  const Kind* kind;
+struct ErrorPart {
+  const ErrorKind* kind;
   double value;
   const NamedErrors* of;
   bool is(double ErrorParts::*which) const { return kind->value == which; }
 };
 
 /// Cheapest change that lowers a contribution, the remaining contribution, and its price.
-std::string cure(const Part& part) {
+std::string cure(const ErrorPart& part) {
   if (part.is(&ErrorParts::mesh)) {
     constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
     return fmt::format("half the cell size would leave about {:.2g}, for {} the cells",
@@ -65,9 +65,9 @@ std::string cure(const Part& part) {
 }
 
 /// Describes changes without benefit: "halving the step", ...
-std::string idle_words(const std::vector<Part>& parts, double most) {
+std::string idle_words(const std::vector<ErrorPart>& parts, double most) {
   std::string words;
-  for (const Part& p : parts) {
+  for (const ErrorPart& p : parts) {
     if (!(p.value < nothing * most)) continue;
     if (p.is(&ErrorParts::model)) continue;
     words += words.empty() ? "" : " or ";
@@ -79,9 +79,9 @@ std::string idle_words(const std::vector<Part>& parts, double most) {
 }
 
 /// Largest contribution of each kind over the participants.
-std::vector<Part> largest_parts(const std::vector<NamedErrors>& participants) {
-  std::vector<Part> parts;
-  for (const Kind& k : kinds) {
+std::vector<ErrorPart> largest_parts(const std::vector<NamedErrors>& participants) {
+  std::vector<ErrorPart> parts;
+  for (const ErrorKind& k : kinds) {
     const NamedErrors* largest = nullptr;
     for (const NamedErrors& n : participants)
       if (!std::isnan(n.parts.*k.value) && (!largest || n.parts.*k.value > largest->parts.*k.value))
@@ -113,12 +113,12 @@ std::string unknown_part(const std::vector<NamedErrors>& participants) {
 }  // namespace
 
 bool ErrorParts::known() const {
-  return std::ranges::any_of(kinds, [this](const Kind& k) { return !std::isnan(this->*k.value); });
+  return std::ranges::any_of(kinds, [this](const ErrorKind& k) { return !std::isnan(this->*k.value); });
 }
 
 std::string ErrorParts::text() const {
   std::string text;
-  for (const Kind& k : kinds)
+  for (const ErrorKind& k : kinds)
     if (!std::isnan(this->*k.value))
       text += fmt::format("{}{} {:.6g}", text.empty() ? "" : " ", k.name, this->*k.value);
   if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
@@ -139,7 +139,7 @@ ErrorParts ErrorParts::of(const std::string& text) {
   }
   std::istringstream words(text.substr(0, words_at));
   for (std::string name; words >> name;) {
-    const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return k.name == name; });
+    const auto kind = std::ranges::find_if(kinds, [&](const ErrorKind& k) { return k.name == name; });
     double value = 0;
     const bool is_about =
         name == "dimension" || name == "mesh-order" || name == "step-order" || name == "misses-step";
@@ -162,7 +162,7 @@ ErrorParts ErrorParts::of(const std::string& text) {
 
 ErrorParts largest(const std::vector<NamedErrors>& participants) {
   ErrorParts parts;
-  for (const Part& p : largest_parts(participants)) {
+  for (const ErrorPart& p : largest_parts(participants)) {
     parts.*(p.kind->value) = p.value;
     if (p.is(&ErrorParts::model)) parts.model_by = p.of->parts.model_by;
     if (p.is(&ErrorParts::step)) parts.step_order = p.of->parts.step_order;
@@ -181,7 +181,7 @@ ErrorParts largest(const std::vector<NamedErrors>& participants) {
 
 double total_error(const std::vector<NamedErrors>& participants) {
   double total = 0;
-  for (const Part& p : largest_parts(participants))
+  for (const ErrorPart& p : largest_parts(participants))
     if (!p.is(&ErrorParts::model)) total += p.value;
   return total;
 }
@@ -189,9 +189,9 @@ double total_error(const std::vector<NamedErrors>& participants) {
 namespace {
 
 /// Largest known contribution that is not of the model and not 0.
-std::optional<Part> worst_part(const std::vector<NamedErrors>& participants) {
-  std::optional<Part> worst;
-  for (const Part& p : largest_parts(participants))
+std::optional<ErrorPart> worst_part(const std::vector<NamedErrors>& participants) {
+  std::optional<ErrorPart> worst;
+  for (const ErrorPart& p : largest_parts(participants))
     if (!p.is(&ErrorParts::model) && p.value > (worst ? worst->value : 0)) worst = p;
   return worst;
 }
@@ -232,15 +232,15 @@ std::optional<Finding> worthless(const std::vector<NamedErrors>& participants) {
 }
 
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
-  std::vector<Part> parts = largest_parts(participants);
+  std::vector<ErrorPart> parts = largest_parts(participants);
   const bool several = participants.size() > 1;
   const std::string unknown = unknown_part(participants);
   std::vector<std::string> sentences;
   if (!parts.empty()) {
-    std::ranges::stable_sort(parts, std::greater<>{}, &Part::value);
+    std::ranges::stable_sort(parts, std::greater<>{}, &ErrorPart::value);
     std::string list;
     double total = 0;
-    for (const Part& p : parts) {
+    for (const ErrorPart& p : parts) {
       list += fmt::format("{}{} {:.2g}{}", list.empty() ? "" : ", ", p.kind->words, p.value,
                           several ? " (" + p.of->name + ")" : "");
       total += p.value;
@@ -255,7 +255,7 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
   // Nothing dominates an estimate without the mesh, which often has the largest contribution.
   if (parts.size() > 1 && parts.front().value > 0 &&
       (unknown.empty() || parts.front().value >= questionable_error)) {
-    const Part& worst = parts.front();
+    const ErrorPart& worst = parts.front();
     const std::string idle = idle_words(parts, worst.value);
     sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,
                                     several ? " (" + worst.of->name + ")" : "", cure(worst),

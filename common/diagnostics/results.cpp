@@ -29,7 +29,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 12> tables{{{"pro
                                                                            {"energies", "energy "},
                                                                            {"tank", ""}}};
 
-struct Table {
+struct ResultTable {
   std::size_t rank;
   std::vector<std::string> columns;
   std::vector<double> last;
@@ -40,13 +40,13 @@ std::vector<Result>& set_rows() {
   return rows;
 }
 
-std::deque<Table>& known_tables() {
-  static std::deque<Table> all;
+std::deque<ResultTable>& known_tables() {
+  static std::deque<ResultTable> all;
   return all;
 }
 
 /// Adds the columns of a table. "tip x [m]" and "tip y [m]" are one row "tip".
-void add(const Table& table, std::vector<Result>& rows) {
+void add(const ResultTable& table, std::vector<Result>& rows) {
   std::string before;
   for (std::size_t i = 1; i < table.last.size(); ++i) {
     const std::string& column = table.columns[i];
@@ -117,7 +117,7 @@ std::vector<double>* results_of_table(const std::string& file, const std::vector
 std::vector<Result> results() {
   std::vector<Result> rows = set_rows();
   for (std::size_t rank = 0; rank < tables.size(); ++rank)
-    for (const Table& table : known_tables())
+    for (const ResultTable& table : known_tables())
       if (table.rank == rank) add(table, rows);
   // Such as the outlet temperature of a tank at rest.
   std::erase_if(rows, [](const Result& r) {

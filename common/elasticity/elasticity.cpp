@@ -22,12 +22,12 @@ fv::VertexInterpolation::ByFace stencils_of(const ElasticBoundary& boundary, con
 }  // namespace
 
 /// Block row under construction. Markers find blocks by column.
-struct ElasticOperator::Row {
-  struct Part {
+struct ElasticOperator::BlockRow {
+  struct ColumnBlocks {
     std::vector<Index> column;
     std::vector<Tensor3> block;
     std::vector<Index> place;  // of each column in `column`, or -1
-    explicit Part(std::size_t n_columns) : place(n_columns, -1) {}
+    explicit ColumnBlocks(std::size_t n_columns) : place(n_columns, -1) {}
     void add(Index c, const Tensor3& value) {
       if (place[c] < 0) {
         place[c] = static_cast<Index>(column.size());
@@ -43,7 +43,7 @@ struct ElasticOperator::Row {
       block.clear();
     }
   };
-  Part nodes, known;
+  ColumnBlocks nodes, known;
 };
 
 ElasticOperator::ElasticOperator(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
@@ -82,7 +82,7 @@ void ElasticOperator::sort_boundary() {
 }
 
 void ElasticOperator::assemble() const {
-  Row row{Row::Part(number_.size()), Row::Part(n_known())};
+  BlockRow row{BlockRow::ColumnBlocks(number_.size()), BlockRow::ColumnBlocks(n_known())};
   const mesh::Csr cell_faces = fv::flux_faces_of_cells(*mesh_);
   const Index n_owned = mesh_->cells.n_owned();
   for (Index c = 0; c < n_owned; ++c) {
@@ -95,7 +95,7 @@ void ElasticOperator::assemble() const {
   }
 }
 
-void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, Row& row) const {
+void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, BlockRow& row) const {
   for (const Index f : faces) {
     const double out = (mesh_->owner[f] == cell ? -1 : 1) * area(f);
     if (f < mesh_->n_interior) {
@@ -111,7 +111,7 @@ void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, Row& ro
   }
 }
 
-void ElasticOperator::add_unknown_face(Index face, Row& row) const {
+void ElasticOperator::add_unknown_face(Index face, BlockRow& row) const {
   const LameConstants lame = lame_at(face);
   const double size = area(face), stiffness = (2 * lame.mu + lame.lambda) * size;
   const FaceWeights here = weights_of(face);
@@ -154,7 +154,7 @@ LameConstants ElasticOperator::lame_at(Index face) const {
 // scale . sigma . n, with g = n . grad u and c_V, k as in FaceGradient (2.77):
 //   sigma . n = mu (g + n (n . g) + grad_t(n . u)) + lambda n (n . g + tr grad_t u)
 //   g = (u_N - u_P) / (d . n) + sum_V (k . c_V) u_V
-void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const {
+void ElasticOperator::add_flux(Index face, const Tensor3& scale, BlockRow& row) const {
   const bool on_boundary = face >= mesh_->n_interior;
   const FaceWeights at = weights_of(face);
   const Vec3& n = at.line.normal;
@@ -178,7 +178,7 @@ void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const
   }
 }
 
-void ElasticOperator::add_vertex(Index point, const Tensor3& block, Row& row) const {
+void ElasticOperator::add_vertex(Index point, const Tensor3& block, BlockRow& row) const {
   const Index column = constraints_.column(point);
   if (column >= 0) row.known.add(column, block);
   if (constraints_.is_fixed(point)) return;
@@ -189,11 +189,11 @@ void ElasticOperator::add_vertex(Index point, const Tensor3& block, Row& row) co
   for (std::size_t i = 0; i < nodes.size(); ++i) row.nodes.add(nodes[i], weights[i] * free);
 }
 
-void ElasticOperator::add_face_node(Index face, const Tensor3& block, Row& row) const {
+void ElasticOperator::add_face_node(Index face, const Tensor3& block, BlockRow& row) const {
   row.nodes.add(mesh_->cells.n_local() + face - mesh_->n_interior, block);
 }
 
-void ElasticOperator::store(Index unknown_node, Row& row) const {
+void ElasticOperator::store(Index unknown_node, BlockRow& row) const {
   const int dim = mesh_->dim;
   const bool is_cell = unknown_node < mesh_->cells.n_owned();
   const GlobalIndex number =

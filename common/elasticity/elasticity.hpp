@@ -119,21 +119,21 @@ class ElasticOperator {
                      std::span<const double> known) const;
 
  private:
-  struct Row;
+  struct BlockRow;
   void sort_boundary();
   void assemble() const;
-  void add_cell(Index cell, std::span<const Index> faces, Row& row) const;
+  void add_cell(Index cell, std::span<const Index> faces, BlockRow& row) const;
   /// Geometric coefficients of the gradient at a face, with c_V as in FaceGradient.
   struct FaceWeights {
     fv::FaceLine line;
     std::array<Vec3, 4> tangential;
   };
   FaceWeights weights_of(Index face) const;
-  void add_unknown_face(Index face, Row& row) const;
-  void add_flux(Index face, const Tensor3& scale, Row& row) const;
-  void add_vertex(Index point, const Tensor3& block, Row& row) const;
-  void add_face_node(Index face, const Tensor3& block, Row& row) const;
-  void store(Index unknown_node, Row& row) const;
+  void add_unknown_face(Index face, BlockRow& row) const;
+  void add_flux(Index face, const Tensor3& scale, BlockRow& row) const;
+  void add_vertex(Index point, const Tensor3& block, BlockRow& row) const;
+  void add_face_node(Index face, const Tensor3& block, BlockRow& row) const;
+  void store(Index unknown_node, BlockRow& row) const;
   LameConstants lame_at(Index face) const;
   double area(Index face) const { return geometry_->face_area[face].norm(); }
 

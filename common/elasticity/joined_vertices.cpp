@@ -54,8 +54,8 @@ JoinedVertices::JoinedVertices(const mesh::Mesh& mesh, const ElasticOperator& ro
     points_.push_back(v);
     offset_.push_back(offset_.back() + std::ssize(rows.vertices().nodes(v)));
   }
-  const Weights plain = weights(fv::VertexWeights::inverse_distance),
-                least = weights(fv::VertexWeights::least_squares);
+  const JoinedWeights plain = weights(fv::VertexWeights::inverse_distance),
+                      least = weights(fv::VertexWeights::least_squares);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     // The choice is the same as in VertexInterpolation.
     const bool is_plain = !plain.is_wide[i] && plain.magnification[i] <= mesh::longest_reach;
@@ -104,7 +104,7 @@ const Tensor3* JoinedVertices::within(Index point) const {
   return rows_.vertices().on_symmetry(point) ? &rows_.vertices().projector(point) : nullptr;
 }
 
-JoinedVertices::Weights JoinedVertices::weights(fv::VertexWeights kind) const {
+JoinedVertices::JoinedWeights JoinedVertices::weights(fv::VertexWeights kind) const {
   const std::size_t n = std::size_t(mesh_.points.n_local());
   std::vector<double> of_nodes(n * sums_stride, 0.0), of_weights(n * weights_stride, 0.0);
   for (const Index v : points_) {
@@ -113,7 +113,7 @@ JoinedVertices::Weights JoinedVertices::weights(fv::VertexWeights kind) const {
     put(sums, mesh_.is_wide(v), of_nodes.data() + std::size_t(v) * sums_stride);
   }
   periodic_.add_up(of_nodes, sums_stride);
-  Weights result;
+  JoinedWeights result;
   for (const Index v : points_) {
     const Vec3 lambda = sums_at(of_nodes.data() + std::size_t(v) * sums_stride).lambda(mesh_.dim, within(v));
     fv::VertexWeightSums here;

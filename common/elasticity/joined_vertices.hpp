@@ -33,11 +33,11 @@ class JoinedVertices {
  private:
   void refuse_unlike() const;
   /// Weights of one kind and their magnification n sum w^2, per entry of points_.
-  struct Weights {
+  struct JoinedWeights {
     std::vector<double> weight, magnification;
     std::vector<std::uint8_t> is_wide;
   };
-  Weights weights(fv::VertexWeights kind) const;
+  JoinedWeights weights(fv::VertexWeights kind) const;
   Vec3 from_node(Index point, Index node) const;
   const Tensor3* within(Index point) const;
 

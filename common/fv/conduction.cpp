@@ -22,10 +22,10 @@ VertexInterpolation::ByFace stencils_of(const mesh::Mesh& mesh, std::span<const 
 }
 
 /// Sums coefficients by column, found through markers.
-struct Sums {
+struct ColumnSums {
   std::vector<Index> column, place;
   std::vector<double> value;
-  explicit Sums(std::size_t n_columns) : place(n_columns, -1) {}
+  explicit ColumnSums(std::size_t n_columns) : place(n_columns, -1) {}
   void add(Index c, double v) {
     if (place[c] < 0) {
       place[c] = static_cast<Index>(column.size());
@@ -98,7 +98,7 @@ bool ConductionOperator::needs_stencil(Index face) const {
 
 // S| n . grad T = |S| [(T_N - T_P) / (d . n) + sum_V (k . c_V) T_V] (2.58), zero on symmetry planes.
 void ConductionOperator::build_stencils() {
-  Sums nodes(number_.size()), known(n_known());
+  ColumnSums nodes(number_.size()), known(n_known());
   offset_.assign(1, 0);
   known_offset_.assign(1, 0);
   const Index n_cells = mesh_->cells.n_local();
@@ -135,7 +135,7 @@ void ConductionOperator::build_stencils() {
   }
 }
 
-void ConductionOperator::add_term(const Term& term, GlobalIndex row) {
+void ConductionOperator::add_term(const StencilTerm& term, GlobalIndex row) {
   terms_.push_back(term);
   const auto add = [&](GlobalIndex column) {
     row_.push_back(row);
@@ -179,10 +179,10 @@ linalg::SparseMatrix ConductionOperator::make_matrix() const {
   return {mesh_->comm, static_cast<GlobalIndex>(n_unknowns()), row_, column_};
 }
 
-void ConductionOperator::fill(const Weights& weights, linalg::SparseMatrix& matrix) const {
+void ConductionOperator::fill(const RowFactors& weights, linalg::SparseMatrix& matrix) const {
   std::vector<double> values;
   values.reserve(row_.size());
-  for (const Term& term : terms_) {
+  for (const StencilTerm& term : terms_) {
     const double scale = term.sign * (term.in_cell_row ? weights.share : 1);
     if (term.kind == Kind::conduction) {
       const double k = scale * weights.conductivity[term.index];
@@ -198,7 +198,7 @@ void ConductionOperator::fill(const Weights& weights, linalg::SparseMatrix& matr
   matrix.fill(values);
 }
 
-void ConductionOperator::subtract_known(const Weights& weights, std::span<const double> known,
+void ConductionOperator::subtract_known(const RowFactors& weights, std::span<const double> known,
                                         std::span<double> rhs) const {
   const Index n_owned = mesh_->cells.n_owned();
   const auto known_heat = [&](Index f) {

@@ -54,15 +54,15 @@ class ConductionOperator {
   linalg::SparseMatrix make_matrix() const;
 
   /// Coefficients of the stencils in the rows.
-  struct Weights {
+  struct RowFactors {
     std::span<const double> conductivity;  ///< k_f per local face (ghosts: only bonded) [W/(m K)]
     std::span<const double> transfer;      ///< h per entry of flux_faces() [W/(m^2 K)], or empty
     std::span<const double> capacity;      ///< on the diagonal of owned cells [W/K], or empty
     double share = 1;                      ///< of the conduction in the cell rows (trapezoidal rule: 1/2)
   };
-  void fill(const Weights& weights, linalg::SparseMatrix& matrix) const;
+  void fill(const RowFactors& weights, linalg::SparseMatrix& matrix) const;
   /// Subtracts the known columns times `known`: values of known points, then of known faces.
-  void subtract_known(const Weights& weights, std::span<const double> known, std::span<double> rhs) const;
+  void subtract_known(const RowFactors& weights, std::span<const double> known, std::span<double> rhs) const;
 
   /// Copies the value of a bonded face's first side to the second (`boundary`: up-to-date ghosts).
   void join_twins(std::span<double> boundary) const;
@@ -86,7 +86,7 @@ class ConductionOperator {
  private:
   enum class Kind : std::uint8_t { conduction, transfer, capacity };
   /// Term of a row. A conduction term is the stencil of a face.
-  struct Term {
+  struct StencilTerm {
     Kind kind;
     bool in_cell_row;  // scaled by Weights::share
     double sign;
@@ -100,7 +100,7 @@ class ConductionOperator {
   Index twin_of(Index face) const { return mesh_->n_interior + mesh_->twin[face - mesh_->n_interior]; }
   bool needs_stencil(Index face) const;
   void build_rows();
-  void add_term(const Term& term, GlobalIndex row);
+  void add_term(const StencilTerm& term, GlobalIndex row);
 
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
@@ -115,7 +115,7 @@ class ConductionOperator {
   std::vector<std::int64_t> offset_, known_offset_;
   std::vector<Index> node_, known_column_;
   std::vector<double> coefficient_, known_coefficient_;
-  std::vector<Term> terms_;  // of all rows, in the order of the triplets
+  std::vector<StencilTerm> terms_;  // of all rows, in the order of the triplets
   std::vector<GlobalIndex> row_, column_;
 };
 

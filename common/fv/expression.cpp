@@ -32,10 +32,10 @@ double value_in_table(void* data, double at) {
 /// Rejects what muParser reads in another way than a reader of the docs: a comma outside the arguments of a
 /// function (1,5 is 5), an assignment, and comparisons in a row (0 < x < 1 compares 0 or 1 with 1).
 void refuse_other_meanings(const std::string& text) {
-  struct Level {
+  struct BracketLevel {
     bool takes_commas = false, compares = false;
   };
-  std::vector<Level> levels(1);
+  std::vector<BracketLevel> levels(1);
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto is = [&](std::size_t at, std::string_view set) {
       return at < text.size() && set.find(text[at]) != std::string_view::npos;
@@ -66,7 +66,7 @@ void refuse_other_meanings(const std::string& text) {
 }  // namespace
 
 // muParser binds variables by address, so they are in one block with the parser that never moves.
-struct Expression::State {
+struct Expression::ParserState {
   std::string text = "0", where;
   config::KeyFacts key;
   std::deque<Table> tables;
@@ -80,8 +80,8 @@ struct Expression::State {
   std::vector<double> instants;  // at which it may jump
   bool acts = false;             // it had a value other than 0 before Use::since, so that its place is known
 
-  State() = default;
-  State(const config::ExpressionText& source, std::string place)
+  ParserState() = default;
+  ParserState(const config::ExpressionText& source, std::string place)
       : text(source.text), where(std::move(place)), key(source.key) {
     static constexpr std::array<const char*, 4> names{"x", "y", "z", "t"};
     try {
@@ -214,10 +214,10 @@ std::map<std::string, Use>& uses() {
   return all;
 }
 
-Expression::Expression() : state_(std::make_unique<State>()) {}
+Expression::Expression() : state_(std::make_unique<ParserState>()) {}
 Expression::Expression(const config::ExpressionText& text, std::string where)
-    : state_(std::make_unique<State>(text, std::move(where))) {}
-Expression::Expression(double constant) : state_(std::make_unique<State>()) {
+    : state_(std::make_unique<ParserState>(text, std::move(where))) {}
+Expression::Expression(double constant) : state_(std::make_unique<ParserState>()) {
   state_->text = fmt::format("{}", constant);
   state_->constant = constant;
 }

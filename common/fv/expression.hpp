@@ -38,8 +38,8 @@ class Expression {
   bool is_zero() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct ParserState;
+  std::unique_ptr<ParserState> state_;
 };
 
 /// Compiles one expression per component. Throws Error with `where` unless there are `dim` texts.

@@ -35,7 +35,7 @@ Corner middle(const Corner& a, const Corner& b) { return {0.5 * (a.x + b.x), 0.5
 
 /// Piece of a face: a segment (N = 2) or a triangle (N = 3).
 template <std::size_t N>
-struct Piece {
+struct FaceSimplex {
   using Corners = std::array<Corner, N>;
   static constexpr int children = N == 2 ? 2 : 4;
 
@@ -98,9 +98,9 @@ FaceMean mean_over_face(std::span<const Vec3> corners, const Vec3& center,
   const std::size_t n = corners.size();
   FaceMean mean;
   if (n == 2) {
-    Piece<2> piece{f};
+    FaceSimplex<2> piece{f};
     for (std::size_t i = 0; i < n; ++i) {
-      const Piece<2>::Corners half{{{center, Vec3::Zero()}, {corners[i], Vec3::UnitX()}}};
+      const FaceSimplex<2>::Corners half{{{center, Vec3::Zero()}, {corners[i], Vec3::UnitX()}}};
       const Means means = piece.adaptive(half, piece.rule(half), 0.5, 0);
       mean.whole += 0.5 * means.whole;
       mean.corner[i] = 0.5 * means.hat[0];
@@ -111,11 +111,11 @@ FaceMean mean_over_face(std::span<const Vec3> corners, const Vec3& center,
   double whole = 0;
   for (std::size_t i = 0; i < n; ++i)
     whole += area[i] = (corners[i] - center).cross(corners[(i + 1) % n] - center).norm();
-  Piece<3> piece{f};
+  FaceSimplex<3> piece{f};
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t j = (i + 1) % n;
     const double share = area[i] / whole;
-    const Piece<3>::Corners triangle{
+    const FaceSimplex<3>::Corners triangle{
         {{center, Vec3::Zero()}, {corners[i], Vec3::UnitX()}, {corners[j], Vec3::UnitY()}}};
     const Means means = piece.adaptive(triangle, piece.rule(triangle), share, 0);
     mean.whole += share * means.whole;

@@ -52,7 +52,7 @@ Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>&
 }
 
 /// Numbers row by row, one per column of the file.
-struct Rows {
+struct NumberRows {
   std::size_t width = 0;
   std::vector<double> values;
   std::vector<int> line;
@@ -60,8 +60,8 @@ struct Rows {
   double operator()(std::size_t row, int column) const { return values[row * width + std::size_t(column)]; }
 };
 
-Rows rows_of(csv::CsvReader& reader) {
-  Rows rows{reader.names().size(), {}, {}};
+NumberRows rows_of(csv::CsvReader& reader) {
+  NumberRows rows{reader.names().size(), {}, {}};
   while (reader.next()) {
     for (std::size_t i = 0; i < rows.width; ++i) rows.values.push_back(reader.number(i, reader.names()[i]));
     rows.line.push_back(reader.line());
@@ -85,7 +85,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
     throw Error("{}: the first line must name the columns, such as 'y,t,{}'.", file.string(),
                 base::join(values, ","));
   const Columns columns = columns_of(reader, values);
-  const Rows rows = rows_of(reader);
+  const NumberRows rows = rows_of(reader);
   if (rows.size() == 0) throw Error("{}: the table has no values.", file.string());
   GridTable table;
   table.file_ = file.string();

@@ -14,7 +14,7 @@
 
 namespace couplet::io {
 
-struct CheckpointWriter::State {
+struct CheckpointWriter::WriterState {
   MPI_Comm comm;
   std::filesystem::path file, part;
   hdf5::Handle id;
@@ -27,7 +27,7 @@ struct CheckpointWriter::State {
 
   void write_array(const std::string& name, std::span<const double> values) const {
     require_new(array_path(name), name);
-    const hdf5::Rows rows = hdf5::distribute_rows(comm, values.size(), 1);
+    const hdf5::RowSpan rows = hdf5::distribute_rows(comm, values.size(), 1);
     hdf5::write_table(id, array_path(name), rows, values.data());
     const auto count = static_cast<std::int64_t>(values.size());
     hdf5::write_table(id, layout_path(name), hdf5::distribute_rows(comm, 1, 1), &count);
@@ -68,7 +68,7 @@ struct CheckpointWriter::State {
 };
 
 CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& file)
-    : state_(std::make_unique<State>()) {
+    : state_(std::make_unique<WriterState>()) {
   state_->comm = comm;
   state_->file = file;
   state_->part = file.string() + ".part";

@@ -71,8 +71,8 @@ class CheckpointWriter {
   MPI_Comm comm() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct WriterState;
+  std::unique_ptr<WriterState> state_;
   StateInMemory* memory_ = nullptr;
 };
 
@@ -112,8 +112,8 @@ class CheckpointReader {
   std::vector<double> read(const std::string& name);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct ReaderState;
+  std::unique_ptr<ReaderState> state_;
   const std::vector<double>& in_memory(const std::string& name) const;
   /// Copies `all` to `values`. Throws Error if the sizes differ.
   void fill(const std::string& name, std::span<double> values, const std::vector<double>& all) const;

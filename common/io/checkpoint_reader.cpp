@@ -110,7 +110,7 @@ std::string problem_of_checkpoint(const std::filesystem::path& file) {
   return "";
 }
 
-struct CheckpointReader::State {
+struct CheckpointReader::ReaderState {
   MPI_Comm comm;
   hdf5::Reader in;
   int ranks = 0;            // that wrote it
@@ -127,7 +127,7 @@ struct CheckpointReader::State {
     return parallel::on_all(comm, [&] {
       if (!in.has(array_path(name)) || !in.has(layout_path(name))) missing(name);
       const std::vector<std::int64_t> layout = layout_of_array(in, name, ranks);
-      hdf5::Rows rows;
+      hdf5::RowSpan rows;
       for (int r = 0; r < ranks; ++r) {
         if (r < from) rows.first += std::uint64_t(layout[r]);
         rows.total += std::uint64_t(layout[r]);
@@ -198,7 +198,7 @@ struct CheckpointReader::State {
 CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& file) {
   parallel::on_root(comm, [&] { examine_checkpoint(file); });
   parallel::on_all(comm, [&] {
-    state_ = std::make_unique<State>(State{comm, open_checkpoint(file)});
+    state_ = std::make_unique<ReaderState>(ReaderState{comm, open_checkpoint(file)});
     state_->ranks = ranks_that_wrote(state_->in);
     state_->same_share = state_->ranks == parallel::comm_size(comm);
   });

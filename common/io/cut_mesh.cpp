@@ -61,7 +61,7 @@ class CutMeshWriter {
   /// Writes `count` rows of `width` values of this rank and stores the digest with the table.
   template <class T>
   void table(const char* name, std::span<const T> values, std::uint64_t width) {
-    const hdf5::Rows rows = hdf5::distribute_rows(comm_, values.size() / width, width);
+    const hdf5::RowSpan rows = hdf5::distribute_rows(comm_, values.size() / width, width);
     hdf5::write_table(file_, name, rows, values.data());
     std::uint64_t digest = cut::digest_of(values, rows.first * width);
     MPI_Allreduce(MPI_IN_PLACE, &digest, 1, MPI_UINT64_T, MPI_SUM, comm_);

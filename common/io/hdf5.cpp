@@ -42,12 +42,12 @@ Handle file_access(MPI_Comm comm) {
   return access;
 }
 
-Handle file_space(const Rows& rows) {
+Handle file_space(const RowSpan& rows) {
   const hsize_t size[2] = {rows.total, rows.width};
   return {H5Screate_simple(rows.width == 1 ? 1 : 2, size, nullptr), H5Sclose};
 }
 
-void select(const Handle& space, const Rows& rows) {
+void select(const Handle& space, const RowSpan& rows) {
   const hsize_t start[2] = {rows.first, 0}, count[2] = {rows.count, rows.width};
   if (rows.count == 0)
     H5Sselect_none(space);
@@ -55,7 +55,7 @@ void select(const Handle& space, const Rows& rows) {
     H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, count, nullptr);
 }
 
-Handle memory_space(const Rows& rows) {
+Handle memory_space(const RowSpan& rows) {
   const hsize_t size[1] = {rows.count * rows.width};
   Handle space(H5Screate_simple(1, size, nullptr), H5Sclose);
   if (rows.count == 0) H5Sselect_none(space);
@@ -71,7 +71,7 @@ bool is_shared(hid_t object) {
 
 /// Layout of a table. Compressed tables are stored in blocks of rows with sorted bytes (shuffle), since
 /// neighboring values differ only in their last bytes.
-Handle layout_of(const Rows& rows) {
+Handle layout_of(const RowSpan& rows) {
   constexpr std::uint64_t block = 1 << 15;  // values
   Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   if (rows.compression == 0 || rows.total == 0) return layout;
@@ -82,7 +82,7 @@ Handle layout_of(const Rows& rows) {
   return layout;
 }
 
-void write_any(hid_t place, const std::string& path, const Rows& rows, hid_t type, const void* values) {
+void write_any(hid_t place, const std::string& path, const RowSpan& rows, hid_t type, const void* values) {
   const Quiet quiet;
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
@@ -162,17 +162,17 @@ Handle make_group(hid_t place, const std::string& path) {
                  path);
 }
 
-Rows distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width) {
+RowSpan distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width) {
   const auto mine = static_cast<GlobalIndex>(count);
   return {static_cast<std::uint64_t>(parallel::exclusive_scan(comm, mine)), count,
           static_cast<std::uint64_t>(parallel::sum(comm, mine)), width};
 }
 
-void write_table(hid_t place, const std::string& path, const Rows& rows, const double* values) {
+void write_table(hid_t place, const std::string& path, const RowSpan& rows, const double* values) {
   write_any(place, path, rows, H5T_NATIVE_DOUBLE, values);
 }
 
-void write_table(hid_t place, const std::string& path, const Rows& rows, const std::int64_t* values) {
+void write_table(hid_t place, const std::string& path, const RowSpan& rows, const std::int64_t* values) {
   write_any(place, path, rows, H5T_NATIVE_INT64, values);
 }
 

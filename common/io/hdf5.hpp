@@ -72,16 +72,16 @@ Handle open_written(hid_t place, const std::string& table);
 void remove(hid_t place, const std::string& path);
 
 /// Rows [first, first + count) of a distributed table that this rank holds, with `width` values each.
-struct Rows {
+struct RowSpan {
   std::uint64_t first = 0, count = 0, total = 0, width = 1;
   int compression = 0;  ///< level of deflate; 0 writes the table as one block
 };
 /// Rows of this rank if every rank contributes `count`. Collective.
-Rows distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width);
+RowSpan distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width);
 
 /// Writes a table of doubles or 64-bit integers from all ranks. Width 1 makes a 1-D table. Collective.
-void write_table(hid_t place, const std::string& path, const Rows& rows, const double* values);
-void write_table(hid_t place, const std::string& path, const Rows& rows, const std::int64_t* values);
+void write_table(hid_t place, const std::string& path, const RowSpan& rows, const double* values);
+void write_table(hid_t place, const std::string& path, const RowSpan& rows, const std::int64_t* values);
 /// Writes an attribute with the same value on all ranks. Collective.
 void write_attribute(hid_t object, const std::string& name, double value);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
@@ -116,8 +116,8 @@ class Reader final {
   std::uint64_t rows(const std::string& path, std::uint64_t width) const;
   /// Reads rows [first, first + count) of a numeric table that must be total x width. Integers are read only
   /// from integers.
-  void read(const std::string& path, const Rows& rows, double* values) const;
-  void read(const std::string& path, const Rows& rows, std::int64_t* values) const;
+  void read(const std::string& path, const RowSpan& rows, double* values) const;
+  void read(const std::string& path, const RowSpan& rows, std::int64_t* values) const;
   /// Reads a whole table of n rows.
   std::vector<double> table(const std::string& path, std::uint64_t n, std::uint64_t width) const;
 
@@ -128,17 +128,18 @@ class Reader final {
 
  private:
   enum class Kind { numbers, integers };
-  struct Table;
+  struct Dataset;
   Handle find(const std::string& path) const;
   void add_leaves(const std::string& group, const std::string& below, std::size_t& left,
                   std::vector<std::string>& to) const;
   Handle object(const std::string& path) const;
   Handle attribute(const std::string& path, const std::string& name) const;
-  Table open(const std::string& path, Kind kind) const;
-  void check_storage(const std::string& path, const Table& table) const;
+  Dataset open(const std::string& path, Kind kind) const;
+  void check_storage(const std::string& path, const Dataset& table) const;
   void check_filters(const std::string& path, const Handle& storage) const;
-  Table open(const std::string& path, Kind kind, const Rows& rows) const;
-  void read(const std::string& path, const Table& table, const Rows& rows, hid_t type, void* values) const;
+  Dataset open(const std::string& path, Kind kind, const RowSpan& rows) const;
+  void read(const std::string& path, const Dataset& data, const RowSpan& rows, hid_t type,
+            void* values) const;
 
   std::filesystem::path file_;
   std::string what_, advice_;

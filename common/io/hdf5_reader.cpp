@@ -14,7 +14,7 @@ namespace couplet::io::hdf5 {
 namespace {
 
 /// Dimensions of a dataspace; a single value has none. Not sound if empty or with more than four dimensions.
-struct Shape {
+struct DataShape {
   bool sound = false;
   std::vector<std::uint64_t> size;
   std::string text() const;
@@ -62,7 +62,7 @@ std::string name_of(hid_t type) {
   }
 }
 
-std::string Shape::text() const {
+std::string DataShape::text() const {
   if (!sound) return "no values or too many dimensions";
   if (size.empty()) return "one value";
   std::vector<std::string> words;
@@ -70,12 +70,12 @@ std::string Shape::text() const {
   return base::join(words, " x ") + (size.size() == 1 ? " values" : " table");
 }
 
-bool Shape::is_one_value() const {
+bool DataShape::is_one_value() const {
   return sound && std::ranges::all_of(size, [](std::uint64_t n) { return n == 1; });
 }
 
-Shape shape_of(hid_t space) {
-  Shape shape;
+DataShape shape_of(hid_t space) {
+  DataShape shape;
   const H5S_class_t kind = H5Sget_simple_extent_type(space);
   if (kind == H5S_SCALAR) shape.sound = true;
   if (kind != H5S_SIMPLE) return shape;
@@ -97,7 +97,7 @@ const char* name_of_link(H5L_type_t type) {
 
 }  // namespace
 
-struct Reader::Table {
+struct Reader::Dataset {
   Handle id, type, space;
   std::uint64_t rows = 0, width = 1;
   bool is_flat = true;  // one dimension
@@ -175,7 +175,7 @@ double Reader::number(const std::string& path, const std::string& name) const {
   const Handle found = attribute(path, name);
   const Quiet quiet;
   const Handle type(H5Aget_type(found), H5Tclose), space(H5Aget_space(found), H5Sclose);
-  const Shape shape = shape_of(space);
+  const DataShape shape = shape_of(space);
   if (!shape.is_one_value() || !(is_real(type) || is_integer(type)))
     refuse(fmt::format("the attribute '{}' of '{}' contains {} ({}); expected one number", name, path,
                        shape.text(), name_of(type)));
@@ -189,7 +189,7 @@ std::string Reader::text(const std::string& path, const std::string& name, std::
   const Handle found = attribute(path, name);
   const Quiet quiet;
   const Handle type(H5Aget_type(found), H5Tclose), space(H5Aget_space(found), H5Sclose);
-  const Shape shape = shape_of(space);
+  const DataShape shape = shape_of(space);
   const std::size_t size = type < 0 ? 0 : H5Tget_size(type);
   if (!shape.is_one_value() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
       size == 0 || size > longest)
@@ -220,7 +220,7 @@ void Reader::check_filters(const std::string& path, const Handle& storage) const
 }
 
 // Checks where the values are stored and that they fit into the file.
-void Reader::check_storage(const std::string& path, const Table& table) const {
+void Reader::check_storage(const std::string& path, const Dataset& table) const {
   const Handle storage(H5Dget_create_plist(table.id), H5Pclose);
   if (storage < 0) refuse(fmt::format("the storage of the table '{}' is damaged ({})", path, reason()));
   if (H5Pget_external_count(storage) != 0)
@@ -253,8 +253,8 @@ void Reader::check_storage(const std::string& path, const Table& table) const {
                     path, table.bytes, bytes_, most));
 }
 
-Reader::Table Reader::open(const std::string& path, Kind kind) const {
-  Table table;
+Reader::Dataset Reader::open(const std::string& path, Kind kind) const {
+  Dataset table;
   table.id = object(path);
   const Quiet quiet;
   if (H5Iget_type(table.id) != H5I_DATASET)
@@ -263,7 +263,7 @@ Reader::Table Reader::open(const std::string& path, Kind kind) const {
   table.space = Handle(H5Dget_space(table.id), H5Sclose);
   if (table.type < 0 || table.space < 0)
     refuse(fmt::format("cannot read the table '{}' ({})", path, reason()));
-  const Shape shape = shape_of(table.space);
+  const DataShape shape = shape_of(table.space);
   const bool right = is_integer(table.type) || (kind == Kind::numbers && is_real(table.type));
   if (!right || !shape.sound || shape.size.empty() || shape.size.size() > 2)
     refuse(fmt::format("the table '{}' contains {} ({}); expected one or two dimensions of {}", path,
@@ -279,8 +279,8 @@ Reader::Table Reader::open(const std::string& path, Kind kind) const {
   return table;
 }
 
-Reader::Table Reader::open(const std::string& path, Kind kind, const Rows& rows) const {
-  Table table = open(path, kind);
+Reader::Dataset Reader::open(const std::string& path, Kind kind, const RowSpan& rows) const {
+  Dataset table = open(path, kind);
   if (table.rows != rows.total || table.width != rows.width)
     refuse(fmt::format("the table '{}' has {} rows of {} values; expected {} of {}", path, table.rows,
                        table.width, rows.total, rows.width));
@@ -290,7 +290,7 @@ Reader::Table Reader::open(const std::string& path, Kind kind, const Rows& rows)
   return table;
 }
 
-void Reader::read(const std::string& path, const Table& table, const Rows& rows, hid_t type,
+void Reader::read(const std::string& path, const Dataset& table, const RowSpan& rows, hid_t type,
                   void* values) const {
   if (rows.count == 0 || rows.width == 0) return;
   const Quiet quiet;
@@ -304,23 +304,23 @@ void Reader::read(const std::string& path, const Table& table, const Rows& rows,
 }
 
 std::uint64_t Reader::rows(const std::string& path, std::uint64_t width) const {
-  const Table table = open(path, Kind::numbers);
+  const Dataset table = open(path, Kind::numbers);
   if (table.width != width)
     refuse(fmt::format("the table '{}' has {} values per row; expected {}", path, table.width, width));
   return table.rows;
 }
 
-void Reader::read(const std::string& path, const Rows& rows, double* values) const {
+void Reader::read(const std::string& path, const RowSpan& rows, double* values) const {
   read(path, open(path, Kind::numbers, rows), rows, H5T_NATIVE_DOUBLE, values);
 }
 
-void Reader::read(const std::string& path, const Rows& rows, std::int64_t* values) const {
+void Reader::read(const std::string& path, const RowSpan& rows, std::int64_t* values) const {
   read(path, open(path, Kind::integers, rows), rows, H5T_NATIVE_INT64, values);
 }
 
 std::vector<double> Reader::table(const std::string& path, std::uint64_t n, std::uint64_t width) const {
-  const Rows rows{0, n, n, width};
-  const Table table = open(path, Kind::numbers, rows);
+  const RowSpan rows{0, n, n, width};
+  const Dataset table = open(path, Kind::numbers, rows);
   std::vector<double> values(n * width);
   read(path, table, rows, H5T_NATIVE_DOUBLE, values.data());
   return values;

@@ -6,18 +6,18 @@
 
 namespace couplet::linalg {
 
-Accelerator::Accelerator(MPI_Comm comm, std::size_t n, const Acceleration& options)
+VectorAccelerator::VectorAccelerator(MPI_Comm comm, std::size_t n, const Acceleration& options)
     : comm_(comm), options_(options), last_step_(n) {
   if (options.type == Acceleration::Type::anderson) last_u_.resize(n);
 }
 
-void Accelerator::restart() {
+void VectorAccelerator::restart() {
   steps_ = 0;
   du_.clear();
   df_.clear();
 }
 
-void Accelerator::advance(std::span<double> u, std::span<const double> step) {
+void VectorAccelerator::advance(std::span<double> u, std::span<const double> step) {
   ++steps_;
   if (options_.type == Acceleration::Type::anderson) return anderson(u, step);
   if (options_.type == Acceleration::Type::aitken) return aitken(u, step);
@@ -25,7 +25,7 @@ void Accelerator::advance(std::span<double> u, std::span<const double> step) {
 }
 
 //   u <- u + r - gamma r,   gamma = r . (r - r') / |r - r'|^2        (2.70)-(2.72), sign corrected
-void Accelerator::aitken(std::span<double> u, std::span<const double> step) {
+void VectorAccelerator::aitken(std::span<double> u, std::span<const double> step) {
   double factor = 1;
   if (steps_ % options_.every == 0 && steps_ > 1) {
     double sums[2] = {0, 0};
@@ -45,7 +45,7 @@ void Accelerator::aitken(std::span<double> u, std::span<const double> step) {
 
 // Uses differences dU, dF of the last m iterates and steps: u <- u + f - (dU + dF) g, where g minimizes |f -
 // dF g|.
-void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
+void VectorAccelerator::anderson(std::span<double> u, std::span<const double> step) {
   const std::size_t n = u.size();
   if (steps_ > 1) {
     if (std::ssize(du_) == options_.history) {

@@ -21,9 +21,9 @@ struct Acceleration {
 };
 
 /// Accelerates the unknowns of an iteration. Collective.
-class Accelerator {
+class VectorAccelerator {
  public:
-  Accelerator(MPI_Comm comm, std::size_t n, const Acceleration& options);
+  VectorAccelerator(MPI_Comm comm, std::size_t n, const Acceleration& options);
 
   void restart();
   /// Computes the next iterate from `u` and `step` = f(u).

@@ -105,7 +105,7 @@ LinearMap CellSolver::make_cycle() const {
   const bool closed = largest < little;
   const double constant = closed && largest > round_off ? 1 / all : 0;
   const auto cycle = std::make_shared<Cycle>(rows_of(graph_, diagonal_, faces_),
-                                             Cycle::Options{1, &graph_.cells, graph_.comm, closed});
+                                             Cycle::MultigridOptions{1, &graph_.cells, graph_.comm, closed});
   return [cycle, constant, comm = graph_.comm](std::span<const double> b, std::span<double> x) {
     cycle->apply(b, x, 1);
     if (constant == 0) return;

@@ -139,7 +139,7 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
     const Level& fine, Index n_coarse) const {
   GhostRows ghosts;
   if (!fine.map) return ghosts;
-  struct Entry {
+  struct GhostEntry {
     GlobalIndex column;
     float value[lanes];
   };
@@ -148,9 +148,9 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
   Index most = 0;
   for (Index i = 0; i < n; ++i) most = std::max(most, fine.p_offset[i + 1] - fine.p_offset[i]);
   most = static_cast<Index>(parallel::max(comm_, double(most)));
-  std::vector<std::vector<Entry>> of_ghost(std::size_t(n_local - n));
+  std::vector<std::vector<GhostEntry>> of_ghost(std::size_t(n_local - n));
   // Exchanges one entry per row at a time to save memory.
-  std::vector<Entry> entries(n_local);
+  std::vector<GhostEntry> entries(n_local);
   for (Index k = 0; k < most; ++k) {
     for (Index i = 0; i < n; ++i) {
       entries[i] = {-1, {}};
@@ -159,17 +159,17 @@ typename AggregationMultigrid<Number>::GhostRows AggregationMultigrid<Number>::r
       entries[i].column = first + fine.p_index[at];
       for (int l = 0; l < lanes; ++l) entries[i].value[l] = lane(fine.p_value[at], l);
     }
-    fine.map->update_ghosts(std::as_writable_bytes(std::span(entries)), sizeof(Entry));
+    fine.map->update_ghosts(std::as_writable_bytes(std::span(entries)), sizeof(GhostEntry));
     for (Index i = n; i < n_local; ++i)
       if (entries[i].column >= 0) of_ghost[i - n].push_back(entries[i]);
   }
   std::vector<GlobalIndex> columns;
   for (const auto& row : of_ghost)
-    for (const Entry& e : row) columns.push_back(e.column);
+    for (const GhostEntry& e : row) columns.push_back(e.column);
   std::ranges::sort(columns);
   columns.erase(std::ranges::unique(columns).begin(), columns.end());
   for (const auto& row : of_ghost) {
-    for (const Entry& e : row) {
+    for (const GhostEntry& e : row) {
       const auto place = std::ranges::lower_bound(columns, e.column) - columns.begin();
       ghosts.index.push_back(n_coarse + static_cast<Index>(place));
       Lanes& value = ghosts.value.emplace_back();
@@ -268,7 +268,7 @@ void sort_rows(Rows& a) {
 }  // namespace
 
 template <class Number>
-AggregationMultigrid<Number>::AggregationMultigrid(Rows rows, const Options& options)
+AggregationMultigrid<Number>::AggregationMultigrid(Rows rows, const MultigridOptions& options)
     : coarse_factor_(options.coarse_factor),
       closed_(options.closed),
       comm_(options.map && parallel::comm_size(options.comm) > 1 ? options.comm : MPI_COMM_SELF) {
@@ -316,11 +316,11 @@ void AggregationMultigrid<Number>::factor_coarsest() {
     return;  // cannot be coarsened, so only smoothing is applied
   coarsest_rows_ = parallel::GatheredRows(comm_, a.size(), sizeof(Lanes));
   const Index first = coarsest_rows_.first();
-  struct Entry {
+  struct CoarseEntry {
     Index row, column;
     Lanes value;
   };
-  std::vector<Entry> entries;
+  std::vector<CoarseEntry> entries;
   for (Index i = 0; i < a.size(); ++i) {
     entries.push_back({first + i, first + i, a.diagonal[i]});
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
@@ -333,7 +333,7 @@ void AggregationMultigrid<Number>::factor_coarsest() {
   whole_.resize(n);
   for (int l = 0; l < lanes; ++l) {
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
-    for (const Entry& e : entries)  // a pure Neumann problem is singular
+    for (const CoarseEntry& e : entries)  // a pure Neumann problem is singular
       dense(e.row, e.column) = lane(e.value, l) * (e.row == e.column ? 1 + 1e-5F : 1);
     coarsest_.emplace_back(dense);
   }
@@ -355,7 +355,7 @@ void AggregationMultigrid<Number>::gather_coarsest(const Entries& entries) {
     }
   }
   gathered_ = std::make_unique<AggregationMultigrid>(
-      std::move(all), Options{.coarse_factor = coarse_factor_, .closed = closed_});
+      std::move(all), MultigridOptions{.coarse_factor = coarse_factor_, .closed = closed_});
 }
 
 template <class Number>

@@ -44,7 +44,7 @@ class AggregationMultigrid {
     Index size() const { return static_cast<Index>(offset.size()) - 1; }
   };
 
-  struct Options {
+  struct MultigridOptions {
     /// Factor of the correction by each coarser level. 1 if the rows are those of the operator itself.
     float coarse_factor = 1;
     const parallel::IndexMap* map = nullptr;  ///< of the rows, by reference; nullptr if ranks are not coupled
@@ -53,8 +53,8 @@ class AggregationMultigrid {
     bool closed = false;
   };
   /// Builds the hierarchy. Collective over the ranks of the map.
-  explicit AggregationMultigrid(Rows rows) : AggregationMultigrid(std::move(rows), Options{}) {}
-  AggregationMultigrid(Rows rows, const Options& options);
+  explicit AggregationMultigrid(Rows rows) : AggregationMultigrid(std::move(rows), MultigridOptions{}) {}
+  AggregationMultigrid(Rows rows, const MultigridOptions& options);
 
   /// Computes x = V(b) with `components` values per row. Collective.
   void apply(std::span<const double> b, std::span<double> x, int components);

@@ -54,7 +54,7 @@ class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
 };
 
 /// Adds "warning: " or "error: " before the message.
-class Kind final : public spdlog::custom_flag_formatter {
+class Label final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
     std::string_view text;
@@ -62,7 +62,7 @@ class Kind final : public spdlog::custom_flag_formatter {
     if (message.level >= spdlog::level::err) text = "error: ";
     out.append(text.data(), text.data() + text.size());
   }
-  std::unique_ptr<spdlog::custom_flag_formatter> clone() const override { return std::make_unique<Kind>(); }
+  std::unique_ptr<spdlog::custom_flag_formatter> clone() const override { return std::make_unique<Label>(); }
 };
 
 std::string pattern(const std::string& participant, int rank) {
@@ -88,7 +88,7 @@ void setup(const std::string& participant, int rank, Verbosity verbosity, const 
   }
   const auto logger = std::make_shared<spdlog::logger>(participant, sinks.begin(), sinks.end());
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<Kind>('*').set_pattern(pattern(participant, rank));
+  formatter->add_flag<Label>('*').set_pattern(pattern(participant, rank));
   logger->set_formatter(std::move(formatter));
   if (verbosity == Verbosity::verbose)
     logger->set_level(spdlog::level::debug);

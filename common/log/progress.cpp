@@ -223,7 +223,7 @@ std::string eta(double done, double total, double wall_seconds) {
 }
 
 std::string Timers::table(const std::string& title, double total) const {
-  std::vector<std::pair<std::string, Entry>> rows(entries_.begin(), entries_.end());
+  std::vector<std::pair<std::string, Timing>> rows(entries_.begin(), entries_.end());
   std::stable_sort(rows.begin(), rows.end(),
                    [](const auto& a, const auto& b) { return a.second.seconds > b.second.seconds; });
   std::size_t width = title.size();

@@ -36,21 +36,21 @@ std::string eta(double done, double total, double wall_seconds);
 /// Accumulated seconds and calls by name. Waiting time has a row of its own ("waiting for coupler").
 class Timers {
  public:
-  struct Entry {
+  struct Timing {
     double seconds = 0;
     long calls = 0;
   };
   void add(const std::string& name, double seconds) {
-    Entry& e = entries_[name];
+    Timing& e = entries_[name];
     e.seconds += seconds;
     ++e.calls;
   }
-  const std::map<std::string, Entry>& entries() const { return entries_; }
+  const std::map<std::string, Timing>& entries() const { return entries_; }
   /// Table with shares of `total` seconds, largest first.
   std::string table(const std::string& title, double total) const;
 
  private:
-  std::map<std::string, Entry> entries_;
+  std::map<std::string, Timing> entries_;
 };
 
 /// Adds the time until the end of the scope.

@@ -111,12 +111,12 @@ std::vector<TouchingFaces> find_touching_faces(const Mesh& mesh, const Geometry&
   std::vector<Vec3> centres;
   for (const BoundaryFace& face : all) centres.push_back(face.centre);
   const base::PointTree tree(centres);
-  struct Found {
+  struct PatchPair {
     int patch, other;
     bool alike;
     Index at;  // among the faces of all ranks
   };
-  std::vector<Found> found;
+  std::vector<PatchPair> found;
   const auto first = static_cast<Index>(parallel::exclusive_scan(mesh.comm, GlobalIndex(own.size())));
   for (std::size_t i = 0; i < own.size(); ++i)
     for (const Index j : tree.within(own[i].centre, own[i].reach)) {
@@ -130,10 +130,10 @@ std::vector<TouchingFaces> find_touching_faces(const Mesh& mesh, const Geometry&
       if (!alike) found.push_back({other.patch, face.patch, alike, j});
     }
   found = parallel::all_gather(mesh.comm, found);
-  std::ranges::sort(found, {}, [](const Found& f) { return std::tuple(f.patch, f.other, f.at); });
+  std::ranges::sort(found, {}, [](const PatchPair& f) { return std::tuple(f.patch, f.other, f.at); });
   std::map<std::pair<int, int>, TouchingFaces> pairs;
   Index last = -1;
-  for (const Found& f : found) {
+  for (const PatchPair& f : found) {
     if (f.patch > f.other) continue;
     TouchingFaces& pair = pairs[{f.patch, f.other}];
     if (pair.count == 0)

@@ -105,7 +105,7 @@ namespace {
 constexpr const char* format_name = "couplet modes";
 constexpr int format_version = 1;
 
-io::hdf5::Rows rows(std::size_t n, std::size_t width) { return {0, n, n, width}; }
+io::hdf5::RowSpan rows(std::size_t n, std::size_t width) { return {0, n, n, width}; }
 
 void write(const io::hdf5::Handle& id, const char* path, const std::vector<double>& values,
            std::size_t width) {

@@ -18,11 +18,11 @@ namespace couplet::modes {
 namespace {
 
 /// Face at an edge. `forward` is true if it runs from the smaller to the larger vertex number.
-struct Use {
+struct EdgeUse {
   Index face;
   bool forward;
 };
-using Edges = std::map<std::pair<Index, Index>, std::vector<Use>>;
+using Edges = std::map<std::pair<Index, Index>, std::vector<EdgeUse>>;
 
 Edges edges_of(const mesh::Csr& faces) {
   Edges edges;
@@ -82,7 +82,7 @@ WeldedSurface weld(const ModalModel& model) {
   // Touching bodies have edges of four faces, where only faces with the same vertices are connected.
   base::DisjointSets groups(Index(model.faces.size()));
   for (const auto& [edge, uses] : edges_of(model.faces))
-    for (const Use& use : uses) groups.join(uses.front().face, use.face);
+    for (const EdgeUse& use : uses) groups.join(uses.front().face, use.face);
   for (const auto& [edge, uses] : edges_of(welded.faces))
     if (uses.size() == 2) groups.join(uses[0].face, uses[1].face);
   std::map<Index, std::size_t> number;
@@ -141,7 +141,7 @@ std::string surface_problem_of(const ModalModel& model) {
   // More than two faces at an edge may belong to touching bodies, which are oriented consistently in pairs.
   for (const auto& [edge, uses] : edges_of(model.faces)) {
     const bool forward = uses.front().forward;
-    if (uses.size() > 1 && std::ranges::all_of(uses, [&](const Use& u) { return u.forward == forward; }))
+    if (uses.size() > 1 && std::ranges::all_of(uses, [&](const EdgeUse& u) { return u.forward == forward; }))
       return fmt::format(
           "faces {} and {} traverse their edge between vertices {} and {} in the same direction: one of "
           "them is inside out",

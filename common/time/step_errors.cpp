@@ -16,7 +16,7 @@ constexpr double window = 0.25;
 
 }  // namespace
 
-void StepErrors::add(const Seen& seen, int steps) {
+void StepErrors::add(const Inputs& seen, int steps) {
   if (!std::isfinite(seen.error + seen.rate + seen.size + seen.below + seen.highest)) return;
   time_ += steps * seen.dt;
   way_ += steps * seen.dt * seen.rate;
@@ -53,8 +53,8 @@ double StepErrors::over_size() const {
   return all / size_;
 }
 
-StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<const double> now, double dt,
-                                     double dt_old, double size, const Norm& norm, double forgotten) {
+StepErrors::Inputs VelocityErrors::add(std::span<const double> before, std::span<const double> now, double dt,
+                                       double dt_old, double size, const Norm& norm, double forgotten) {
   const bool first_order = local_.order == 1, knows_third = !first_order && has_before_;
   if (knows_third && v_before_.size() != now.size())
     throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
@@ -62,7 +62,7 @@ StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<c
   for (std::size_t i = 0; i < second.size(); ++i) second[i] = (now[i] - before[i]) / dt;
   for (std::size_t i = 0; i < third.size(); ++i)
     third[i] = 2 * (second[i] - (before[i] - v_before_[i]) / dt_old) / (dt + dt_old);
-  StepErrors::Seen seen{
+  StepErrors::Inputs seen{
       .rate = norm(now), .size = size, .dt = dt, .order = local_.order, .forgotten = forgotten};
   const double by_two = norm(second);
   seen.below = first_order ? seen.rate : by_two;

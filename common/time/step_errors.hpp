@@ -23,7 +23,7 @@ namespace couplet::time {
 /// is at most twice that. All norms are taken over the whole field.
 class StepErrors {
  public:
-  struct Seen {
+  struct Inputs {
     double error = 0;               ///< error of the step alone
     double rate = 0;                ///< |u'| at its end [1/s]
     double size = 0;                ///< |u|
@@ -33,7 +33,7 @@ class StepErrors {
     double forgotten = 0;           ///< rate at which damping removes errors [1/s]; 0 if unknown
   };
   /// Adds a step, which represents `steps` steps if the first ones of a run cannot be judged.
-  void add(const Seen& seen, int steps = 1);
+  void add(const Inputs& seen, int steps = 1);
   /// Largest recent |u|.
   double size() const { return size_; }
   /// Remaining error relative to the size of the solution [1]. NaN before the first step.
@@ -82,8 +82,8 @@ class VelocityErrors {
   /// Adds a step dt after dt_old that changed the velocity from `before` to `now` [m/s]. `size` is |u| at its
   /// end; `forgotten` is the rate at which damping removes errors [1/s]. A second-order scheme cannot be
   /// judged in its first step, so the next one represents it. Returns the estimate. Collective if `norm` is.
-  StepErrors::Seen add(std::span<const double> before, std::span<const double> now, double dt, double dt_old,
-                       double size, const Norm& norm, double forgotten = 0);
+  StepErrors::Inputs add(std::span<const double> before, std::span<const double> now, double dt,
+                         double dt_old, double size, const Norm& norm, double forgotten = 0);
   double over_size() const { return errors_.over_size(); }
   double swings() const { return errors_.swings(); }
   /// State for checkpoints. Empty for a run that collected nothing.

@@ -218,7 +218,7 @@ std::vector<double> Unknown::motion(const Iterate& x) const {
   return values;
 }
 
-void History::accepted(Iterate x, double dt, int order) {
+void CouplingHistory::accepted(Iterate x, double dt, int order) {
   if (order > 1) older = std::move(old), older_dt = old_dt;
   if (order > 0) old = std::move(now), old_dt = dt;
   now = std::move(x);
@@ -230,7 +230,7 @@ namespace {
 struct LagrangeWeights {
   double now = 1, old = 0, older = 0;
 };
-LagrangeWeights extrapolation(const History& h, double dt, int order) {
+LagrangeWeights extrapolation(const CouplingHistory& h, double dt, int order) {
   if (order == 0 || h.old.unknown.size() + h.old.dependent.size() == 0) return {};
   const double a = h.old_dt;
   if (order == 1 || h.older.unknown.size() + h.older.dependent.size() == 0) return {1 + dt / a, -dt / a, 0};
@@ -240,7 +240,7 @@ LagrangeWeights extrapolation(const History& h, double dt, int order) {
 
 }  // namespace
 
-Iterate predict(const Unknown& unknown, const History& history, double dt, int order) {
+Iterate predict(const Unknown& unknown, const CouplingHistory& history, double dt, int order) {
   Iterate guess = history.now;
   if (order == 0) return guess;
   const LagrangeWeights w = extrapolation(history, dt, order);

@@ -94,7 +94,7 @@ class Unknown {
 };
 
 /// Accepted steps kept for the predictor.
-struct History {
+struct CouplingHistory {
   Iterate now, old, older;          ///< at t^n, t^{n-1}, t^{n-2}; empty if missing
   double old_dt = 0, older_dt = 0;  ///< t^n - t^{n-1}, t^{n-1} - t^{n-2}
   /// Adds an accepted step; keeps what a predictor of this order requires.
@@ -106,6 +106,6 @@ struct History {
 ///   order 1  eta* = eta^n + dt v^n                                      v* = v^n
 ///   order 2  eta* = eta^n + dt ((1 + r/2) v^n - r/2 v^{n-1})            v* = v^n + r (v^n - v^{n-1})
 /// Other data: polynomial of this order through the last values. With fewer levels the order is lower.
-Iterate predict(const Unknown& unknown, const History& history, double dt, int order);
+Iterate predict(const Unknown& unknown, const CouplingHistory& history, double dt, int order);
 
 }  // namespace couplet::coupler

@@ -120,9 +120,9 @@ CavityFlow VolumeLevel::flow(const Cavity& c, const std::vector<coupling::Exchan
   return {sums[0] - end, sums[1] + std::abs(begin) + std::abs(end), end, begin, sums[2]};
 }
 
-VolumeLevel::Defect VolumeLevel::defect(const std::vector<coupling::Exchange>& known) const {
+VolumeLevel::Mismatch VolumeLevel::defect(const std::vector<coupling::Exchange>& known) const {
   const auto n = Eigen::Index(cavities_.size());
-  Defect d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  Mismatch d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const Cavity& c = cavities_[std::size_t(k)];
     const CavityFlow now = flow(c, known);
@@ -133,8 +133,8 @@ VolumeLevel::Defect VolumeLevel::defect(const std::vector<coupling::Exchange>& k
   return d;
 }
 
-VolumeLevel::Defect VolumeLevel::response_to(std::vector<coupling::Exchange>& known,
-                                             const std::function<void()>& solve_structures) {
+VolumeLevel::Mismatch VolumeLevel::response_to(std::vector<coupling::Exchange>& known,
+                                               const std::function<void()>& solve_structures) {
   for (const Cavity& c : cavities_) put(c, known[c.side]);
   solve_structures();
   return defect(known);
@@ -177,7 +177,7 @@ Eigen::VectorXd VolumeLevel::step_to(const Eigen::VectorXd& g) const {
 
 void VolumeLevel::find(std::vector<coupling::Exchange>& known,
                        const std::function<void()>& solve_structures) {
-  Defect now = defect(known);
+  Mismatch now = defect(known);
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(now.value.size());  // by the loads at rest [m^3/s]
   const auto measure = [&] {
     for (Eigen::Index k = 0; slope_dt_ == dt_ && k < moved.size(); ++k) {
@@ -185,7 +185,7 @@ void VolumeLevel::find(std::vector<coupling::Exchange>& known,
       moved[k] = resting * std::abs(slope_(k, k)) * pressure(c, c.load);
     }
   };
-  const auto share = [&](const Defect& d) {
+  const auto share = [&](const Mismatch& d) {
     double worst = 0;
     for (Eigen::Index k = 0; k < d.value.size(); ++k)
       if (const double size = d.size[k] + moved[k]; size > 0)
@@ -200,7 +200,7 @@ void VolumeLevel::find(std::vector<coupling::Exchange>& known,
   for (int k = 0; k < most_tries; ++k) {
     const Eigen::VectorXd change = step_to(now.value);
     for (Eigen::Index j = 0; j < change.size(); ++j) cavities_[std::size_t(j)].level += change[j];
-    const Defect next = response_to(known, solve_structures);
+    const Mismatch next = response_to(known, solve_structures);
     const double left = share(next);
     if (!std::isfinite(left)) break;
     // The residual of a structure's own solver gives no information about the slope.

@@ -73,12 +73,12 @@ class VolumeLevel {
   std::vector<double> row() const;
 
  private:
-  struct Defect {
+  struct Mismatch {
     Eigen::VectorXd value, size;
   };
   CavityFlow flow(const Cavity& cavity, const std::vector<coupling::Exchange>& known) const;
-  Defect defect(const std::vector<coupling::Exchange>& known) const;
-  Defect response_to(std::vector<coupling::Exchange>& known, const std::function<void()>& solve_structures);
+  Mismatch defect(const std::vector<coupling::Exchange>& known) const;
+  Mismatch response_to(std::vector<coupling::Exchange>& known, const std::function<void()>& solve_structures);
   void put(const Cavity& cavity, coupling::Exchange& given) const;
   void probe(std::vector<coupling::Exchange>& known, const std::function<void()>& solve_structures,
              const Eigen::VectorXd& now);

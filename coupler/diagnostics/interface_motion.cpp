@@ -82,7 +82,7 @@ class InterfaceWork final : public CouplingDiagnostic {
     balance_.accepted(given, taken);
   }
   void conclude(diagnostics::Report& report) override {
-    const WorkBalance::Result v = balance_.result(
+    const WorkBalance::WorkResult v = balance_.result(
         view_.parameters.mapping.type == MappingParameters::Type::nearest, !view_.pass.schedule().iterates);
     if (v.text.empty()) return;
     if (v.sound)
@@ -208,11 +208,11 @@ void WorkBalance::accepted(double fluid, double structure) {
   ++steps_;
 }
 
-WorkBalance::Result WorkBalance::result(bool by_nearest, bool lagging) const {
+WorkBalance::WorkResult WorkBalance::result(bool by_nearest, bool lagging) const {
   if (steps_ == 0 || exchanged_ == 0) return {};
   const double apart = std::abs(fluid_ - structure_), net = std::min(std::abs(fluid_), std::abs(structure_)),
                energy = energy_ > 0 ? energy_ : stored_, against = std::max(net, energy);
-  Result v;
+  WorkResult v;
   // Only noise has been exchanged if the difference is at round-off.
   v.part = apart <= 1e-12 * exchanged_ ? 0 : apart / std::max(against, 1e-12 * exchanged_);
   v.sound = v.part < sound_part;

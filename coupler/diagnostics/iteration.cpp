@@ -140,7 +140,7 @@ class CouplingError final : public CouplingDiagnostic {
  private:
   /// A residual r at the end of a step is an error 4 r/dt^2 of the acceleration.
   void see_noise() {
-    const History& known = view_.history;
+    const CouplingHistory& known = view_.history;
     if (residuals_.empty() || !(known.old_dt > 0) || known.old.unknown.size() != known.now.unknown.size())
       return;
     const double before = known.old_dt, dt = view_.dt;

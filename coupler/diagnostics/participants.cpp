@@ -180,7 +180,7 @@ class StructureAtRest final : public CouplingDiagnostic {
     for (std::size_t s = 0; s < sides.size(); ++s) {
       const coupling::Interface& i = sides[s].interface;
       if (!find_datum(i.gives, "displacement")) continue;
-      Structure one{.side = s, .loads = {}, .unit = {}};
+      RestingStructure one{.side = s, .loads = {}, .unit = {}};
       for (const auto& datum : i.takes)
         if (datum.unit == "N" || datum.unit == "Pa") one.loads.push_back(datum.name), one.unit = datum.unit;
       if (!one.loads.empty()) structures_.push_back(std::move(one));
@@ -189,7 +189,7 @@ class StructureAtRest final : public CouplingDiagnostic {
   }
   void observe(diagnostics::Report& report) override {
     for (std::size_t k = 0; k < structures_.size(); ++k) {
-      const Structure& one = structures_[k];
+      const RestingStructure& one = structures_[k];
       double load = 0;
       for (const std::string& name : one.loads)
         load = std::max(load, largest(values_of(view_.pass.taken()[one.side], name)));
@@ -211,13 +211,13 @@ class StructureAtRest final : public CouplingDiagnostic {
   void visit(io::Archive& archive) override { archive.common("steps", steps_); }
 
  private:
-  struct Structure {
+  struct RestingStructure {
     std::size_t side;
     std::vector<std::string> loads;
     std::string unit;  // of one of them, for the message
   };
   const CouplingView& view_;
-  std::vector<Structure> structures_;
+  std::vector<RestingStructure> structures_;
   std::vector<int> steps_;  // of each in a row, under load and without motion
 };
 
@@ -227,7 +227,7 @@ class LostLoad final : public CouplingDiagnostic {
   explicit LostLoad(const CouplingView& view) : view_(view) {
     const std::vector<Side>& sides = view.pass.sides();
     for (std::size_t i = 0; i < sides.size(); ++i) {
-      std::vector<Force> forces;
+      std::vector<LoadUse> forces;
       for (const coupling::Interface::Datum& datum : sides[i].interface.gives) {
         if (datum.unit != "N" || datum.place != coupling::Interface::Place::faces) continue;
         const bool taken = std::ranges::any_of(view.pass.links().all(), [&](const Links::Link& link) {
@@ -236,14 +236,14 @@ class LostLoad final : public CouplingDiagnostic {
         forces.push_back({i, datum.name, taken});
       }
       // If none are received, the coupling does not act by forces.
-      if (std::ranges::any_of(forces, &Force::taken) && !std::ranges::all_of(forces, &Force::taken))
+      if (std::ranges::any_of(forces, &LoadUse::taken) && !std::ranges::all_of(forces, &LoadUse::taken))
         forces_.insert(forces_.end(), forces.begin(), forces.end());
     }
   }
   bool empty() const { return forces_.empty(); }
   void observe(diagnostics::Report& report) override {
     std::array<double, 2> size{};  // of the forces that nobody takes, and of those that somebody does
-    for (const Force& force : forces_) {
+    for (const LoadUse& force : forces_) {
       for (const double value : values_of(view_.pass.given()[force.giver], force.name))
         size[force.taken] += value * value;
     }
@@ -263,13 +263,13 @@ class LostLoad final : public CouplingDiagnostic {
   void visit(io::Archive& archive) override { archive.common("squares", squares_); }
 
  private:
-  struct Force {
+  struct LoadUse {
     std::size_t giver;
     std::string name;
     bool taken;
   };
   const CouplingView& view_;
-  std::vector<Force> forces_;        // of sides of which one is not taken
+  std::vector<LoadUse> forces_;      // of sides of which one is not taken
   std::array<double, 2> squares_{};  // sums over the run
 };
 

@@ -101,7 +101,7 @@ class WorkBalance {
   /// Adds the work of a step on both sides [J].
   void accepted(double fluid, double structure);
   /// Result at the end of the run: a sentence with numbers, and whether the balance is sound.
-  struct Result {
+  struct WorkResult {
     bool sound = true;
     std::string text;
     double part = 0;  ///< difference relative to the net work or energy
@@ -112,7 +112,7 @@ class WorkBalance {
   /// `lagging`: one pass per step. The fluid then sees an extrapolated wall whose velocity jitters, so loads
   /// alternate and the works differ even if the motion is accurate to parts in a thousand. Such a result is
   /// not called useless.
-  Result result(bool by_nearest = false, bool lagging = false) const;
+  WorkResult result(bool by_nearest = false, bool lagging = false) const;
   /// Adds the structures' energy after a step [J]; NaN if unknown. Until then the largest net work taken is
   /// used.
   void energy(double value) { energy_ = value > energy_ ? value : energy_; }
@@ -143,9 +143,9 @@ struct CouplingView {
   const Unknown& unknown;
   const Record& record;
   const SchemeChoice& scheme;
-  const FixedPointResult& last;  ///< of the last solved step
-  const History& history;        ///< up to the previous step
-  const double& dt;              ///< of the last step [s]
+  const FixedPointResult& last;    ///< of the last solved step
+  const CouplingHistory& history;  ///< up to the previous step
+  const double& dt;                ///< of the last step [s]
 };
 
 /// Diagnostic that also observes the passes of a step. What it learns there is discarded unless the step is

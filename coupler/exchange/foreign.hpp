@@ -35,7 +35,7 @@ struct ForeignNames {
 /// order in the first step, which starts at rest).
 class ForeignStructure final : public coupling::Channel {
  public:
-  ForeignStructure(std::unique_ptr<coupling::Channel> channel, CouplingParameters::Structure names)
+  ForeignStructure(std::unique_ptr<coupling::Channel> channel, CouplingParameters::StructureRole names)
       : channel_(std::move(channel)), names_(std::move(names)) {}
 
   /// Translates the declared surface. `all`: interfaces of all participants, for their forces. Throws Error
@@ -58,7 +58,7 @@ class ForeignStructure final : public coupling::Channel {
   std::vector<double> velocity() const;
 
   std::unique_ptr<coupling::Channel> channel_;
-  CouplingParameters::Structure names_;
+  CouplingParameters::StructureRole names_;
   bool derives_velocity_ = false;           // the structure gives none
   std::vector<std::string> forces_;         // their sum is the load
   std::vector<double> next_, now_, older_;  // displacements [m]; empty if unknown
@@ -70,7 +70,7 @@ class ForeignStructure final : public coupling::Channel {
 /// is renamed for it. Its force [N] becomes the pressure force, and the viscous force is zero.
 class ForeignFluid final : public coupling::Channel {
  public:
-  ForeignFluid(std::unique_ptr<coupling::Channel> channel, CouplingParameters::Fluid names)
+  ForeignFluid(std::unique_ptr<coupling::Channel> channel, CouplingParameters::FluidRole names)
       : channel_(std::move(channel)), names_(std::move(names)) {}
 
   /// Translates the declared surface. Throws Error for a name that is not declared, or not a vector in meters
@@ -84,7 +84,7 @@ class ForeignFluid final : public coupling::Channel {
 
  private:
   std::unique_ptr<coupling::Channel> channel_;
-  CouplingParameters::Fluid names_;
+  CouplingParameters::FluidRole names_;
 };
 
 }  // namespace couplet::coupler

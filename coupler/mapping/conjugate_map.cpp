@@ -177,13 +177,13 @@ double between(const coupling::Interface& a, Index f, const coupling::Interface&
 /// Assigns the parts of `f` outside all polygons to the nearest faces.
 void fill(const Flat& f, const coupling::Interface& other, const std::vector<Index>& near, double missing,
           std::vector<Cover>& found) {
-  struct Sample {
+  struct CoverSample {
     Vec2 at;
     Eigen::VectorXd functions;
   };
-  std::vector<Sample> samples;
+  std::vector<CoverSample> samples;
   const auto add = [&](const Flat::Simplex& t, const std::vector<double>& weights) {
-    Sample s{Vec2::Zero(), Eigen::VectorXd::Zero(f.n)};
+    CoverSample s{Vec2::Zero(), Eigen::VectorXd::Zero(f.n)};
     for (std::size_t i = 0; i < weights.size(); ++i) {
       s.at += weights[i] * t.at[i];
       if (t.corner[i] >= 0)
@@ -200,7 +200,7 @@ void fill(const Flat& f, const coupling::Interface& other, const std::vector<Ind
       for (const auto& w : {std::vector{2., 2., 2.}, {4., 1., 1.}, {1., 4., 1.}, {1., 1., 4.}})
         add(t, {w[0] / 6, w[1] / 6, w[2] / 6});
   }
-  std::erase_if(samples, [&](const Sample& s) {
+  std::erase_if(samples, [&](const CoverSample& s) {
     return std::ranges::any_of(found, [&](const Cover& c) {
       Polygon polygon;
       for (const Index v : corners(other, c.other)) polygon.push_back(f.flat(other.vertices[v]) - s.at);
@@ -214,7 +214,7 @@ void fill(const Flat& f, const coupling::Interface& other, const std::vector<Ind
       return inside;
     });
   });
-  for (const Sample& s : samples) {
+  for (const CoverSample& s : samples) {
     const Vec3 place = f.origin + s.at.x() * f.x + (f.n == 2 ? Vec3(Vec3::Zero()) : Vec3(s.at.y() * f.y));
     Index best = near.front();
     double least = std::numeric_limits<double>::max();

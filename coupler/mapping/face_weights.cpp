@@ -213,7 +213,7 @@ FaceIntegrals::FaceIntegrals(const coupling::Interface& structure)
   }
 }
 
-Weights* FaceIntegrals::weights_of(Index source, std::size_t corners) {
+DualWeights* FaceIntegrals::weights_of(Index source, std::size_t corners) {
   Index& place = place_[std::size_t(source)];
   if (place < 0) {
     place = Index(sources_.size());
@@ -261,11 +261,11 @@ void FaceIntegrals::find(const coupling::Interface& surface, Index face, bool du
         at.lazyProduct(tested.transpose()) - (mean(part.other) - centre) * tested.rowwise().sum().transpose();
     way_more.noalias() =
         at.lazyProduct(more.transpose()) - (mean(part.other) - centre) * more.rowwise().sum().transpose();
-    Weights* own = weights_of(part.other, n);
+    DualWeights* own = weights_of(part.other, n);
     for (Index i = 0; i < Index(n); ++i) own[i].dual += tested.row(i).sum(), own[i].more += more.row(i).sum();
     for (std::size_t k = 0; k < slope.around.size(); ++k) {
       const Vec3 along = slope.weights.col(Index(k));
-      Weights* weights = weights_of(slope.around[k], n);
+      DualWeights* weights = weights_of(slope.around[k], n);
       for (Index i = 0; i < Index(n); ++i)
         weights[i].dual += way_dual.col(i).dot(along), weights[i].more += way_more.col(i).dot(along);
     }

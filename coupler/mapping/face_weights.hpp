@@ -54,7 +54,7 @@ std::vector<Transfer::Entry> vertices_to_faces(MPI_Comm comm, const coupling::In
 
 /// Weights of one source in a row: those of the dual functions, and their excess over the corner functions,
 /// which sums to zero over the corners of each face.
-struct Weights {
+struct DualWeights {
   double dual, more;
 };
 
@@ -70,10 +70,10 @@ class FaceIntegrals {
   void find(const coupling::Interface& surface, Index face, bool dual);
   /// Faces of the structure found last, each once, and their weights: n for the n corners of the face.
   const std::vector<Index>& sources() const { return sources_; }
-  const std::vector<Weights>& weights() const { return weights_; }
+  const std::vector<DualWeights>& weights() const { return weights_; }
 
  private:
-  Weights* weights_of(Index source, std::size_t corners);
+  DualWeights* weights_of(Index source, std::size_t corners);
 
   const coupling::Interface& structure_;
   base::PointTree tree_;
@@ -81,7 +81,7 @@ class FaceIntegrals {
   std::vector<Vec3> means_;
   double widest_ = 0;
   std::vector<Index> place_, sources_;  // place_: in sources_, by face of the structure; -1 elsewhere
-  std::vector<Weights> weights_;
+  std::vector<DualWeights> weights_;
 };
 
 /// Map from faces of `structure` to vertices of `surface`. Each vertex takes the mean of the structure's

@@ -18,7 +18,7 @@ namespace {
 using Datum = coupling::Interface::Datum;
 using Place = coupling::Interface::Place;
 
-struct Source {
+struct DatumSource {
   std::size_t giver;
   const Datum* datum;
 };
@@ -27,8 +27,8 @@ struct Source {
 bool is_own(const Datum& datum) { return datum.name.starts_with("own-"); }
 
 /// Participants other than `taker` that give `wanted`; for own data the taker itself.
-std::vector<Source> sources_of(const Datum& wanted, std::size_t taker, const std::vector<Side>& sides) {
-  std::vector<Source> found;
+std::vector<DatumSource> sources_of(const Datum& wanted, std::size_t taker, const std::vector<Side>& sides) {
+  std::vector<DatumSource> found;
   std::vector<std::string> all;
   for (std::size_t g = 0; g < sides.size(); ++g) {
     if ((g == taker) != is_own(wanted)) continue;
@@ -169,7 +169,7 @@ class WallMaps {
 
 /// Problem if two participants give the same datum at one place.
 std::string given_twice(const std::vector<std::string>& names, const std::string& taker, const Datum& wanted,
-                        const std::vector<Source>& sources) {
+                        const std::vector<DatumSource>& sources) {
   if (sources.size() < 2) return "";
   return fmt::format(
       "'{}' takes '{}', which both '{}' and '{}' give at the same location: only one of them may.", taker,
@@ -187,7 +187,7 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
   WallMaps walls(comm, sides, mapping.type);
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (const Datum& wanted : sides[t].interface.takes) {
-      const std::vector<Source> sources = sources_of(wanted, t, sides);
+      const std::vector<DatumSource> sources = sources_of(wanted, t, sides);
       const PointSet to = sides[t].places_taken(wanted);
       std::vector<PointSet> from;
       for (const auto& [g, given] : sources) {

@@ -66,7 +66,7 @@ OnFace on_face(const coupling::Interface& surface, Index face, const Vec3& p) {
   for (std::size_t i = 0; i < n; ++i) centre += at(i) / double(n);
   OnFace best;
   for (std::size_t i = 0; i < n; ++i) {
-    const base::Nearest<3> part = base::nearest_on_triangle(at(i), at((i + 1) % n), centre, p);
+    const base::NearestPoint<3> part = base::nearest_on_triangle(at(i), at((i + 1) % n), centre, p);
     if (part.distance >= best.distance) continue;
     best = {std::vector<double>(n, part.weights[2] / double(n)), part.distance};
     best.weights[i] += part.weights[0];

@@ -16,7 +16,7 @@ namespace {
 /// Part of a row: weight of the value at a face of the structure, with its mean at `place`.
 struct Share {
   GlobalIndex row, source;
-  Weights weight;
+  DualWeights weight;
   Vec3 place;
 };
 
@@ -70,10 +70,10 @@ void make_linear(const std::vector<Vec3>& places, std::vector<double>& weights) 
 /// in a direction of small extent the round-off of absolute positions would change the sum. On a curved surface, the dual functions miss the
 /// position of their vertex. A share of `more` first moves them nearest to it. This share is the same at all
 /// vertices of a uniform mesh, so a uniform traction remains uniform. Then the smallest change follows.
-void finish_row(int dim, const std::vector<Vec3>& places, std::vector<Weights>& row,
+void finish_row(int dim, const std::vector<Vec3>& places, std::vector<DualWeights>& row,
                 std::vector<double>& weights) {
   double total = 0, longest = 0;
-  for (const Weights& w : row) total += w.dual;
+  for (const DualWeights& w : row) total += w.dual;
   Vec3 off = Vec3::Zero(), by_more = Vec3::Zero();
   for (std::size_t i = 0; i < row.size(); ++i) {
     row[i].dual /= total, row[i].more /= total;
@@ -84,7 +84,7 @@ void finish_row(int dim, const std::vector<Vec3>& places, std::vector<Weights>& 
                           ? std::clamp(off.dot(by_more) / by_more.squaredNorm(), -1., 1.)
                           : 0;
   weights.clear();
-  for (const Weights& w : row) weights.push_back(w.dual + part * w.more);
+  for (const DualWeights& w : row) weights.push_back(w.dual + part * w.more);
   make_linear(places, weights);
 }
 
@@ -93,7 +93,7 @@ class RowBuffers {
  public:
   void clear() { sources_.clear(), places_.clear(), row_.clear(); }
   /// Equal sources must be consecutive.
-  void add(GlobalIndex source, const Vec3& place, const Weights& weight) {
+  void add(GlobalIndex source, const Vec3& place, const DualWeights& weight) {
     if (sources_.empty() || source != sources_.back())
       sources_.push_back(source), places_.push_back(place), row_.push_back({0, 0});
     row_.back().dual += weight.dual, row_.back().more += weight.more;
@@ -108,7 +108,7 @@ class RowBuffers {
  private:
   std::vector<GlobalIndex> sources_;
   std::vector<Vec3> places_;
-  std::vector<Weights> row_;
+  std::vector<DualWeights> row_;
   std::vector<double> weights_;
 };
 
@@ -155,7 +155,7 @@ class OpenRows {
     for (std::size_t k = 0; k < list.size(); ++k) place_[std::size_t(list[k].first)] = Index(k);
     for (std::size_t k = 0; k < integrals.sources().size(); ++k) {
       const Index source = integrals.sources()[k];
-      const Weights& weight = integrals.weights()[k * n + i];
+      const DualWeights& weight = integrals.weights()[k * n + i];
       if (const Index place = place_[std::size_t(source)]; place < 0)
         list.push_back({source, weight});
       else
@@ -177,7 +177,7 @@ class OpenRows {
       for (const auto& [s, weight] : list)
         shares.push_back({rows_[row], structure.faces[std::size_t(s)], weight, integrals.mean(s)});
   }
-  using Part = std::pair<Index, Weights>;
+  using Part = std::pair<Index, DualWeights>;
   std::vector<Share> shares;
 
  private:

@@ -16,15 +16,15 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1 + 1e-9;
 
-struct Count {
+struct PointCount {
   PointBox box;
   std::size_t points;
 };
 
 /// Upper bound of the distance of the k-th nearest point from boxes; infinity if there are fewer points.
-double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t k) {
+double bound_by_boxes(const std::vector<PointCount>& all, const Vec3& p, std::size_t k) {
   std::vector<std::pair<double, std::size_t>> far;
-  for (const Count& c : all)
+  for (const PointCount& c : all)
     if (c.points > 0) far.emplace_back(c.box.furthest(p), c.points);
   std::ranges::sort(far);
   std::size_t points = 0;
@@ -36,13 +36,13 @@ double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t 
 /// Distance for each center that encloses k points: the smallest bound of the ranks with the nearest boxes,
 /// or if they have fewer points, from the boxes.
 std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std::size_t k,
-                           const std::vector<Count>& all, const PointSet& among,
+                           const std::vector<PointCount>& all, const PointSet& among,
                            const base::PointTree* tree) {
   std::vector<std::vector<Vec3>> ask(all.size());
   std::vector<std::vector<std::size_t>> asked(all.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
     double least = infinite;
-    for (const Count& c : all)
+    for (const PointCount& c : all)
       if (c.points > 0) least = std::min(least, c.box.nearest(centres[i]));
     // Boxes of list segments overlap, so the first box with a center may have no point near it.
     for (std::size_t r = 0; r < all.size(); ++r)
@@ -102,10 +102,10 @@ std::vector<Value> fetch(MPI_Comm comm, const coupling::Starts& starts,
 }
 
 /// Numbers within an ascending list of positions that contains a segment of this rank and some others.
-class Numbering {
+class IdMap {
  public:
   /// Numbers all values in `positions`; this rank's segment starts at `first`.
-  Numbering(GlobalIndex first, std::size_t own, const std::vector<GlobalIndex>& positions)
+  IdMap(GlobalIndex first, std::size_t own, const std::vector<GlobalIndex>& positions)
       : first_(first), number_(own, -1) {
     std::vector<GlobalIndex> others;
     for (const GlobalIndex p : positions)
@@ -179,13 +179,13 @@ PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vect
     Vec3 centre;
     double radius;
   };
-  struct Found {
+  struct NearbyPoint {
     GlobalIndex position, id;
     double size;
     Vec3 point;
   };
-  const std::vector<Count> all =
-      parallel::all_gather(comm, std::vector<Count>{{PointBox(among.points), among.points.size()}});
+  const std::vector<PointCount> all =
+      parallel::all_gather(comm, std::vector<PointCount>{{PointBox(among.points), among.points.size()}});
   std::optional<base::PointTree> tree;
   if (!among.points.empty()) tree.emplace(among.points);
   const std::vector<double> bound = bounds(comm, centres, k, all, among, tree ? &*tree : nullptr);
@@ -196,7 +196,7 @@ PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vect
       if (all[r].points > 0 && all[r].box.nearest(centres[i]) <= radius)
         ask[r].push_back({centres[i], radius});
   }
-  std::vector<std::vector<Found>> answers;
+  std::vector<std::vector<NearbyPoint>> answers;
   for (const auto& balls : parallel::all_to_all(comm, ask)) {
     std::vector<char> inside(among.points.size(), 0);
     for (const Ball& ball : balls)
@@ -207,12 +207,12 @@ PointSet nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vect
         found.push_back(
             {among.positions[i], among.ids[i], among.sizes.empty() ? 1 : among.sizes[i], among.points[i]});
   }
-  std::vector<Found> found;
+  std::vector<NearbyPoint> found;
   for (const auto& part : parallel::all_to_all(comm, answers))
     found.insert(found.end(), part.begin(), part.end());
-  std::ranges::sort(found, {}, &Found::position);
+  std::ranges::sort(found, {}, &NearbyPoint::position);
   PointSet result;
-  for (const Found& f : found) {
+  for (const NearbyPoint& f : found) {
     result.points.push_back(f.point), result.positions.push_back(f.position);
     result.ids.push_back(f.id), result.sizes.push_back(f.size);
   }
@@ -263,7 +263,7 @@ SurfacePart Surroundings::with(const std::vector<GlobalIndex>& faces) const {
   });
   s.face_offset.push_back(0);
   for (const Index n : counts) s.face_offset.push_back(s.face_offset.back() + n);
-  Numbering number(vertex_starts_[std::size_t(parallel::comm_rank(comm_))], part_.vertices.size(), corners);
+  IdMap number(vertex_starts_[std::size_t(parallel::comm_rank(comm_))], part_.vertices.size(), corners);
   s.face_vertices.reserve(corners.size());
   for (const GlobalIndex c : corners) s.face_vertices.push_back(number(c));
   result.vertices = std::move(number.list);

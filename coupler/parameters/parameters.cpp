@@ -113,9 +113,9 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
 
 /// Declares the participants.
 void declare_participants(config::Section& section, CouplingParameters& p) {
-  section.optional_section<CouplingParameters::Fluid>(
+  section.optional_section<CouplingParameters::FluidRole>(
       "fluid", p.fluid,
-      [](config::Section& s, CouplingParameters::Fluid& r) {
+      [](config::Section& s, CouplingParameters::FluidRole& r) {
         s.value("participant", r.participant).required().doc("its name under `participants`");
         s.value("displacement", r.displacement)
             .doc("name of the displacement (m, or without a unit) that another program takes at vertices");
@@ -129,9 +129,9 @@ void declare_participants(config::Section& section, CouplingParameters& p) {
             "load");
       },
       "participant that receives the interface motion and gives the load");
-  section.optional_section<CouplingParameters::Structure>(
+  section.optional_section<CouplingParameters::StructureRole>(
       "structure", p.structure,
-      [](config::Section& s, CouplingParameters::Structure& r) {
+      [](config::Section& s, CouplingParameters::StructureRole& r) {
         s.value("participant", r.participant).required().doc("its name under `participants`");
         s.value("displacement", r.displacement)
             .doc(

@@ -61,18 +61,18 @@ struct CouplingParameters {
     std::string participant;
   };
   /// Names of displacement and load in the program; empty for Couplet's names.
-  struct Fluid : Role {
+  struct FluidRole : Role {
     std::string displacement{}, load{};
     bool foreign() const { return !displacement.empty() || !load.empty(); }
   };
-  struct Structure : Role {
+  struct StructureRole : Role {
     // Names in its program; load: the sum of all forces.
     std::string displacement = "displacement", load{};
     bool foreign() const { return displacement != "displacement" || !load.empty(); }
   };
-  std::optional<Fluid> fluid;
+  std::optional<FluidRole> fluid;
   std::optional<Role> mesh;
-  std::optional<Structure> structure;
+  std::optional<StructureRole> structure;
   using Exchange = ExchangeParameters;
   std::optional<Exchange> exchange;
   AccelerationParameters acceleration;

@@ -22,12 +22,12 @@ namespace {
 constexpr double flat_enough = 1e-3;  // of the size of the patch
 constexpr double round_enough = 0.1;  // of the area of the disc
 
-struct Extent {
+struct PatchExtent {
   Vec3 area = Vec3::Zero(), centre = Vec3::Zero();
   double size = 0, radius = 0;  // sum of |S|; largest distance of a point from the center
 };
 
-Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Patch& patch) {
+PatchExtent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Patch& patch) {
   double sums[7] = {};
   for (Index f = patch.first; f < patch.first + patch.count; ++f) {
     const double size = g.face_area[f].norm();
@@ -38,7 +38,7 @@ Extent extent_of(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Pa
     sums[6] += size;
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, mesh.comm);
-  Extent e{{sums[0], sums[1], sums[2]}, Vec3(sums[3], sums[4], sums[5]) / sums[6], sums[6], 0};
+  PatchExtent e{{sums[0], sums[1], sums[2]}, Vec3(sums[3], sums[4], sums[5]) / sums[6], sums[6], 0};
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     for (const Index p : mesh.face_points[f]) e.radius = std::max(e.radius, (g.points[p] - e.centre).norm());
   e.radius = parallel::max(mesh.comm, e.radius);
@@ -84,7 +84,7 @@ std::vector<Eigen::Vector4d> planes_at_rim(const mesh::Mesh& mesh, const mesh::G
 /// Throws Error if the planes have no point in common. Collective.
 template <int D>
 double mirror(const mesh::Mesh& mesh, const mesh::Geometry& g, const mesh::Patch& patch,
-              const Conditions& boundaries, Extent& e) {
+              const Conditions& boundaries, PatchExtent& e) {
   const std::vector<Eigen::Vector4d> planes =
       planes_at_rim<D>(mesh, g, patch, e.area.normalized(), boundaries);
   if (planes.empty()) return 1;
@@ -111,7 +111,7 @@ template <int D>
 InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const mesh::Patch& patch,
                           InletProfile profile, const Conditions& boundaries) {
   const bool parabolic = profile == InletProfile::parabolic;
-  Extent e = extent_of(mesh, geometry, patch);
+  PatchExtent e = extent_of(mesh, geometry, patch);
   if (!(e.area.norm() > (1 - flat_enough) * e.size))
     throw Error("boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity'.",
                 patch.name);
@@ -318,7 +318,7 @@ void Boundary<D>::add_patch(const mesh::Mesh& mesh, const mesh::Geometry& geomet
   const BoundaryParameters& b = boundaries.at(patch.name);
   const FaceRange faces{patch.first - mesh.n_interior, patch.count};
   const std::string where = "boundaries." + patch.name;
-  const Condition& condition = condition_of(b);
+  const FlowCondition& condition = condition_of(b);
   if (condition.joined && parallel::sum(comm_, GlobalIndex(patch.count)) > 0)
     throw Error("{}: the mesh is not joined at this periodic patch.", where);
   rows_.set(faces, condition.row(b), condition.velocity == GivenBy::mesh);

@@ -22,7 +22,7 @@ struct FaceRange {
 
 /// FaceRow of every boundary face, and lists of the faces by type, in ascending order. Arrays over "boundary
 /// faces" are indexed by f - mesh.n_interior.
-struct FaceRows {
+struct BoundaryRows {
   std::vector<double> pressure, friction, inflow;  ///< see FaceRow
   std::vector<Index> of_pressure;                  ///< faces with given pressure
   std::vector<Index> of_flux;                      ///< all others: phi = w.S
@@ -31,7 +31,7 @@ struct FaceRows {
   std::vector<Index> of_mirror;    ///< those of of_flux without friction: symmetry planes and slip walls
   std::vector<char> with_mesh;     ///< per boundary face: w is the normal velocity of the mesh
 
-  explicit FaceRows(Index count = 0)
+  explicit BoundaryRows(Index count = 0)
       : pressure(count, 0.0), friction(count, 1.0), inflow(count, 1.0), with_mesh(count, 0) {}
   void set(const FaceRange& faces, const FaceRow& row, bool moves_with_mesh) {
     for (Index b = faces.first; b < faces.first + faces.count; ++b) {
@@ -118,7 +118,7 @@ class Boundary {
   Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry, const FluidParameters& parameters);
 
   /// Coefficients of the conditions for the loops over boundary faces.
-  const FaceRows& rows() const { return rows_; }
+  const BoundaryRows& rows() const { return rows_; }
   /// True if no face of the whole domain has a given pressure, so that the pressure level is free.
   bool closed() const { return closed_; }
   /// No fluid passes the boundary: walls surround it.
@@ -181,7 +181,7 @@ class Boundary {
   void add_interface(const mesh::Patch& patch, const FaceRange& faces, const BoundaryParameters& b);
   void add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters);
   MPI_Comm comm_;
-  FaceRows rows_;
+  BoundaryRows rows_;
   std::vector<char> interface_, convective_;
   std::vector<std::string> interface_patches_;
   std::vector<const mesh::Patch*> body_patches_;

@@ -36,7 +36,7 @@ constexpr double most_swings = 2;     // of a flow of its own, from which errors
 
 /// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
 template <int D>
-struct Fit {
+struct LinearFit {
   Eigen::Matrix<double, D + 1, D + 1> moments = Eigen::Matrix<double, D + 1, D + 1>::Zero();
   Eigen::Matrix<double, D + 1, D> values = Eigen::Matrix<double, D + 1, D>::Zero();
   void add(const Vec<D>& d, const Vec<D>& value) {
@@ -255,7 +255,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     const State<D>& s = view_.fluid.state();
     const mesh::Mesh& mesh = view_.mesh;
     const Placement<D>& at = *s.placement;
-    std::vector<Fit<D>> fits(mesh.cells.n_local());
+    std::vector<LinearFit<D>> fits(mesh.cells.n_local());
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
       const Vec<D> d = (at.area[f] - at.oblique_of(f)) / at.conductance[f];  // S = k + g d
       const Index owner = mesh.owner[f];

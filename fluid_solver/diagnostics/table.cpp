@@ -62,7 +62,7 @@ template <int D>
 std::vector<Index> moving_faces(const FluidView<D>& view) {
   std::vector<Index> faces;
   for (const mesh::Patch& patch : view.mesh.patches) {
-    const Condition& condition = condition_of(view.parameters().boundaries.at(patch.name));
+    const FlowCondition& condition = condition_of(view.parameters().boundaries.at(patch.name));
     const GivenBy by = condition.velocity;
     if (by != GivenBy::structure && by != GivenBy::motion &&
         !(view.is_prescribed && condition.passage == Passage::none))

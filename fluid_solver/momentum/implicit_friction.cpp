@@ -111,7 +111,7 @@ void ViscousSolver<D>::set_diagonal(std::span<const double> added) {
   }
   inverse_diagonal_ = a_->diagonal;
   boundary_rows_.clear();
-  const FaceRows& given = boundary_.rows();
+  const BoundaryRows& given = boundary_.rows();
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior;
     const double a = (beta_ + (added.empty() ? 0 : added[f])) * at.conductance[f], t = given.friction[b];
@@ -394,7 +394,7 @@ template <int D>
 void ImplicitFriction<D>::accelerate(bool start, Vectors<D>& u) {
   const std::size_t owned = static_cast<std::size_t>(mesh_.cells.n_owned()) * D;
   if (!accelerator_)
-    accelerator_ = std::make_unique<linalg::Accelerator>(mesh_.comm, owned, pass_acceleration);
+    accelerator_ = std::make_unique<linalg::VectorAccelerator>(mesh_.comm, owned, pass_acceleration);
   if (start) accelerator_->restart();
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u[c] -= before_[c];
   accelerator_->advance(flat<D>(before_).first(owned), flat<D>(u).first(owned));

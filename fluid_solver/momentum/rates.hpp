@@ -81,7 +81,7 @@ class MomentumTerm {
   virtual void add_limits(const State<D>&, Vectors<2>&) const {}
   /// Adds the viscous part of a step whose viscous term has the weight `a` at t^{n+1}: the known one to `rate`, and the
   /// viscosity times a dt that acts at t^{n+1} to `added`, per flux face [m^2].
-  virtual void add_implicit(const State<D>&, const Step<D>&, double /*a*/, Vectors<D>& /*rate*/,
+  virtual void add_implicit(const State<D>&, const FluidStep<D>&, double /*a*/, Vectors<D>& /*rate*/,
                             std::vector<double>& /*added*/) {}
 };
 template <int D>
@@ -191,7 +191,7 @@ class ViscousSolver {
 template <int D>
 class ImplicitFriction {
  public:
-  ImplicitFriction(const Scene<D>& scene, const Step<D>& step, RateOperator<D>& rates)
+  ImplicitFriction(const Scene<D>& scene, const FluidStep<D>& step, RateOperator<D>& rates)
       : scene_(scene),
         mesh_(scene.mesh),
         step_(step),
@@ -216,7 +216,7 @@ class ImplicitFriction {
 
   const Scene<D>& scene_;
   const mesh::Mesh& mesh_;
-  const Step<D>& step_;
+  const FluidStep<D>& step_;
   RateOperator<D>& rate_operator_;
   ViscousSolver<D> solver_;
   int iterations_ = 0;  // total so far
@@ -225,7 +225,7 @@ class ImplicitFriction {
   Vectors<D> added_rate_;
   std::vector<double>
       carried_;  // a (dt phi - dV) per flux face with implicit convection; empty if none has [m^3]
-  std::unique_ptr<linalg::Accelerator> accelerator_;  // for meshes that need many passes
+  std::unique_ptr<linalg::VectorAccelerator> accelerator_;  // for meshes that need many passes
 };
 
 }  // namespace couplet::fluid

@@ -16,7 +16,7 @@ constexpr double no_gradient = 1e-150;
 template <int D>
 class EddyStress final : public MomentumTerm<D> {
  public:
-  EddyStress(const mesh::Mesh& mesh, const FaceRows& boundary, const TurbulenceParameters& model)
+  EddyStress(const mesh::Mesh& mesh, const BoundaryRows& boundary, const TurbulenceParameters& model)
       : mesh_(mesh), boundary_(boundary), model_(model) {}
 
   void add_rate(const State<D>& s, bool split, const typename MomentumTerm<D>::Gradient& gradient,
@@ -43,7 +43,7 @@ class EddyStress final : public MomentumTerm<D> {
   /// Adds the stress of u~ = (1 + r/2) u^n - r/2 u^{n-1} with its own nu_t on the mesh of level n. The nu_t
   /// must be the same for all three levels. With Adams-Bashforth, a nu_t that decreases tenfold per step, as
   /// in an opening gap, would leave an undamped old rate.
-  void add_implicit(const State<D>& from, const Step<D>& step, double a, Vectors<D>& rate,
+  void add_implicit(const State<D>& from, const FluidStep<D>& step, double a, Vectors<D>& rate,
                     std::vector<double>& added) override {
     const double ratio = step.ratio(), e0 = 1 + ratio / 2, e1 = -ratio / 2;
     Vectors<D> u = from.u, u_boundary = from.u_boundary;
@@ -82,7 +82,7 @@ class EddyStress final : public MomentumTerm<D> {
   }
 
   const mesh::Mesh& mesh_;
-  const FaceRows& boundary_;
+  const BoundaryRows& boundary_;
   TurbulenceParameters model_;
   std::vector<Tensor<D>> gradient_;
 };

@@ -62,7 +62,7 @@ double volume_of(const Piece<D>& piece, const Vec3& apex) {
 }
 
 template <int D, class Use>
-void for_pieces(std::span<const Index> face, const Levels& levels, const Use& use) {
+void for_pieces(std::span<const Index> face, const LevelField& levels, const Use& use) {
   const auto corner = [&](Index v) { return LevelCorner{levels.points[v], levels.at_points[v]}; };
   if constexpr (D == 2) {
     use(Piece<2>{corner(face[0]), corner(face[1])});
@@ -84,7 +84,7 @@ struct Sums {
 template <int D>
 class Cutter {
  public:
-  Cutter(const mesh::Mesh& mesh, const Placement<D>& at, const Levels& levels)
+  Cutter(const mesh::Mesh& mesh, const Placement<D>& at, const LevelField& levels)
       : mesh_(mesh), at_(at), levels_(levels), sums_(mesh.cells.n_owned()) {}
 
   CutCells<D> make() {
@@ -191,7 +191,7 @@ class Cutter {
 
   const mesh::Mesh& mesh_;
   const Placement<D>& at_;
-  const Levels& levels_;
+  const LevelField& levels_;
   std::vector<Sums> sums_;
   CutCells<D> result_;
 };
@@ -237,11 +237,11 @@ OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, dou
 }
 
 template <int D>
-CutCells<D> cut(const mesh::Mesh& mesh, const Placement<D>& at, const Levels& levels) {
+CutCells<D> cut(const mesh::Mesh& mesh, const Placement<D>& at, const LevelField& levels) {
   return Cutter<D>(mesh, at, levels).make();
 }
 
-template CutCells<2> cut<2>(const mesh::Mesh&, const Placement<2>&, const Levels&);
-template CutCells<3> cut<3>(const mesh::Mesh&, const Placement<3>&, const Levels&);
+template CutCells<2> cut<2>(const mesh::Mesh&, const Placement<2>&, const LevelField&);
+template CutCells<3> cut<3>(const mesh::Mesh&, const Placement<3>&, const LevelField&);
 
 }  // namespace couplet::fluid

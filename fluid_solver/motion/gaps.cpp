@@ -241,7 +241,7 @@ Gaps<D>::Gaps(const mesh::Mesh& mesh, const FluidParameters& parameters, std::sp
 template <int D>
 void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>& at) {
   const double limit = limit_[gap];
-  Facts& facts = facts_[gap];
+  GapState& facts = facts_[gap];
   facts = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   std::array<Vec3, 2> low, high;
   for (int side = 0; side < 2; ++side) {
@@ -283,7 +283,7 @@ typename Gaps<D>::Changed Gaps<D>::mark(double, const std::shared_ptr<const Plac
   const std::vector<int> before = gap_;
   std::fill(gap_.begin(), gap_.end(), -1);
   for (std::size_t g = 0; g < names_.size(); ++g) mark_gap(static_cast<int>(g), points, *at);
-  active_ = std::ranges::any_of(facts_, [](const Facts& f) { return f.cells > 0; });
+  active_ = std::ranges::any_of(facts_, [](const GapState& f) { return f.cells > 0; });
   this->close([&](Index c) { return gap_[c] >= 0; });
   velocity_.assign(gap_.size(), Vec<D>::Zero());
   const bool changed = parallel::any(mesh_.comm, before != gap_);
@@ -302,7 +302,7 @@ typename Gaps<D>::Changed Gaps<D>::mark(double, const std::shared_ptr<const Plac
 }
 
 template <int D>
-void Gaps<D>::begin(const Step<D>& step, const State<D>& from, const Vectors<D>& w) {
+void Gaps<D>::begin(const FluidStep<D>& step, const State<D>& from, const Vectors<D>& w) {
   bool other = false;
   for (std::size_t c = 0; c < gap_.size(); ++c)
     other |= (gap_[c] >= 0) != (from.blocked && (*from.blocked)[c]);
@@ -320,7 +320,7 @@ void Gaps<D>::hold(const Placement<D>&, double, Vectors<D>& u) const {
 }
 
 template <int D>
-void Gaps<D>::block(const Step<D>& step, std::vector<double>& phi) const {
+void Gaps<D>::block(const FluidStep<D>& step, std::vector<double>& phi) const {
   for (Index f = 0; active_ && f < mesh_.n_interior; ++f)
     if (is_blocked(f)) phi[f] = step.moving() ? step.swept[f] / step.dt : 0;
 }

@@ -139,13 +139,13 @@ typename ImmersedBodies<D>::Changed ImmersedBodies<D>::mark(double t,
 }
 
 template <int D>
-void ImmersedBodies<D>::block(const Step<D>& step, std::vector<double>& phi) const {
+void ImmersedBodies<D>::block(const FluidStep<D>& step, std::vector<double>& phi) const {
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
     if (const double share = open(f); share < 1) phi[f] = share * phi[f] + carried(f, *step.to);
 }
 
 template <int D>
-void ImmersedBodies<D>::block(const Step<D>& step, const std::vector<Index>& boundary_faces,
+void ImmersedBodies<D>::block(const FluidStep<D>& step, const std::vector<Index>& boundary_faces,
                               std::vector<double>& phi) const {
   for (const Index b : boundary_faces) {
     const Index f = mesh_.n_interior + b;

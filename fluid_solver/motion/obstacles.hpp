@@ -58,14 +58,14 @@ class Gaps final : public Obstacles<D> {
   Changed mark(double t, const std::shared_ptr<const Placement<D>>& at,
                const std::vector<Vec3>& points) override;
   /// Throws SchemeFailure if w forces fluid into a part that is cut off, see GapPockets.
-  void begin(const Step<D>& step, const State<D>& from, const Vectors<D>& w) override;
+  void begin(const FluidStep<D>& step, const State<D>& from, const Vectors<D>& w) override;
   /// True if cells were blocked or freed, which gives an impulse as in a first step.
   bool starts_anew() const override { return changed_; }
   std::shared_ptr<const std::vector<char>> marks() const override;
   /// Moves blocked cells with their centers.
   void hold(const Placement<D>& at, double dt, Vectors<D>& u) const override;
   /// Sets phi of blocked faces to the volume swept by the mesh.
-  void block(const Step<D>& step, std::vector<double>& phi) const override;
+  void block(const FluidStep<D>& step, std::vector<double>& phi) const override;
   using Obstacles<D>::block;
   void correct_memory(State<D>& state) const override;
   bool parts() const override { return active_; }
@@ -76,10 +76,10 @@ class Gaps final : public Obstacles<D> {
   const std::vector<std::string>& names() const { return names_; }
   /// State of a gap at the last mark(): smallest opening at a cell [m] (NaN if all exceed the limit), number
   /// of blocked cells and their volume [m^3].
-  struct Facts {
+  struct GapState {
     double opening = 0, cells = 0, volume = 0;
   };
-  const std::vector<Facts>& facts() const { return facts_; }
+  const std::vector<GapState>& facts() const { return facts_; }
 
  private:
   using Obstacles<D>::mesh_;
@@ -95,7 +95,7 @@ class Gaps final : public Obstacles<D> {
   std::vector<char> never_;                               // per local cell: it has a face of given pressure
   std::vector<int> gap_;  // per local cell the gap that blocks it; negative if free
   Vectors<D> velocity_;   // per local cell, of blocked cells [m/s]
-  std::vector<Facts> facts_;
+  std::vector<GapState> facts_;
   bool active_ = false;   // a cell of any rank is blocked
   bool changed_ = false;  // in this step
   std::shared_ptr<const Placement<D>> marked_;
@@ -121,7 +121,7 @@ using Level = std::function<double(const Vec3&)>;
 OpenPart open_part(std::span<const LevelCorner> corners, const Level& level, double round_off);
 
 /// Level [m] at the points and cells of a mesh, and at arbitrary places.
-struct Levels {
+struct LevelField {
   std::span<const Vec3> points;  ///< per local point
   std::span<const double> at_points, at_centres;
   Level anywhere;
@@ -141,7 +141,7 @@ struct CutCells {
 
 /// Collective.
 template <int D>
-CutCells<D> cut(const mesh::Mesh& mesh, const Placement<D>& at, const Levels& levels);
+CutCells<D> cut(const mesh::Mesh& mesh, const Placement<D>& at, const LevelField& levels);
 
 /// Rigid bodies inside the mesh by direct forcing. Cells with their center in a body have its velocity. In
 /// the layer of them next to the fluid, the velocity is set so that it matches the body where the level is
@@ -175,8 +175,8 @@ class ImmersedBodies final : public Obstacles<D> {
   void hold(const Placement<D>& at, double dt, Vectors<D>& u) const override;
   /// Adjusts mean fluxes of whole faces at the surface to the velocity of the open cell parts; `cut` only.
   void carry(const Placement<D>& at, const Vectors<D>& u, std::vector<double>& phi) const override;
-  void block(const Step<D>& step, std::vector<double>& phi) const override;
-  void block(const Step<D>& step, const std::vector<Index>& boundary_faces,
+  void block(const FluidStep<D>& step, std::vector<double>& phi) const override;
+  void block(const FluidStep<D>& step, const std::vector<Index>& boundary_faces,
              std::vector<double>& phi) const override;
   void correct_memory(State<D>& state) const override;
   bool has_pressure() const override { return false; }

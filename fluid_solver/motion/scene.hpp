@@ -116,7 +116,7 @@ class Obstacles {
     return Changed::nothing;
   }
   /// Prepares a step from a level with the given velocities w [m/s]. Collective.
-  virtual void begin(const Step<D>&, const State<D>&, const Vectors<D>&) {}
+  virtual void begin(const FluidStep<D>&, const State<D>&, const Vectors<D>&) {}
   /// True if the multi-step schemes restart after this step, which has an impulse.
   virtual bool starts_anew() const { return false; }
 
@@ -139,9 +139,9 @@ class Obstacles {
   /// Fluxes of a velocity through the faces as if they were fully open. Collective.
   virtual void carry(const Placement<D>&, const Vectors<D>&, std::vector<double>&) const {}
   /// Reduces these fluxes to the open part of each flux face and adds the motion of the obstacle [m^3/s].
-  virtual void block(const Step<D>&, std::vector<double>&) const {}
+  virtual void block(const FluidStep<D>&, std::vector<double>&) const {}
   /// Does so at boundary faces of given flux.
-  virtual void block(const Step<D>&, const std::vector<Index>&, std::vector<double>&) const {}
+  virtual void block(const FluidStep<D>&, const std::vector<Index>&, std::vector<double>&) const {}
   /// Corrects the memory of the fluxes of a state, which restarts at closed faces. Collective.
   virtual void correct_memory(State<D>&) const {}
 
@@ -197,10 +197,10 @@ struct Scene {
   std::unique_ptr<Obstacles<D>> obstacles = std::make_unique<Obstacles<D>>(mesh);
 
   /// Placement for the pressure equation.
-  const Placement<D>& around(const Step<D>& step) const {
+  const Placement<D>& around(const FluidStep<D>& step) const {
     return obstacles->around() ? *obstacles->around() : *step.to;
   }
-  const std::vector<Vec3>& points_of(const Step<D>& step) const {
+  const std::vector<Vec3>& points_of(const FluidStep<D>& step) const {
     return step.points.empty() ? points_at_rest : step.points;
   }
   /// Velocity whose face means are the fluxes of u. Collective.

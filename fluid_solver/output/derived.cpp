@@ -156,7 +156,7 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const mesh::Patch& patch) {
 }
 
 template <int D>
-Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
+ForceCoefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
   const mesh::Mesh& mesh = fluid.mesh();
   Vec3 sums[2] = {Vec3::Zero(), Vec3::Zero()};  // force, moment
   for (const std::string& name : c.patches) {
@@ -226,7 +226,7 @@ template decltype(energy_budget<2>) energy_budget<2>;
 template decltype(energy_budget<3>) energy_budget<3>;
 
 template <int D>
-Quantities<D>::Quantities(const Fluid<D>& fluid) : fluid_(fluid), pressure_(fluid.pressure()) {
+FlowQuantities<D>::FlowQuantities(const Fluid<D>& fluid) : fluid_(fluid), pressure_(fluid.pressure()) {
   const State<D>& s = fluid.state();
   all_.push_back({"velocity", "m/s", D, flat<D>(s.u), flat<D>(s.u_boundary)});
   if (pressure_)
@@ -236,21 +236,21 @@ Quantities<D>::Quantities(const Fluid<D>& fluid) : fluid_(fluid), pressure_(flui
 }
 
 template <int D>
-std::span<const double> Quantities<D>::keep(std::vector<double> values) {
+std::span<const double> FlowQuantities<D>::keep(std::vector<double> values) {
   kept_.push_back(std::move(values));
   return kept_.back();
 }
 
 /// `values`: cells first, then boundary faces.
 template <int D>
-void Quantities<D>::add(const char* name, const char* unit, int components, std::span<const double> values,
-                        std::size_t cells) {
+void FlowQuantities<D>::add(const char* name, const char* unit, int components,
+                            std::span<const double> values, std::size_t cells) {
   const std::size_t n = cells * static_cast<std::size_t>(components);
   all_.push_back({name, unit, components, values.first(n), values.subspan(n)});
 }
 
 template <int D>
-void Quantities<D>::add(const RunningStatistics<D>& statistics) {
+void FlowQuantities<D>::add(const RunningStatistics<D>& statistics) {
   const std::size_t n = statistics.cells();
   const Vectors<D> velocity_rms = statistics.velocity_rms();
   const std::span<const double> rms = flat<D>(velocity_rms);
@@ -261,7 +261,7 @@ void Quantities<D>::add(const RunningStatistics<D>& statistics) {
 }
 
 template <int D>
-void Quantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
+void FlowQuantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
   const State<D>& s = fluid_.state();
   const FluidOutputParameters& wanted = fluid_.parameters().output;
   const std::size_t n = s.u.size();
@@ -286,13 +286,13 @@ void Quantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
 }
 
 template <int D>
-int Quantities<D>::width() const {
+int FlowQuantities<D>::width() const {
   int sum = 0;
-  for (const Quantity& quantity : all_) sum += quantity.components;
+  for (const FlowQuantity& quantity : all_) sum += quantity.components;
   return sum;
 }
 
-template class Quantities<2>;
-template class Quantities<3>;
+template class FlowQuantities<2>;
+template class FlowQuantities<3>;
 
 }  // namespace couplet::fluid

@@ -63,12 +63,12 @@ std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 
 /// Coefficients of drag, lift and moment from the forces on some walls, means over the last step: sum F.d/(q
 /// A), sum F.l/(q A), sum ((x - c) x F).a/(q A L).
-struct Coefficients {
+struct ForceCoefficients {
   double drag = 0, lift = 0, moment = 0;
 };
 /// Collective.
 template <int D>
-Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& parameters);
+ForceCoefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& parameters);
 
 /// Kinetic energy [J] and its losses [W] in the scheme. The losses are the sum over faces of mu g |du|^2
 /// (orthogonal part), the eddy force times du, and the sum of V grad p.u at t^{n+1/2}. The last one arises
@@ -81,7 +81,7 @@ template <int D>
 EnergyBudget energy_budget(const Fluid<D>& fluid);
 
 /// Field of the fluid for files, probes and samples.
-struct Quantity {
+struct FlowQuantity {
   std::string name, unit;
   int components = 1;
   std::span<const double> cells;     ///< per local cell
@@ -90,17 +90,17 @@ struct Quantity {
 
 /// Fields of the accepted state that the case asks for. They become invalid when it advances.
 template <int D>
-class Quantities {
+class FlowQuantities {
  public:
   /// Adds velocity and pressure; the pressure is zero before the first step.
-  explicit Quantities(const Fluid<D>& fluid);
-  Quantities(const Quantities&) = delete;
+  explicit FlowQuantities(const Fluid<D>& fluid);
+  FlowQuantities(const FlowQuantities&) = delete;
   /// Adds means and root mean squares.
   void add(const RunningStatistics<D>& statistics);
   /// Adds the fields known only in cells. `statistics`: nullptr if there are none. Collective.
   void add_in_cells(const RunningStatistics<D>* statistics);
 
-  const std::vector<Quantity>& all() const { return all_; }
+  const std::vector<FlowQuantity>& all() const { return all_; }
   /// Sum of the components.
   int width() const;
 
@@ -110,7 +110,7 @@ class Quantities {
            std::size_t cells);
 
   const Fluid<D>& fluid_;
-  std::vector<Quantity> all_;
+  std::vector<FlowQuantity> all_;
   std::shared_ptr<const PressureLevel<D>> pressure_;
   std::deque<std::vector<double>> kept_;  // values computed here
 };

@@ -17,9 +17,9 @@ namespace couplet::fluid {
 
 namespace {
 
-std::vector<std::string> columns_of(const std::vector<Quantity>& quantities) {
+std::vector<std::string> columns_of(const std::vector<FlowQuantity>& quantities) {
   std::vector<std::string> columns;
-  for (const Quantity& q : quantities)
+  for (const FlowQuantity& q : quantities)
     for (int c = 0; c < q.components; ++c)
       columns.push_back(q.components == 1 ? fmt::format("{} [{}]", q.name, q.unit)
                                           : fmt::format("{} {} [{}]", q.name, base::axis_letters[c], q.unit));
@@ -77,11 +77,11 @@ void FluidOutput<D>::write_fields(double time, int number, const RunningStatisti
   if (!fields_)
     fields_.emplace(mesh_, fluid_.points_at_rest(), context_.output_folder, context_.name, fluid_.moving(),
                     context_.restart_time, context_.fields);
-  Quantities<D> quantities(fluid_);
+  FlowQuantities<D> quantities(fluid_);
   if (statistics) quantities.add(*statistics);
   quantities.add_in_cells(statistics);
   std::vector<io::OutputField> fields;
-  for (const Quantity& q : quantities.all())
+  for (const FlowQuantity& q : quantities.all())
     fields.push_back({q.name, q.unit, io::OutputField::Place::cells, q.components, q.cells});
   fields_->write(time, fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest(), fields);
 }
@@ -118,7 +118,7 @@ Row FluidOutput<D>::probes() {
   Row row;
   if (!fluid_.state().pressure[0]) return row;
   point_values_->follow();
-  const Quantities<D> quantities(fluid_);
+  const FlowQuantities<D> quantities(fluid_);
   const std::vector<std::string> columns = columns_of(quantities.all());
   std::vector<double> at_points(std::size_t(mesh_.points.n_local()) * columns.size(), 0.0);
   point_values_->fill(quantities, probes_, at_points);
@@ -136,13 +136,13 @@ void FluidOutput<D>::write_samples(double time, const RunningStatistics<D>* stat
   if (samples_.empty() || context_.output_folder.empty() || !fluid_.state().pressure[0]) return;
   point_values_->follow();
   const std::vector<Vec3>& points = fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest();
-  Quantities<D> quantities(fluid_);
+  FlowQuantities<D> quantities(fluid_);
   if (statistics) quantities.add(*statistics);
   const int width = quantities.width();
   std::vector<double> at_points(std::size_t(mesh_.points.n_local()) * width, 0.0);
   const std::span<const double> places{points.empty() ? nullptr : points.front().data(), 3 * points.size()};
   for (std::size_t k = 0; k < samples_.size(); ++k) {
-    const Sample& sample = samples_[k];
+    const Profile& sample = samples_[k];
     point_values_->fill(quantities, sample.probes(), at_points);
     const std::vector<double> at = sample.gather(mesh_.comm, places, 3),
                               values = sample.gather(mesh_.comm, at_points, width);
@@ -177,12 +177,12 @@ void PointValues<D>::follow() {
 }
 
 template <int D>
-void PointValues<D>::fill(const Quantities<D>& quantities, std::span<const io::Probe> probes,
+void PointValues<D>::fill(const FlowQuantities<D>& quantities, std::span<const io::Probe> probes,
                           std::span<double> values) const {
   const mesh::Mesh& mesh = fluid_.mesh();
   const int width = quantities.width();
   int first = 0;
-  for (const Quantity& q : quantities.all()) {
+  for (const FlowQuantity& q : quantities.all()) {
     std::vector<double> boundary(q.boundary.begin(), q.boundary.end());
     boundary.resize(std::size_t(mesh.boundary.n_local()) * q.components, 0.0);
     mesh.boundary.update_ghosts(boundary, q.components);
@@ -200,8 +200,8 @@ void PointValues<D>::fill(const Quantities<D>& quantities, std::span<const io::P
   }
 }
 
-Sample::Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
-               const SampleParameters& p)
+Profile::Profile(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
+                 const SampleParameters& p)
     : name_(std::move(name)) {
   const int rows = p.type == SampleParameters::Type::plane ? p.rows : 1;
   const io::PlaceSearch search(mesh, places);
@@ -224,7 +224,7 @@ Sample::Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string
               asked - probes_.size(), asked);
 }
 
-std::vector<double> Sample::gather(MPI_Comm comm, std::span<const double> at_points, int components) const {
+std::vector<double> Profile::gather(MPI_Comm comm, std::span<const double> at_points, int components) const {
   std::vector<double> values(probes_.size() * components, 0.0);
   for (std::size_t k = 0; k < probes_.size(); ++k) {
     const io::Probe& probe = probes_[k];

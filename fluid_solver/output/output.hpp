@@ -30,7 +30,7 @@ class PointValues {
   /// Call when the mesh may have moved, before fill(). Collective.
   void follow();
   /// Sets `values`, width() per local point, at the points of the probes only. Collective.
-  void fill(const Quantities<D>& quantities, std::span<const io::Probe> probes,
+  void fill(const FlowQuantities<D>& quantities, std::span<const io::Probe> probes,
             std::span<double> values) const;
 
  private:
@@ -39,11 +39,11 @@ class PointValues {
 };
 
 /// Places of a line or plane that lie in the mesh.
-class Sample {
+class Profile {
  public:
   /// `places`: local points [m]. Throws Error if no place of the sample is in the mesh. Collective.
-  Sample(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
-         const SampleParameters& parameters);
+  Profile(const mesh::Mesh& mesh, std::span<const Vec3> places, std::string name,
+          const SampleParameters& parameters);
   const std::string& name() const { return name_; }
   const std::vector<io::Probe>& probes() const { return probes_; }
   /// Position of each probe along from-to and from-up, 0 to 1.
@@ -130,7 +130,7 @@ class FluidOutput {
   FluidContext context_;
   bool root_;
   std::vector<io::Probe> probes_;
-  std::vector<Sample> samples_;
+  std::vector<Profile> samples_;
   std::optional<PointValues<D>> point_values_;  // only with probes or samples
   std::vector<const mesh::Patch*> walls_;
   std::optional<io::FieldWriter> fields_;

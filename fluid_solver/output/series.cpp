@@ -54,7 +54,7 @@ template <int D>
 Row coefficients(const Fluid<D>& fluid) {
   Row row;
   for (const auto& [name, parameters] : fluid.parameters().output.coefficients) {
-    const Coefficients c = force_coefficients(fluid, parameters);
+    const ForceCoefficients c = force_coefficients(fluid, parameters);
     row.insert(
         row.end(),
         {{name + " drag [-]", c.drag}, {name + " lift [-]", c.lift}, {name + " moment [-]", c.moment}});

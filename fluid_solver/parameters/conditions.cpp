@@ -125,7 +125,7 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
           "default: the wall moves as the coupling prescribes");
 }
 
-using Entry = std::pair<BoundaryType, Condition>;
+using Entry = std::pair<BoundaryType, FlowCondition>;
 
 /// All conditions, in the order of the documentation.
 const auto& condition_table() {
@@ -203,7 +203,7 @@ const auto& condition_table() {
 
 }  // namespace
 
-const Condition& condition_of(const BoundaryParameters& boundary) {
+const FlowCondition& condition_of(const BoundaryParameters& boundary) {
   return std::ranges::find(condition_table(), boundary.type, &Entry::first)->second;
 }
 
@@ -235,7 +235,7 @@ void declare_levels(config::Section& s, const FluidParameters& p) {
   };
   bool given = false, convective = false, inlet = false, moves = false, walled = false, yields = false;
   for (const auto& [patch, b] : p.boundaries) {
-    const Condition& condition = condition_of(b);
+    const FlowCondition& condition = condition_of(b);
     const bool enters = condition.passage == Passage::in, flows = condition.velocity == GivenBy::flow;
     given = given || gives_pressure(b), convective = convective || flows, inlet = inlet || enters;
     moves = moves || condition.velocity == GivenBy::motion, yields = yields || b.surface_density;

@@ -89,7 +89,7 @@ enum class Passage { none, in, out };
 /// Boundary condition: its keys, and its coefficients for flux, pressure row, viscous row, boundary value and
 /// load at each face. Face loops read these from flat arrays and never check the type. A new condition only
 /// needs an entry in conditions.cpp and a name in BoundaryType.
-struct Condition {
+struct FlowCondition {
   std::string name;   ///< name in the YAML
   std::string about;  ///< its part of the documentation of `type`; empty if another one covers it
   void (*declare)(config::Section&, BoundaryParameters&) = nullptr;  ///< its keys; nullptr if it has none
@@ -101,7 +101,7 @@ struct Condition {
 };
 
 /// Condition of a patch.
-const Condition& condition_of(const BoundaryParameters& boundary);
+const FlowCondition& condition_of(const BoundaryParameters& boundary);
 inline bool is_wall(const BoundaryParameters& b) { return condition_of(b).wall; }
 inline bool gives_pressure(const BoundaryParameters& b) { return condition_of(b).row(b).pressure > 0; }
 

@@ -21,7 +21,7 @@ namespace {
 template <int D>
 class Compression final : public Term<D> {
  public:
-  Compression(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+  Compression(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction)
       : Term<D>(scene, step, prediction),
         trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal) {}
 
@@ -113,7 +113,7 @@ constexpr double least_answer = 1e-9;
 template <int D>
 class Upstream final : public Term<D> {
  public:
-  Upstream(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+  Upstream(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction)
       : Term<D>(scene, step, prediction),
         trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal) {
     stiffness_ = scene.fluid.rho * scene.fluid.sound * scene.fluid.sound /
@@ -247,7 +247,7 @@ constexpr double mean_times = 10;
 template <int D>
 class AbsorbingBoundaries final : public Term<D> {
  public:
-  AbsorbingBoundaries(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+  AbsorbingBoundaries(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction)
       : Term<D>(scene, step, prediction) {
     const double size = largest_extent(scene.mesh, scene.points_at_rest);
     mean_time_ = scene.parameters.compressibility->mean_time.value_or(mean_times * size / scene.fluid.sound);
@@ -397,7 +397,7 @@ class AbsorbingBoundaries final : public Term<D> {
 }  // namespace
 
 template <int D>
-void add_compressible_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+void add_compressible_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                             Terms<D>& terms) {
   add_term<AbsorbingBoundaries<D>>(!scene.boundary.absorbing_patches().empty(), scene, step, prediction,
                                    terms);

@@ -114,7 +114,7 @@ inline std::array<double, 3> middle_weights(double dt, double old) {
 
 /// Rule of a step, with at most three levels.
 template <int D>
-WaveRule wave_rule(const Step<D>& step) {
+WaveRule wave_rule(const FluidStep<D>& step) {
   std::array<double, 2> times{};
   std::size_t levels = 0;
   while (levels < times.size() && step.by.pressure[levels]) {
@@ -125,7 +125,7 @@ WaveRule wave_rule(const Step<D>& step) {
 }
 /// Factor of p in dp/dt at the end of the step [1/s]; 0 in a step that starts a flow without a pressure.
 template <int D>
-double wave_rate(const Step<D>& step, bool trapezoidal) {
+double wave_rate(const FluidStep<D>& step, bool trapezoidal) {
   if (!step.by.pressure[0]) return 0;
   return trapezoidal ? 4 / step.dt : wave_rule(step).rate;
 }
@@ -141,7 +141,7 @@ struct RightSide {
 template <int D>
 class Term {
  public:
-  Term(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction)
+  Term(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction)
       : scene_(scene), mesh_(scene.mesh), step_(step), prediction_(prediction) {}
   virtual ~Term() = default;
 
@@ -184,7 +184,7 @@ class Term {
  protected:
   const Scene<D>& scene_;
   const mesh::Mesh& mesh_;
-  const Step<D>& step_;
+  const FluidStep<D>& step_;
   const Prediction<D>& prediction_;
 };
 
@@ -192,18 +192,18 @@ template <int D>
 using Terms = std::vector<std::unique_ptr<Term<D>>>;
 /// Adds the term T if the case has it.
 template <class T, int D>
-void add_term(bool has, const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+void add_term(bool has, const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
               Terms<D>& terms) {
   if (has) terms.push_back(std::make_unique<T>(scene, step, prediction));
 }
 /// Adds those of a fluid without an outlet, and of walls of known mass (Robin condition).
 template <int D>
-void add_wall_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+void add_wall_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                     Terms<D>& terms);
 /// Adds those of weak compressibility: of openings that let pressure waves out, of the cells, of a volume or line behind
 /// the inlets.
 template <int D>
-void add_compressible_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+void add_compressible_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                             Terms<D>& terms);
 
 /// Second stage of a step: sum g (p_N - p_P) = (rho/dt) sum phi^p, p = p^{n+1/2}, in passes on non-orthogonal
@@ -212,7 +212,7 @@ template <int D>
 class PressureProjection {
  public:
   /// `moving`: the mesh will move. `result`: filled by project(). Collective.
-  PressureProjection(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+  PressureProjection(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                      Projected<D>& result, bool moving);
 
   /// Prepares the guess p~, the initial non-orthogonal gradient, the terms and the matrix. Collective.
@@ -270,7 +270,7 @@ class PressureProjection {
 
   const Scene<D>& scene_;
   const mesh::Mesh& mesh_;
-  const Step<D>& step_;
+  const FluidStep<D>& step_;
   const Prediction<D>& prediction_;
   Projected<D>& out_;
   Terms<D> terms_;
@@ -285,7 +285,7 @@ class PressureProjection {
   Vectors<D> gradient_before_;
   bool knows_distances_ = false;
   std::vector<double> to_opening_;  // squared distance to the nearest opening, per local cell [m^2]
-  std::unique_ptr<linalg::Accelerator> accelerator_;
+  std::unique_ptr<linalg::VectorAccelerator> accelerator_;
 };
 
 }  // namespace couplet::fluid

@@ -28,7 +28,7 @@ constexpr linalg::Acceleration gradient_acceleration{linalg::Acceleration::Type:
 constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
 template <int D>
-Terms<D> make_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction) {
+Terms<D> make_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction) {
   Terms<D> terms;
   add_wall_terms(scene, step, prediction, terms);
   add_compressible_terms(scene, step, prediction, terms);
@@ -38,7 +38,7 @@ Terms<D> make_terms(const Scene<D>& scene, const Step<D>& step, const Prediction
 }  // namespace
 
 template <int D>
-PressureProjection<D>::PressureProjection(const Scene<D>& scene, const Step<D>& step,
+PressureProjection<D>::PressureProjection(const Scene<D>& scene, const FluidStep<D>& step,
                                           const Prediction<D>& prediction, Projected<D>& result, bool moving)
     : scene_(scene),
       mesh_(scene.mesh),
@@ -189,7 +189,7 @@ template <int D>
 bool PressureProjection<D>::mix_gradients(int pass) {
   const std::size_t owned = static_cast<std::size_t>(mesh_.cells.n_owned()) * D;
   if (!accelerator_)
-    accelerator_ = std::make_unique<linalg::Accelerator>(mesh_.comm, owned, gradient_acceleration);
+    accelerator_ = std::make_unique<linalg::VectorAccelerator>(mesh_.comm, owned, gradient_acceleration);
   if (pass == 1) accelerator_->restart();
   gradient_before_.resize(out_.gradient.size(), Vec<D>::Zero());
   double sums[2] = {0, 0};
@@ -221,7 +221,7 @@ double PressureProjection<D>::rounding() const {
 
 template <int D>
 void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
-  const FaceRows& rows = scene_.boundary.rows();
+  const BoundaryRows& rows = scene_.boundary.rows();
   for (const Index b : rows.of_velocity) out_.w[b] = w[b];
   for (const Index b : rows.of_flux) {
     const Index f = mesh_.n_interior + b;
@@ -359,7 +359,7 @@ void PressureProjection<D>::solve_initial(const Placement<D>& at) {
 template <int D>
 Vectors<D> PressureProjection<D>::adjoint(const Placement<D>& at, const Vectors<D>& u,
                                           const Vectors<D>& u_boundary) {
-  const FaceRows& rows = scene_.boundary.rows();
+  const BoundaryRows& rows = scene_.boundary.rows();
   std::vector<double> flux(mesh_.n_flux_faces(), 0.0), jump = flux, psi(mesh_.cells.n_local(), 0.0);
   Vectors<D> known = u;
   for (int pass = 1;; ++pass) {
@@ -414,7 +414,7 @@ void PressureProjection<D>::transposed_flux(const Placement<D>& at, const Vector
     const double w = at.weight[f];
     flux[f] = ((1 - w) * v[mesh_.owner[f]] + w * v[mesh_.neighbour[f]]).dot(at.area[f]);
   }
-  const FaceRows& rows = scene_.boundary.rows();
+  const BoundaryRows& rows = scene_.boundary.rows();
   for (std::size_t b = 0; b < u_boundary.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     flux[f] = (rows.pressure[b] > 0 ? v[mesh_.owner[f]] : u_boundary[b]).dot(at.area[f]);
@@ -432,7 +432,7 @@ Vectors<D> PressureProjection<D>::transposed_mean(const Placement<D>& at,
     sum[mesh_.owner[f]] += w * part;
     sum[mesh_.neighbour[f]] += (1 - w) * part;
   }
-  const FaceRows& rows = scene_.boundary.rows();
+  const BoundaryRows& rows = scene_.boundary.rows();
   for (const Index b : rows.of_pressure) {
     const Index f = mesh_.n_interior + b;
     sum[mesh_.owner[f]] += value[f] * at.area[f];

@@ -139,7 +139,7 @@ class YieldingWalls final : public Term<D> {
 }  // namespace
 
 template <int D>
-void add_wall_terms(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+void add_wall_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                     Terms<D>& terms) {
   add_term<ClosedDomain<D>>(scene.boundary.closed(), scene, step, prediction, terms);
   add_term<YieldingWalls<D>>(scene.boundary.yields(), scene, step, prediction, terms);

@@ -21,7 +21,7 @@ constexpr double along_axis = 1e-12;  // of the cosine
 constexpr double smooth = 2;          // ratio of the distances on the two sides of a cell
 
 /// A face from the point of view of one of its cells.
-struct Side {
+struct CellFace {
   Index face, other;
   bool outward;  ///< S points out of the cell
 };
@@ -35,9 +35,9 @@ bool is_straight(const Placement<D>& at, Index f) {
 
 /// Sides of each owned cell with as many faces as a quadrilateral or hexahedron.
 template <int D>
-std::vector<std::vector<Side>> sides_of(const mesh::Mesh& mesh, const Placement<D>& at) {
+std::vector<std::vector<CellFace>> sides_of(const mesh::Mesh& mesh, const Placement<D>& at) {
   const Index owned = mesh.cells.n_owned();
-  std::vector<std::vector<Side>> sides(static_cast<std::size_t>(owned));
+  std::vector<std::vector<CellFace>> sides(static_cast<std::size_t>(owned));
   std::vector<int> faces(static_cast<std::size_t>(owned), 0);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const Index p = mesh.owner[f], n = f < mesh.n_interior ? mesh.neighbour[f] : p;
@@ -54,7 +54,7 @@ std::vector<std::vector<Side>> sides_of(const mesh::Mesh& mesh, const Placement<
 }
 
 template <int D>
-Vec<D> outward(const Placement<D>& at, const Side& side) {
+Vec<D> outward(const Placement<D>& at, const CellFace& side) {
   return (side.outward ? 1 : -1) * at.area[side.face].normalized();
 }
 
@@ -69,9 +69,9 @@ int axis_of(const Vec<D>& area) {
 /// of each two. It conserves momentum and energy. e = -U/6 with U = (u - Du/6).S raises the fluxes to fourth
 /// order. Friction likewise: q = nu (g_1 x - g_2 y)/6 out of the middle, to each side by its conductance.
 template <int D>
-COUPLET_PROCESSOR_CLONES void circulate(std::span<const Link> links, const Vec<D>* area, double nu,
+COUPLET_PROCESSOR_CLONES void circulate(std::span<const CellTriple> links, const Vec<D>* area, double nu,
                                         const Vec<D>* u, Vec<D>* rate) {
-  const Link *link = links.data(), *const end = link + links.size();
+  const CellTriple *link = links.data(), *const end = link + links.size();
   while (link != end) {
     const Index c = link->cell;
     const Vec<D> middle = u[c];
@@ -94,9 +94,9 @@ COUPLET_PROCESSOR_CLONES void circulate(std::span<const Link> links, const Vec<D
 
 /// to -= n (n.Du)/(6 V) for each link; V = 1 if nullptr.
 template <bool Weighted, int D>
-[[gnu::always_inline]] inline void subtract_differences(std::span<const Link> links, const Vec<D>* area,
+[[gnu::always_inline]] inline void subtract_differences(std::span<const CellTriple> links, const Vec<D>* area,
                                                         const double* volume, const Vec<D>* u, Vec<D>* to) {
-  for (const Link& link : links) {
+  for (const CellTriple& link : links) {
     const Vec<D>&a = u[link.before], &c = u[link.cell], &b = u[link.after];
     const double sixth = Weighted ? 1 / (6 * volume[link.cell]) : 1.0 / 6;
     if (const int d = link.axis; d >= 0) {
@@ -108,7 +108,7 @@ template <bool Weighted, int D>
   }
 }
 template <int D>
-COUPLET_PROCESSOR_CLONES void difference_pass(std::span<const Link> links, const Vec<D>* area,
+COUPLET_PROCESSOR_CLONES void difference_pass(std::span<const CellTriple> links, const Vec<D>* area,
                                               const double* volume, const Vec<D>* u, Vec<D>* to) {
   volume ? subtract_differences<true, D>(links, area, volume, u, to)
          : subtract_differences<false, D>(links, area, nullptr, u, to);
@@ -122,7 +122,7 @@ Lines<D>::Lines(const mesh::Mesh& mesh, const Placement<D>& at) {
   for (std::size_t c = 0; c < sides.size(); ++c)
     for (std::size_t i = 0; i < sides[c].size(); ++i)
       for (std::size_t j = i + 1; j < sides[c].size(); ++j) {
-        Side first = sides[c][i], second = sides[c][j];
+        CellFace first = sides[c][i], second = sides[c][j];
         if (outward(at, first).dot(outward(at, second)) > -parallel_cosine) continue;
         // S of `face` points from before to after: outward at `second`, or inward at `first`.
         if (!second.outward && first.outward) std::swap(first, second);
@@ -141,7 +141,7 @@ Lines<D>::Lines(const mesh::Mesh& mesh, const Placement<D>& at) {
 template <int D>
 std::shared_ptr<const Placement<D>> Lines<D>::seen(const mesh::Mesh& mesh, const Placement<D>& at) const {
   std::vector<Tensor<D>> along(mesh.cells.n_local(), Tensor<D>::Zero());  // sum of n n^T of a cell's links
-  for (const Link& link : links) {
+  for (const CellTriple& link : links) {
     const Vec<D> n = at.area[link.face].normalized();
     along[link.cell] += n * n.transpose();
   }
@@ -181,7 +181,7 @@ void FourthOrder<D>::sharpen(const Placement<D>& at, Vectors<D>& gradient) const
 template <int D>
 double FourthOrder<D>::dissipation(double mu, const Vectors<D>& u) const {
   double sum = 0;
-  for (const Link& link : lines_.links) {
+  for (const CellTriple& link : lines_.links) {
     const Vec<D> x = u[link.cell] - u[link.before], y = u[link.after] - u[link.cell];
     sum += (link.g_before * x - link.g_after * y).squaredNorm() / (link.g_before + link.g_after);
   }

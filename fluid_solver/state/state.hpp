@@ -194,7 +194,7 @@ enum class Start : int { at_rest, after_impulse, flowing };
 /// History of a level. A step may reinterpret it (another viscous treatment, a first pressure) without
 /// changing the level itself until it is replaced.
 template <int D>
-struct History {
+struct FlowHistory {
   double time = 0;        ///< t^n [s]
   double dt_old = 0;      ///< size of the last step [s]; 0 means no history, the next step is an Euler step
   bool implicit = false;  ///< the history has an implicit viscous term (Rates::viscous)
@@ -222,7 +222,7 @@ struct EnergyLedger {
 
 /// Complete input of the next step: level n and the history of the multi-step schemes.
 template <int D>
-struct State : History<D> {
+struct State : FlowHistory<D> {
   /// Identifies u among all computed states, to avoid recomputing derived data; 0 if not computed.
   std::uint64_t number = 0;
   EnergyLedger ledger;
@@ -267,8 +267,8 @@ struct SubStep {
 
 /// Sub-step with the history at its start, time level n. Constant until the next sub-step.
 template <int D>
-struct Step : SubStep<D> {
-  History<D> by;
+struct FluidStep : SubStep<D> {
+  FlowHistory<D> by;
   /// Pressure that the implicit predictor uses for this step; nullptr if there is none yet.
   std::shared_ptr<const PressureLevel<D>> guess = by.pressure[0];
 
@@ -317,7 +317,7 @@ State<D> read_state(io::CheckpointReader& file, const mesh::Mesh& mesh,
                     std::shared_ptr<const Placement<D>> at_rest);
 
 /// Three cells in a row. The middle one is owned; its two faces are parallel and normal to the line of cells.
-struct Link {
+struct CellTriple {
   Index before, cell, after;
   Index face;                        ///< one of the two, with S pointing from `before` to `after`
   int axis = -1;                     ///< axis parallel to S; -1 if there is none
@@ -327,7 +327,7 @@ struct Link {
 /// Links of a mesh at rest, in the order of their cells.
 template <int D>
 struct Lines {
-  std::vector<Link> links;
+  std::vector<CellTriple> links;
   double share = 0;  ///< fraction of links among the cells and directions of the whole mesh
 
   /// Collective.

@@ -35,7 +35,7 @@ Vectors<D> FractionalStep<D>::friction_of(const Vectors<D>& x) const {
     rate[p] += flux;
     rate[n] -= flux;
   }
-  const FaceRows& given = scene_.boundary.rows();
+  const BoundaryRows& given = scene_.boundary.rows();
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior, p = mesh_.owner[f];
     const double a = beta * at.conductance[f], t = given.friction[b];
@@ -86,7 +86,7 @@ void FractionalStep<D>::solve_coupled(const State<D>& from, const Vectors<D>& w)
   if (first <= largest_splitting) return;
   const std::size_t owned = std::size_t(mesh_.cells.n_owned());
   std::vector<double> p(owned + w.size()), change(p.size());
-  linalg::Accelerator accelerator(mesh_.comm, p.size(), pass_acceleration);
+  linalg::VectorAccelerator accelerator(mesh_.comm, p.size(), pass_acceleration);
   const double excess = step_.moving() ? judge(from).energy.ledger.excess : 0;
   auto level = std::move(level_);
   double error = first;

@@ -106,7 +106,7 @@ double EnergyCheck<D>::energy_at_rest(const EnergyStep<D>& s) const {
 template <int D>
 void EnergyCheck<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
   const bool moving = !s.swept.empty();
-  const FaceRows& rows = boundary_.rows();
+  const BoundaryRows& rows = boundary_.rows();
   for (std::size_t b = 0; b < s.w.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
     const Vec<D> inside = 0.5 * (s.from.u[p] + s.u[p]);

@@ -88,7 +88,7 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
 // comes from a trial of the step.
 template <int D>
 void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
-  History<D> probe = history_;
+  FlowHistory<D> probe = history_;
   probe.implicit = false;  // an implicit predictor without a pressure would smear what the pressure balances
   step_.predict(level(), probe, step, w);
   step_.project(level(), w);

@@ -142,14 +142,14 @@ class Fluid {
   Boundary<D> boundary_;
   FractionalStep<D> step_;
   SubStepSize<D> sizes_;
-  State<D> accepted_;      // level n: only accept() and restore() change it
-  History<D> begin_;       // how the current step sees level n
-  State<D> trial_;         // after the last finished sub-step of the current step
-  History<D> history_;     // how the current sub-step sees level()
-  bool split_ = false;     // a sub-step of the current step is finished; the next starts from trial_
-  bool rejected_ = false;  // a longer step from here was rejected: what led to it is no measure of the flow
-  bool judged_ = false;    // the current prediction has given a valid level n+1
-  bool yields_ = false;    // walls respond to the pressure in the last sub-step
+  State<D> accepted_;       // level n: only accept() and restore() change it
+  FlowHistory<D> begin_;    // how the current step sees level n
+  State<D> trial_;          // after the last finished sub-step of the current step
+  FlowHistory<D> history_;  // how the current sub-step sees level()
+  bool split_ = false;      // a sub-step of the current step is finished; the next starts from trial_
+  bool rejected_ = false;   // a longer step from here was rejected: what led to it is no measure of the flow
+  bool judged_ = false;     // the current prediction has given a valid level n+1
+  bool yields_ = false;     // walls respond to the pressure in the last sub-step
   double time_ = 0, dt_ = 0;
   Vectors<D> guess_;                         // given velocities at the end of the step, from prepare()
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step

@@ -19,7 +19,7 @@ namespace couplet::fluid {
 /// mass (nu dt/h^2 = 100) diverges with 0.5 or less, and oscillates by 0.32 with 1, 0.16 with 2 and 0.08 with
 /// 4; 0.15 is smooth. c decreases with the square of the step. The explicit branch uses the flux of level n.
 template <int D>
-void Loads<D>::set(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+void Loads<D>::set(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                    const Projected<D>& projected, const State<D>& from) {
   const Placement<D>& to = *step.to;
   pressure.resize(projected.w.size());
@@ -110,7 +110,7 @@ void FractionalStep<D>::mark(double time) {
 }
 
 template <int D>
-void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubStep<D> step,
+void FractionalStep<D>::predict(const State<D>& from, const FlowHistory<D>& by, SubStep<D> step,
                                 const Vectors<D>& w) {
   step_ = {std::move(step), by};
   level_.reset();
@@ -256,7 +256,7 @@ void FractionalStep<D>::commit(State<D>& s) {
   }
   s.largest_speed = std::max(s.largest_speed, judgement_.speed);
   s.ledger = judgement_.energy.ledger;
-  static_cast<History<D>&>(s) = step_.by;
+  static_cast<FlowHistory<D>&>(s) = step_.by;
   for (const auto& term : projection_.terms()) term->commit(projected_, s);
   s.phi.swap(projected_.phi);
   if (scene_.parameters.courant) s.phi_old = projected_.phi;

@@ -23,7 +23,7 @@ struct Loads {
   Vectors<D> viscous;   ///< tangential part of the viscous flux
 
   /// Sets the forces of a step from a level, after its projection.
-  void set(const Scene<D>& scene, const Step<D>& step, const Prediction<D>& prediction,
+  void set(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
            const Projected<D>& projected, const State<D>& from);
 };
 
@@ -51,7 +51,7 @@ class FractionalStep {
 
   /// `by`: how the step sees the level it starts from. `w`: given velocity per boundary face at t^{n+1}, as
   /// far as it is known. Collective.
-  void predict(const State<D>& from, const History<D>& by, SubStep<D> step, const Vectors<D>& w);
+  void predict(const State<D>& from, const FlowHistory<D>& by, SubStep<D> step, const Vectors<D>& w);
   /// May be called again with another w after one predict(). Collective.
   void project(const State<D>& from, const Vectors<D>& w, double answer = 0);
   /// Computes and checks level n+1 of the last project(), for the same w, beside level n. Where the splitting error asks for it, prediction
@@ -129,7 +129,7 @@ class FractionalStep {
 
   const mesh::Mesh& mesh_;
   Scene<D> scene_;
-  Step<D> step_;
+  FluidStep<D> step_;
   Prediction<D> prediction_;
   Projected<D> projected_;
   KnownGradient<D> gradient_;

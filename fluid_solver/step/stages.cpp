@@ -113,7 +113,7 @@ COUPLET_PROCESSOR_CLONES void smooth_pass(const mesh::Mesh& mesh, const Placemen
 }  // namespace
 
 template <int D>
-Predictor<D>::Predictor(const Scene<D>& scene, const Step<D>& step, const KnownGradient<D>& gradient,
+Predictor<D>::Predictor(const Scene<D>& scene, const FluidStep<D>& step, const KnownGradient<D>& gradient,
                         Prediction<D>& result)
     : scene_(scene),
       mesh_(scene.mesh),

@@ -31,7 +31,7 @@ template <int D>
 class Predictor {
  public:
   /// `result`: filled here except for w, which is given.
-  Predictor(const Scene<D>& scene, const Step<D>& step, const KnownGradient<D>& gradient,
+  Predictor(const Scene<D>& scene, const FluidStep<D>& step, const KnownGradient<D>& gradient,
             Prediction<D>& result);
 
   /// Computes u^p in the owned cells and the viscous force of the walls. `turned`: velocity at t^{n+1/2} on which the forces of a
@@ -55,7 +55,7 @@ class Predictor {
 
   const Scene<D>& scene_;
   const mesh::Mesh& mesh_;
-  const Step<D>& step_;
+  const FluidStep<D>& step_;
   const KnownGradient<D>& gradient_;
   Prediction<D>& out_;
   RateOperator<D> rate_operator_;
@@ -71,7 +71,7 @@ template <int D>
 class FaceFlux {
  public:
   /// `gradient`: filled here.
-  FaceFlux(const Scene<D>& scene, const Step<D>& step, KnownGradient<D>& gradient)
+  FaceFlux(const Scene<D>& scene, const FluidStep<D>& step, KnownGradient<D>& gradient)
       : scene_(scene), mesh_(scene.mesh), step_(step), gradient_(gradient) {}
 
   /// Predicts phi^p without the pressure part, per flux face [m^3/s]. Collective.
@@ -90,7 +90,7 @@ class FaceFlux {
 
   const Scene<D>& scene_;
   const mesh::Mesh& mesh_;
-  const Step<D>& step_;
+  const FluidStep<D>& step_;
   KnownGradient<D>& gradient_;
   std::vector<double> phi_;
   Vectors<D> u_boundary_;              // from the predicted velocity

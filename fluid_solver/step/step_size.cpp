@@ -256,7 +256,7 @@ SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
 
 template <int D>
 void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, double frame_rate, bool starts,
-                                History<D>& begin) {
+                                FlowHistory<D>& begin) {
   starts_ = starts;
   time_ = time;
   dt_ = dt;
@@ -268,7 +268,7 @@ void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, d
 // A prescribed step is kept for either treatment: implicit if explicit would be unstable. Otherwise the
 // cheaper one is chosen. A change restarts the multi-step schemes and so requires a clear gain.
 template <int D>
-void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, History<D>& begin) {
+void SubStepSize<D>::choose_viscous_treatment(const State<D>& level, FlowHistory<D>& begin) {
   bool implicit = begin.implicit;
   if (parameters_.time_step) {
     const double own = dt_ / parts(dt_, *parameters_.time_step);

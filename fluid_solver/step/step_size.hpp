@@ -91,7 +91,7 @@ class SubStepSize {
   /// the multi-step schemes if it changes. `starts`: `level` is what a flow at rest is expected to become, so that its
   /// limits hold to the end of the step. Collective.
   void begin_step(const State<D>& level, double time, double dt, double frame_rate, bool starts,
-                  History<D>& begin);
+                  FlowHistory<D>& begin);
   /// Returns an equal part of the remaining time [s] within the limit of the present flow. `done`: sub-steps
   /// so far. Throws SolveFailure if there would be too many. Collective.
   double next(const State<D>& level, bool implicit, int done, double remaining, bool& last);
@@ -106,7 +106,7 @@ class SubStepSize {
   StepLimiter limiter(const State<D>& state) { return size_.limiter(state, state.implicit); }
 
  private:
-  void choose_viscous_treatment(const State<D>& level, History<D>& begin);
+  void choose_viscous_treatment(const State<D>& level, FlowHistory<D>& begin);
   double implicit_limit(const StepLimits& limits) const;
 
   const FluidParameters& parameters_;

@@ -125,7 +125,7 @@ class ImpactOnSeat final : public diagnostics::Diagnostic {
   }
   void conclude(diagnostics::Report& report) override {
     if (has_met_) return;
-    const Contact::Place nearest = view_.contact->deepest(view_.state.q);
+    const Contact::DeepestPoint nearest = view_.contact->deepest(view_.state.q);
     if (nearest.depth > 0) return;
     report.sentences.push_back(fmt::format(
         "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, "

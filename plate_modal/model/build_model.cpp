@@ -25,7 +25,7 @@ namespace {
 constexpr int model_version = 3;
 
 /// FNV-1a hash of all data that affect the modes.
-class Key final {
+class ModesHash final {
  public:
   void add(const void* data, std::size_t bytes) {
     const auto* at = static_cast<const unsigned char*>(data);
@@ -67,7 +67,7 @@ std::vector<bool> open_patches(const Midsurface& surface, const Parameters& p) {
 
 std::string key_of(const PlateModel& plate, const Parameters& p) {
   const Midsurface& s = plate.surface();
-  Key key;
+  ModesHash key;
   key.add(double(model_version));
   key.add(double(p.n_modes()));
   for (const Vec2& x : s.points) key.add(x.x()), key.add(x.y());
@@ -156,7 +156,7 @@ void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) 
 
 /// Key of the input with a digest of the results, so that a file with edited values is not reused.
 std::string key_with_content(const std::string& key, const modes::ModalModel& model) {
-  Key content;
+  ModesHash content;
   content.add(model.vertices);
   content.add(model.faces.offset);
   content.add(model.faces.index);

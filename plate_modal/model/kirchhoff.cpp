@@ -134,9 +134,9 @@ TriangleMatrix inertia(const Triangle& x, double density) {
 
 TriangleVector mean_deflection(const Triangle& x) { return cubic(x).colwise().sum().transpose() / 10; }
 
-std::span<const Piece> pieces_of(std::size_t corners) {
-  static constexpr std::array<Piece, 1> triangle{{{{0, 1, 2}, 1}}};
-  static constexpr std::array<Piece, 4> quadrilateral{
+std::span<const CornerTriangle> pieces_of(std::size_t corners) {
+  static constexpr std::array<CornerTriangle, 1> triangle{{{{0, 1, 2}, 1}}};
+  static constexpr std::array<CornerTriangle, 4> quadrilateral{
       {{{0, 1, 2}, .5}, {{0, 2, 3}, .5}, {{0, 1, 3}, .5}, {{1, 2, 3}, .5}}};
   if (corners == 3) return triangle;
   return quadrilateral;

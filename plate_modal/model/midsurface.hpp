@@ -84,10 +84,10 @@ double area(const Triangle& x);
 
 /// Triangles of a cell and their weights. A quadrilateral is the mean of both ways of splitting it, which
 /// preserves symmetry.
-struct Piece {
+struct CornerTriangle {
   std::array<int, 3> corner;
   double share;
 };
-std::span<const Piece> pieces_of(std::size_t corners);
+std::span<const CornerTriangle> pieces_of(std::size_t corners);
 
 }  // namespace couplet::plate

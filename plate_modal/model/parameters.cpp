@@ -52,9 +52,9 @@ void declare_body(config::Section& s, Parameters& p) {
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant");
   declare_layers(s, p);
-  s.map<Edge>(
+  s.map<EdgeSupport>(
       "boundaries", p.boundaries,
-      [](config::Section& b, Edge& v) {
+      [](config::Section& b, EdgeSupport& v) {
         b.choice("type", v.support,
                  {{"free", Support::free},
                   {"clamped", Support::clamped},
@@ -172,7 +172,7 @@ void check_file_alone(config::Section& s, const Parameters& p) {
   of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
   of_no_use("mesh-scale", "the file is in meters", [&p] { return p.mesh_scale != 1; });
   of_no_use("material", inside, [&p] {
-    const Material m;
+    const PlateMaterial m;
     return p.material.density != m.density || p.material.youngs_modulus != m.youngs_modulus ||
            p.material.poissons_ratio != m.poissons_ratio;
   });
@@ -180,7 +180,7 @@ void check_file_alone(config::Section& s, const Parameters& p) {
   of_no_use("zones", inside, [&p] { return !p.zones.empty(); });
   of_no_use("boundaries", inside, [&p] { return !p.boundaries.empty(); });
   of_no_use("placement", "the file defines the position of the surface", [&p] {
-    const Placement here;
+    const PlateFrame here;
     return p.placement.origin != here.origin || p.placement.x != here.x || p.placement.y != here.y;
   });
   of_no_use("wetted", "the interface is the surface of the file", [&p] { return p.wetted != Wetted::both; });
@@ -236,9 +236,9 @@ void declare(config::Section& s, Parameters& p) {
   s.value("initial-amplitudes", p.initial_amplitudes)
       .unit("m", 1e-9, 1e4)
       .doc("initial amplitudes of the modes: the displacement where each is largest");
-  s.map<Watched>(
+  s.map<PlateProbe>(
       "probes", p.probes,
-      [](config::Section& q, Watched& v) {
+      [](config::Section& q, PlateProbe& v) {
         q.value("point", v.point)
             .required()
             .unit("m", 1e-9, 1e4)

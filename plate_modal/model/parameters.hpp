@@ -19,11 +19,11 @@ namespace couplet::plate {
 using contact::ContactParameters;
 using contact::ContactRule;
 
-struct Material {
+struct PlateMaterial {
   double density = 0, youngs_modulus = 0, poissons_ratio = 0.3;
 };
 
-struct Edge {
+struct EdgeSupport {
   Support support = Support::free;
 };
 
@@ -42,7 +42,7 @@ struct Load {
   std::optional<config::ExpressionText> upper, lower;
 };
 
-struct Watched {
+struct PlateProbe {
   Vec3 point = Vec3::Zero();
 };
 
@@ -58,11 +58,11 @@ struct Parameters {
   bool cavity = false;                          // the file's surface encloses the outside
   std::map<std::string, double> mesh_parameters;
   double mesh_scale = 1;  // scale of all lengths of the mesh file
-  Material material;
+  PlateMaterial material;
   double thickness = 0;
   std::map<std::string, Zone> zones;
-  std::map<std::string, Edge> boundaries;
-  Placement placement;
+  std::map<std::string, EdgeSupport> boundaries;
+  PlateFrame placement;
   Wetted wetted = Wetted::both;
   std::optional<double> number;  // number of modes of a mesh
   int n_modes() const { return number ? static_cast<int>(*number) : 15; }
@@ -73,7 +73,7 @@ struct Parameters {
   std::optional<ContactParameters> contact;
   Vec3 initial_velocity = Vec3::Zero();
   std::vector<double> initial_amplitudes;
-  std::map<std::string, Watched> probes;
+  std::map<std::string, PlateProbe> probes;
   PlateOutput output;
 };
 

@@ -39,7 +39,7 @@ template <class F>
 void for_pieces(const Midsurface& s, F&& f) {
   for (Index c = 0; c < s.cells.size(); ++c) {
     const auto cell = s.cells[c];
-    for (const Piece& piece : pieces_of(cell.size())) {
+    for (const CornerTriangle& piece : pieces_of(cell.size())) {
       const std::array<Index, 3> points{cell[piece.corner[0]], cell[piece.corner[1]], cell[piece.corner[2]]};
       f(points, corners(s, points), piece.share, c);
     }

@@ -76,7 +76,7 @@ class PlateModel final {
 enum class Wetted { both, upper, lower };
 
 /// Position of the mid-surface in space: origin and axes x and y of its plane; the normal is x cross y.
-struct Placement {
+struct PlateFrame {
   Vec3 origin = Vec3::Zero(), x = Vec3::UnitX(), y = Vec3::UnitY();
   Vec3 normal() const { return x.cross(y); }
   Vec3 place(const Vec2& p, double height) const {
@@ -89,7 +89,7 @@ struct Placement {
 /// quadrilateral per outline edge whose patch is in `open` (both sides wetted); a clamped edge is inside its
 /// wall. The thickness at a point is the area-weighted mean of its cells. Shapes are means over the faces:
 /// exact for the cubic deflection on the sides, means of the corners on the rim.
-modes::ModalModel skin_of(const PlateModel& plate, const modes::EigenModes& modes, const Placement& placement,
-                          Wetted wetted, const std::vector<bool>& open);
+modes::ModalModel skin_of(const PlateModel& plate, const modes::EigenModes& modes,
+                          const PlateFrame& placement, Wetted wetted, const std::vector<bool>& open);
 
 }  // namespace couplet::plate

@@ -20,8 +20,8 @@ std::vector<double> half_thickness(const PlateModel& plate) {
 }
 
 /// Vertices of one side, numbered like the points of the mid-surface from `first` on, and its faces.
-void add_side(const Midsurface& s, const Placement& placement, const std::vector<double>& height, double sign,
-              modes::ModalModel& model) {
+void add_side(const Midsurface& s, const PlateFrame& placement, const std::vector<double>& height,
+              double sign, modes::ModalModel& model) {
   const Index first = static_cast<Index>(model.vertices.size());
   for (std::size_t p = 0; p < s.points.size(); ++p)
     model.vertices.push_back(placement.place(s.points[p], sign * height[p]));
@@ -43,7 +43,7 @@ void add_rim(const Midsurface& s, const std::vector<bool>& open, modes::ModalMod
 
 class Shapes {
  public:
-  Shapes(const PlateModel& plate, const modes::EigenModes& modes, const Placement& placement)
+  Shapes(const PlateModel& plate, const modes::EigenModes& modes, const PlateFrame& placement)
       : plate_(plate), placement_(placement), n_(modes.shape.size()) {
     for (const auto& shape : modes.shape) {
       points_.push_back(plate.to_points(shape));
@@ -89,15 +89,15 @@ class Shapes {
   }
 
   const PlateModel& plate_;
-  const Placement& placement_;
+  const PlateFrame& placement_;
   std::size_t n_;
   std::vector<std::vector<double>> points_, means_;
 };
 
 }  // namespace
 
-modes::ModalModel skin_of(const PlateModel& plate, const modes::EigenModes& modes, const Placement& placement,
-                          Wetted wetted, const std::vector<bool>& open) {
+modes::ModalModel skin_of(const PlateModel& plate, const modes::EigenModes& modes,
+                          const PlateFrame& placement, Wetted wetted, const std::vector<bool>& open) {
   const Midsurface& s = plate.surface();
   const std::vector<double> height = half_thickness(plate);
   const Shapes shapes(plate, modes, placement);

@@ -68,8 +68,8 @@ void Contact::refuse_sliding(const Surface& surface, const Vec3& direction,
       100 * least_cosine_to_seat);
 }
 
-Contact::Place Contact::deepest(std::span<const double> q) const {
-  Place deepest{-std::numeric_limits<double>::infinity()};
+Contact::DeepestPoint Contact::deepest(std::span<const double> q) const {
+  DeepestPoint deepest{-std::numeric_limits<double>::infinity()};
   for (std::size_t f = 0; f < gap_.size(); ++f)
     if (const double delta = penetration(f, q); delta > deepest.depth) deepest = {delta, centre_[f]};
   return deepest;
@@ -102,7 +102,7 @@ double Contact::penetration(std::size_t face, std::span<const double> q) const {
   return delta;
 }
 
-void Contact::evaluate(std::span<const double> from, std::span<const double> q, Result& r) const {
+void Contact::evaluate(std::span<const double> from, std::span<const double> q, ContactResult& r) const {
   const int n = n_modes_;
   r.force.setZero(n);
   r.tangent.setZero(n, n);
@@ -118,7 +118,7 @@ void Contact::evaluate(std::span<const double> from, std::span<const double> q, 
   r.tangent.triangularView<Eigen::StrictlyUpper>() = r.tangent.transpose();
 }
 
-void Contact::look(std::span<const double> q, Result& r) const {
+void Contact::look(std::span<const double> q, ContactResult& r) const {
   r.energy = r.total = r.penetration = 0;
   for (std::size_t f = 0; f < gap_.size(); ++f) {
     const double delta = penetration(f, q);

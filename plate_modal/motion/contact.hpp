@@ -19,7 +19,7 @@ class Contact final {
   /// structure is oriented towards the seat.
   Contact(const Surface& surface, const ContactParameters& parameters, const Vec3& normal, double stiffness);
 
-  struct Result {
+  struct ContactResult {
     Eigen::VectorXd force;    ///< on the modes
     Eigen::MatrixXd tangent;  ///< - d force / d q
     double energy = 0;        ///< stored in the seat at q [J]
@@ -30,16 +30,16 @@ class Contact final {
   /// mean force between `from` and q, (V(q) - V(from)) / (delta(q) - delta(from)) with V = kappa <delta>^2 /
   /// 2 of each face, whose work equals the change of energy for any step [gonzalez2000]. Both grow with q, so
   /// the solution is unique. No allocation once `result` has its size.
-  void evaluate(std::span<const double> from, std::span<const double> q, Result& result) const;
+  void evaluate(std::span<const double> from, std::span<const double> q, ContactResult& result) const;
   /// Energy, penetration and total force for a structure at rest in q.
-  void look(std::span<const double> q, Result& result) const;
+  void look(std::span<const double> q, ContactResult& result) const;
 
   /// Position of the deepest penetration for the displacement q.
-  struct Place {
+  struct DeepestPoint {
     double depth = 0;            ///< [m]; not positive if there is none
     Vec3 centre = Vec3::Zero();  ///< of the face, undeformed [m]
   };
-  Place deepest(std::span<const double> q) const;
+  DeepestPoint deepest(std::span<const double> q) const;
   /// Seat stiffness over the mass moved by an impact [1/s^2], in the direction of its modal force, for the
   /// faces in contact at either end of the step. 0 if there are none.
   double stiffness_of_impact(std::span<const double> from, std::span<const double> q,

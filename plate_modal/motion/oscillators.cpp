@@ -42,7 +42,7 @@ ModalState Oscillators::start(std::vector<double> q, std::vector<double> v) cons
   state.v = std::move(v);
   if (time::uses_acceleration(scheme_.type)) state.a.assign(state.q.size(), 0);
   if (time::uses_old_level(scheme_.type)) state.q_old = state.v_old = state.q;
-  Contact::Result seat;
+  Contact::ContactResult seat;
   if (contact_) contact_->look(state.q, seat);
   Energies& e = state.energies;
   for (std::size_t m = 0; m < omega_.size(); ++m) {

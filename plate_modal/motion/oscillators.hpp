@@ -73,7 +73,7 @@ class Oscillators final {
   /// Load of fluid and prescribed pressures on each mode in the last stage of the last solve.
   std::span<const double> load() const { return load_; }
   std::span<const double> damping() const { return damping_; }
-  const Contact::Result& seat() const { return seat_; }  ///< at the end of the last step
+  const Contact::ContactResult& seat() const { return seat_; }  ///< at the end of the last step
 
  private:
   double known(const time::Levels& levels, const ModalState& at, std::size_t mode) const;
@@ -87,7 +87,7 @@ class Oscillators final {
   const Contact* contact_;
   std::vector<double> load_, diagonal_, rhs_, x_, shown_;
   ModalState work_;
-  Contact::Result seat_;
+  Contact::ContactResult seat_;
   Eigen::VectorXd residual_, correction_;
   Eigen::MatrixXd jacobian_;
   int iterations_ = 0;

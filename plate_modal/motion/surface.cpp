@@ -147,7 +147,7 @@ double PressureLoad::value(const fv::Expression& side, const Vec3& x, double t) 
 std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,
                                    const PressureLoad* load, std::span<const double> fluid, double t) {
   const Midsurface& s = plate.surface();
-  const Placement& place = parameters.placement;
+  const PlateFrame& place = parameters.placement;
   const Vec3 normal = place.normal();
   std::vector<double> pressure(s.cells.size(), 0);
   const std::vector<double> areas = plate.cell_areas();

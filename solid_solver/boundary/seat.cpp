@@ -116,7 +116,7 @@ Seat::Look Seat::look(std::span<const double> penetration, std::span<const doubl
 void Pressing::look(std::span<const double> along) {
   for (std::size_t i = 0; i < force_.size(); ++i) {
     const double kappa = seat_.faces()[i].kappa, delta = base_[i] - factor_ * along[i];
-    const contact::Push push =
+    const contact::ContactForce push =
         before_.empty() ? contact::push(delta + multiplier_[i] / kappa) : contact::push(before_[i], delta);
     force_[i] = kappa * push.force;
     stiffness_[i] = kappa * push.slope * factor_;

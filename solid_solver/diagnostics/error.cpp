@@ -144,7 +144,7 @@ void ErrorEstimate::observe(diagnostics::Report&) {
     return root_mean_square(mesh, body_.geometry(), mesh.dim, cells);
   };
   const SolidState &now = view_.now(), &before = view_.before();
-  const time::StepErrors::Seen step =
+  const time::StepErrors::Inputs step =
       steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n), now.dt, before.dt,
                  norm(now.cell_u), norm);
   linear_.add({.error = left_by_solver() * step.size, .rate = step.rate, .size = step.size, .dt = step.dt});

@@ -381,7 +381,7 @@ void FiniteStrain::visit(std::span<const double> unknowns, std::span<const doubl
 }
 
 std::string FiniteStrain::where_worst() const {
-  const elastic::FiniteKernel::Worst worst = kernel_->worst();
+  const elastic::FiniteKernel::WorstFace worst = kernel_->worst();
   return worst_cell(mesh_, geometry_, worst.ratio, worst.face);
 }
 

@@ -186,7 +186,7 @@ void Heat::assemble(const Coefficients& c, std::span<const double> source) {
       capacity_[i] = c.next * m.density * geometry_->volume[i] * m.specific_heat(trial_.cells[i]);
     }
   }
-  const fv::ConductionOperator::Weights weights{conductivity_, transfer_, capacity_, c.theta};
+  const fv::ConductionOperator::RowFactors weights{conductivity_, transfer_, capacity_, c.theta};
   if (filled_for_ < 0) {
     conduction_.fill(weights, matrix_);
     solver_->matrix_changed();

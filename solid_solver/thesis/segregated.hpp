@@ -59,7 +59,7 @@ class Segregated final : public SolutionMethod {
   double tolerance_;
   int max_iterations_;
   ScalarSystems systems_;
-  linalg::Accelerator accelerator_;
+  linalg::VectorAccelerator accelerator_;
   std::vector<double> residual_, step_;
 };
 

@@ -58,7 +58,7 @@ void first_piola(const elastic::FiniteLaw& law, std::span<const Tensor3> deforma
   const std::size_t n = deformation.size();
   for (std::size_t first = 0; first < n; first += 4) {
     const auto at = [&](int k) { return std::min(first + std::size_t(k), n - 1); };
-    elastic::finite::State s;
+    elastic::finite::StrainState s;
     for (int k = 0; k < 4; ++k)
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) s.f[i][j][k] = deformation[at(k)](i, j);

@@ -97,7 +97,7 @@ class UpdatedLagrangian final : public LargeStrain {
   const MethodParameters method_;
   double noise_ = 0;
   elastic::FiniteLaw law_;
-  linalg::Accelerator accelerator_;
+  linalg::VectorAccelerator accelerator_;
   Place now_, next_;
   std::unique_ptr<UpdatedFrame> frame_;
   std::vector<double> pressure_;  // per boundary face of owned cells; empty if there is none

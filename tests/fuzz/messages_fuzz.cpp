@@ -86,7 +86,7 @@ void read_command(const std::string& bytes) {
 }
 
 void read_reply(const std::string& bytes) {
-  Cut cut;
+  Partition cut;
   const Reply r = unpack_reply(bytes, cut);
   ASSERT_TRUE(r.interface.dim == 2 || r.interface.dim == 3);
   for (const auto* list : {&r.interface.takes, &r.interface.gives})

@@ -27,7 +27,7 @@ double zehner_schluender(double porosity, double kappa, double r) {
   return (1 - root) * (1 + porosity * r) + 2 * root * bridge;
 }
 
-double stagnant_conductivity(const Fluid& fluid, const Filler& filler, double porosity, double diameter,
+double stagnant_conductivity(const Medium& fluid, const Filler& filler, double porosity, double diameter,
                              double kelvin) {
   constexpr double stefan_boltzmann = 5.670374e-8;  // [W/(m^2 K^4)]
   const double k = fluid.conductivity(kelvin), e = filler.emissivity;
@@ -41,7 +41,7 @@ double stagnant_conductivity(const Fluid& fluid, const Filler& filler, double po
 MassFlux::MassFlux(double g_abs)
     : g(g_abs), g_film(std::pow(g_abs, 0.6)), g_third(std::cbrt(g_abs)), g_wall(std::pow(g_abs, 0.8)) {}
 
-LayerClosure::LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler,
+LayerClosure::LayerClosure(const ClosureParameters& parameters, const Medium& fluid, const Filler& filler,
                            double porosity, double diameter)
     : parameters_(parameters), fluid_(fluid), filler_(filler), porosity_(porosity), diameter_(diameter) {
   // Slightly beyond the fluid's limits, because a run that leaves them is only warned about.

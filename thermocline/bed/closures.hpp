@@ -25,7 +25,7 @@ struct ClosureParameters {
 /// `radiation` is that between grains as a conductivity over k_f (Zehner, Bauer and Schluender 1978), 0 without.
 double zehner_schluender(double porosity, double kappa, double radiation = 0);
 /// Conductivity of a bed at rest [W/(m K)]. Grains radiate if the fluid is transparent and they have an emissivity.
-double stagnant_conductivity(const Fluid& fluid, const Filler& filler, double porosity, double diameter,
+double stagnant_conductivity(const Medium& fluid, const Filler& filler, double porosity, double diameter,
                              double kelvin);
 
 /// Transfer coefficients at one temperature and mass flux.
@@ -46,8 +46,8 @@ struct MassFlux {
 /// so Re and Pr are not needed.
 class LayerClosure {
  public:
-  LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler, double porosity,
-               double diameter);
+  LayerClosure(const ClosureParameters& parameters, const Medium& fluid, const Filler& filler,
+               double porosity, double diameter);
   Closure at(double temperature, const MassFlux& flux) const;
   /// Evaluates film, conductivity and wall coefficients of many cells at once.
   void fill(std::span<const double> temperature, const MassFlux& flux, double* film, double* conductivity,
@@ -62,7 +62,7 @@ class LayerClosure {
   Node node_at(double temperature) const;
 
   ClosureParameters parameters_;
-  Fluid fluid_;
+  Medium fluid_;
   Filler filler_;
   double porosity_, diameter_, first_, inverse_spacing_;
   std::vector<Node> nodes_;

@@ -11,7 +11,7 @@
 
 namespace couplet::thermocline {
 
-BedConstants::BedConstants(const BedParameters& p, const Fluid& its_fluid, const Filler& filler,
+BedConstants::BedConstants(const BedParameters& p, const Medium& its_fluid, const Filler& filler,
                            double diameter)
     : nominal(p.profile_temperature.empty() ? p.initial_temperature
                                             : 0.5 * (std::ranges::min(p.profile_temperature) +
@@ -48,7 +48,7 @@ BedConstants::BedConstants(const BedParameters& p, const Fluid& its_fluid, const
   }
 }
 
-PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& filler, double diameter)
+PackedBed::PackedBed(const BedParameters& p, const Medium& fluid, const Filler& filler, double diameter)
     : c_(std::make_shared<const BedConstants>(p, fluid, filler, diameter)), capacity_(c_->capacity) {
   const std::size_t n = c_->grid.z.size(), all_shells = n * c_->shells;
   for (auto* v : {&fluid_, &source_, &prepared_.film, &prepared_.conductivity, &prepared_.wall, &work_.extra,
@@ -68,7 +68,7 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
   }
   std::vector<double> start(n, p.initial_temperature);
   if (!p.profile_z.empty()) {
-    const Table profile(p.profile_z, p.profile_temperature);
+    const Curve profile(p.profile_z, p.profile_temperature);
     for (std::size_t i = 0; i < n; ++i) start[i] = profile(c_->grid.z[i]);
   }
   set_temperature(start);
@@ -280,7 +280,7 @@ double ergun(const BedLayer& layer, double viscosity, double flux) {
   return 150 * viscosity * flux * solid * solid / (eps3 * d * d) + 1.75 * flux * flux * solid / (eps3 * d);
 }
 
-PressureLoss pressure_loss(const BedGrid& grid, const Fluid& fluid, std::span<const double> temperature,
+PressureLoss pressure_loss(const BedGrid& grid, const Medium& fluid, std::span<const double> temperature,
                            double mass_flow, double area) {
   const double flux = std::abs(mass_flow) / area;
   double sum = 0;  // of dz (...) over the density, times p for a gas
@@ -293,7 +293,7 @@ PressureLoss pressure_loss(const BedGrid& grid, const Fluid& fluid, std::span<co
   return {std::sqrt(fluid.pressure * fluid.pressure + 2 * sum), fluid.pressure};
 }
 
-double pump_power(const PressureLoss& loss, const Fluid& fluid, double cold_end, double mass_flow,
+double pump_power(const PressureLoss& loss, const Medium& fluid, double cold_end, double mass_flow,
                   double efficiency) {
   const double m = std::abs(mass_flow), c = fluid.specific_heat;
   if (!fluid.is_gas()) return m * loss.loss() / (fluid.density_at(cold_end) * efficiency);

@@ -28,11 +28,11 @@ struct BedOperator {
 
 /// Constants of a run, shared by all copies of the bed.
 struct BedConstants {
-  BedConstants(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
+  BedConstants(const BedParameters& parameters, const Medium& fluid, const Filler& filler, double diameter);
   /// Temperature at which properties of the grains are called nominal [K].
   double nominal = 0;
   BedGrid grid;
-  Fluid fluid;
+  Medium fluid;
   double area;
   int shells;
   Advection advection;
@@ -84,7 +84,7 @@ struct BedHeat {
 /// steps (prepare()).
 class PackedBed {
  public:
-  PackedBed(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
+  PackedBed(const BedParameters& parameters, const Medium& fluid, const Filler& filler, double diameter);
 
   const BedGrid& grid() const { return c_->grid; }
   double area() const { return c_->area; }
@@ -200,12 +200,12 @@ struct PressureLoss {
 /// Pressure loss across the bed at fluid temperatures `temperature`, one per cell [K]. For an ideal gas, with
 /// the fluid's pressure at the outlet, p dp/dz = R T (...) is integrated exactly in each cell:
 ///   p_in^2 = p_out^2 + 2 R T dz (...)
-PressureLoss pressure_loss(const BedGrid& grid, const Fluid& fluid, std::span<const double> temperature,
+PressureLoss pressure_loss(const BedGrid& grid, const Medium& fluid, std::span<const double> temperature,
                            double mass_flow, double area);
 
 /// Power of the pump at the cold end of the bed [W]: m dp/(rho eta) for a liquid, isentropic compression m c
 /// T ((p_in/p_out)^(R/c) - 1)/eta for a gas.
-double pump_power(const PressureLoss& loss, const Fluid& fluid, double cold_end, double mass_flow,
+double pump_power(const PressureLoss& loss, const Medium& fluid, double cold_end, double mass_flow,
                   double efficiency);
 
 }  // namespace couplet::thermocline

@@ -191,7 +191,7 @@ class Pumping final : public TankDiagnostic {
   void look(diagnostics::Report& report) override {
     const auto [cold, hot] = range_to_come();
     if (!(seen_->flow > 0) || hot <= cold + 1) return;
-    const Fluid& f = view_.fluid();
+    const Medium& f = view_.fluid();
     const double mean = 0.5 * (cold + hot);
     const double density = f.is_gas() ? f.pressure / (f.gas_constant * mean) : f.density;
     double loss = 0;
@@ -210,7 +210,7 @@ class Pumping final : public TankDiagnostic {
 };
 
 /// Checks an ideal gas of constant specific heat: its Mach number, and the mean of the true specific heat.
-class Gas final : public TankDiagnostic {
+class IdealGas final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
   void look(diagnostics::Report& report) override {
@@ -231,7 +231,7 @@ class Gas final : public TankDiagnostic {
  private:
   /// Mach number at the hottest gas and narrowest pores, at the outlet pressure.
   void look_at_speed(diagnostics::Report& report) const {
-    const Fluid& f = view_.fluid();
+    const Medium& f = view_.fluid();
     double narrowest = 1;
     for (const auto& run : bed().grid().runs) narrowest = std::min(narrowest, run.layer.porosity);
     const double rt = f.gas_constant * seen_->hottest,
@@ -263,7 +263,7 @@ diagnostics::Made pumping(const RunOfTank& run) {
 }
 
 diagnostics::Made gas(const RunOfTank& run) {
-  return run.view.fluid().is_gas() ? std::make_shared<Gas>(run) : nullptr;
+  return run.view.fluid().is_gas() ? std::make_shared<IdealGas>(run) : nullptr;
 }
 
 }  // namespace couplet::thermocline

@@ -9,7 +9,7 @@ namespace couplet::thermocline {
 namespace {
 
 /// Heat transported and lost, the error of the balance, and the number of steps.
-class EnergyBalance final : public TankDiagnostic {
+class HeatBalance final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
   void conclude(diagnostics::Report& report) override {
@@ -68,7 +68,7 @@ class FluidRange final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
   void observe(diagnostics::Report& report) override {
-    const Fluid& f = view_.fluid();
+    const Medium& f = view_.fluid();
     const TankStep& step = view_.happened;
     const double low = step.coldest, high = step.hottest;
     if (high > f.highest)
@@ -94,7 +94,7 @@ class FluidRange final : public TankDiagnostic {
                celsius(f.known_from), celsius(f.known_to)));
   }
   void conclude(diagnostics::Report& report) override {
-    const Fluid& f = view_.fluid();
+    const Medium& f = view_.fluid();
     const double cold = seen_->coldest, hot = seen_->hottest;
     if (f.real && !f.real_density && hot > cold)
       report.sentences.push_back(fmt::format(
@@ -106,7 +106,7 @@ class FluidRange final : public TankDiagnostic {
 
 }  // namespace
 
-diagnostics::Made energy_balance(const RunOfTank& run) { return std::make_shared<EnergyBalance>(run); }
+diagnostics::Made energy_balance(const RunOfTank& run) { return std::make_shared<HeatBalance>(run); }
 
 diagnostics::Made surroundings(const RunOfTank& run) { return std::make_shared<NeglectedLosses>(run); }
 

@@ -73,7 +73,7 @@ std::pair<double, double> TankDiagnostic::range_to_come() const {
 double TankDiagnostic::variance_of_grains() const {
   const std::span<const double> fluid = bed().fluid();
   const double mean = std::accumulate(fluid.begin(), fluid.end(), 0.0) / double(fluid.size());
-  const Fluid& f = view_.fluid();
+  const Medium& f = view_.fluid();
   const double flux = seen_->flow / bed().area();
   double variance = 0;
   for (std::size_t r = 0; r < bed().grid().runs.size(); ++r) {

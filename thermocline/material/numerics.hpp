@@ -17,12 +17,12 @@ inline constexpr double seconds_an_hour = 3600, seconds_a_day = 86400;  // [s]
 inline constexpr double clock_rounding = 1e-9;
 
 /// Property as a piecewise linear function of temperature, constant beyond its ends. `x` [K] is ascending.
-struct Table {
+struct Curve {
   std::vector<double> x, y;
 
-  Table() = default;
-  Table(double constant) : x{0}, y{constant} {}
-  Table(std::vector<double> xs, std::vector<double> ys) : x(std::move(xs)), y(std::move(ys)) {}
+  Curve() = default;
+  Curve(double constant) : x{0}, y{constant} {}
+  Curve(std::vector<double> xs, std::vector<double> ys) : x(std::move(xs)), y(std::move(ys)) {}
 
   double operator()(double at) const {
     if (at <= x.front()) return y.front();
@@ -47,7 +47,7 @@ struct Table {
 class Ramps {
  public:
   Ramps() = default;
-  explicit Ramps(const Table& table) : first_(table.y.front()) {
+  explicit Ramps(const Curve& table) : first_(table.y.front()) {
     double slope = 0;
     for (std::size_t i = 0; i < table.x.size(); ++i) {
       const bool last = i + 1 == table.x.size();

@@ -14,7 +14,7 @@ namespace {
 Steel steel(std::string name, double density, std::vector<double> range, std::vector<double> cp,
             std::vector<double> k, std::vector<double> e, std::vector<double> alpha,
             std::vector<double> yield, double highest) {
-  const auto table = [&](const std::vector<double>& y) { return Table(range, y); };
+  const auto table = [&](const std::vector<double>& y) { return Curve(range, y); };
   return {std::move(name), density, 0.3, table(cp), table(k), table(e), table(alpha), table(yield), highest};
 }
 
@@ -24,7 +24,7 @@ const std::map<std::string, Insulator>& foundations() {
   static const std::map<std::string, Insulator> all{
       {"steel-plate", {7850, 480, 50.0}},
       {"dry-sand", {1515, 800, 0.27}},
-      {"foam-glass", {145, 1000, Table({298.15, 573.15}, {0.058, 0.10})}},
+      {"foam-glass", {145, 1000, Curve({298.15, 573.15}, {0.058, 0.10})}},
       {"hard-firebrick", {2050, 960, 1.2}},
       {"insulating-firebrick", {600, 960, 0.20}},
       {"insulating-concrete", {800, 960, 0.25}},
@@ -36,7 +36,7 @@ const std::map<std::string, Insulator>& foundations() {
 
 }  // namespace
 
-Fluid solar_salt() {
+Medium solar_salt() {
   // Table 5.1 gives the conductivity in kW with a slope ten times too small, and -1.24e-4 in the viscosity,
   // which is then negative above 407 degC. These are the correlations of Zavoico (SAND2001-2100). Density and
   // specific heat are those at 340 degC, which reproduce table 5.3.
@@ -53,7 +53,7 @@ Fluid solar_salt() {
           DensityLaw{2090, -0.636, 0}};
 }
 
-Fluid caloria_ht43() {
+Medium caloria_ht43() {
   // Table 5.1 gives the conductivity in kW/(m K); its density is that of the fit at 280 degC.
   return {"Caloria HT-43",
           692.4,
@@ -87,12 +87,12 @@ double air_viscosity(double t) {
   return 1.716e-5 * std::pow(t / 273.15, 1.5) * (273.15 + 110.4) / (t + 110.4);
 }
 
-Fluid air_at(double pressure, double reference_temperature, double specific_heat) {
+Medium air_at(double pressure, double reference_temperature, double specific_heat) {
   constexpr double gas_constant = 287.05;
-  Fluid air{"air",         pressure / (gas_constant * reference_temperature),
-            specific_heat, air_conductivity,
-            air_viscosity, 150,
-            1500};
+  Medium air{"air",         pressure / (gas_constant * reference_temperature),
+             specific_heat, air_conductivity,
+             air_viscosity, 150,
+             1500};
   air.gas_constant = gas_constant, air.pressure = pressure;
   return air;
 }
@@ -114,7 +114,7 @@ Steel nickel_n06022() {
 Insulator mineral_wool() {
   return {
       100, 840,
-      Table({323.15, 373.15, 473.15, 573.15, 673.15, 773.15}, {0.040, 0.047, 0.066, 0.091, 0.123, 0.163})};
+      Curve({323.15, 373.15, 473.15, 573.15, 673.15, 773.15}, {0.040, 0.047, 0.066, 0.091, 0.123, 0.163})};
 }
 
 Insulator foundation_material(const std::string& name) { return foundations().at(name); }
@@ -125,16 +125,16 @@ std::vector<std::string> foundation_materials() {
   return names;
 }
 
-Fluid make_fluid(const FluidParameters& p) {
-  if (p.type == FluidParameters::Type::air)
+Medium make_fluid(const MediumInput& p) {
+  if (p.type == MediumInput::Type::air)
     return air_at(p.pressure, p.reference_temperature, p.air_specific_heat);
-  if (p.type != FluidParameters::Type::custom) {
-    Fluid known = p.type == FluidParameters::Type::solar_salt ? solar_salt() : caloria_ht43();
+  if (p.type != MediumInput::Type::custom) {
+    Medium known = p.type == MediumInput::Type::solar_salt ? solar_salt() : caloria_ht43();
     known.real_density = p.real_density;
     return known;
   }
-  Fluid own{"fluid", p.density, p.specific_heat, Table(p.temperature, p.conductivity),
-            Table(p.temperature, p.viscosity)};
+  Medium own{"fluid", p.density, p.specific_heat, Curve(p.temperature, p.conductivity),
+             Curve(p.temperature, p.viscosity)};
   if (p.temperature.size() > 1) own.known_from = p.temperature.front(), own.known_to = p.temperature.back();
   return own;
 }
@@ -156,7 +156,7 @@ Insulator make_insulator(const InsulatorParameters& p) {
   made.specific_heat = p.specific_heat;
   if (!p.conductivity.empty())
     made.conductivity =
-        p.temperature.empty() ? Table(p.conductivity[0]) : Table(p.temperature, p.conductivity);
+        p.temperature.empty() ? Curve(p.conductivity[0]) : Curve(p.temperature, p.conductivity);
   return made;
 }
 
@@ -185,7 +185,7 @@ GrainHeat::GrainHeat(const Filler& filler, const std::optional<Melting>& melting
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const double from = nodes[i], c = filler.volumetric(from) + (from >= low && from < high ? latent : 0);
     const double length = i > 0 ? from - nodes[i - 1] : 0;
-    const Piece& below = pieces_.back();
+    const HeatPiece& below = pieces_.back();
     const double heat = below.heat + length * (below.capacity + 0.5 * below.slope * length);
     const bool is_last = i + 1 == nodes.size();
     const double slope =
@@ -194,26 +194,26 @@ GrainHeat::GrainHeat(const Filler& filler, const std::optional<Melting>& melting
   }
 }
 
-const GrainHeat::Piece& GrainHeat::piece(double Piece::*member, double value) const {
+const GrainHeat::HeatPiece& GrainHeat::piece(double HeatPiece::*member, double value) const {
   const auto above = std::upper_bound(pieces_.begin() + 1, pieces_.end(), value,
-                                      [&](double v, const Piece& p) { return v < p.*member; });
+                                      [&](double v, const HeatPiece& p) { return v < p.*member; });
   return *(above - 1);
 }
 
 double GrainHeat::heat(double kelvin) const {
-  const Piece& p = piece(&Piece::from, kelvin);
+  const HeatPiece& p = piece(&HeatPiece::from, kelvin);
   const double x = kelvin - p.from;
   return p.heat + x * (p.capacity + 0.5 * p.slope * x);
 }
 
 double GrainHeat::temperature(double heat) const {
-  const Piece& p = piece(&Piece::heat, heat);
+  const HeatPiece& p = piece(&HeatPiece::heat, heat);
   const double h = heat - p.heat;
   return p.from + 2 * h / (p.capacity + std::sqrt(p.capacity * p.capacity + 2 * p.slope * h));
 }
 
 double GrainHeat::capacity(double kelvin) const {
-  const Piece& p = piece(&Piece::from, kelvin);
+  const HeatPiece& p = piece(&HeatPiece::from, kelvin);
   return p.capacity + p.slope * (kelvin - p.from);
 }
 
@@ -249,7 +249,7 @@ void declare_table(config::Section& s, const char* name, const char* unit, std::
 }
 
 /// Declares a fluid by constants and lists.
-void declare_custom(config::Section& s, FluidParameters& p) {
+void declare_custom(config::Section& s, MediumInput& p) {
   as_density(s.value("density", p.density)).positive().required().doc("density, a constant");
   as_specific_heat(s.value("specific-heat", p.specific_heat)).positive().required().doc("a constant");
   as_temperature(s.value("temperature", p.temperature)).required().doc("temperatures of the following lists");
@@ -259,8 +259,8 @@ void declare_custom(config::Section& s, FluidParameters& p) {
 
 }  // namespace
 
-void declare(config::Section& section, FluidParameters& p) {
-  using Type = FluidParameters::Type;
+void declare(config::Section& section, MediumInput& p) {
+  using Type = MediumInput::Type;
   const auto known = [&p](config::Section& s) {
     s.value("real-density", p.real_density)
         .doc(

@@ -65,7 +65,7 @@ inline double value_of(const fv::Property& property, double kelvin) {
 
 /// Heat-transfer fluid. The specific heat is constant, and so is the density unless `real_density` is set
 /// (thesis table 5.1); plant and tank use both for heat. Conductivity and viscosity depend on temperature.
-struct Fluid {
+struct Medium {
   std::string name;
   double density = 0, specific_heat = 0;       // [kg/m^3], [J/(kg K)]
   std::function<double(double)> conductivity;  // [W/(m K)] of [K]
@@ -107,7 +107,7 @@ void declare(config::Section& section, Melting& melting);
 struct Steel {
   std::string name;
   double density = 7850, poissons_ratio = 0.3;
-  Table specific_heat, conductivity, youngs_modulus, expansion, yield_strength;
+  Curve specific_heat, conductivity, youngs_modulus, expansion, yield_strength;
   double highest = 1e4;  // [K]
   /// Strain from the lower end of the table to this temperature [1].
   double thermal_strain(double temperature) const { return expansion.integral(temperature); }
@@ -116,15 +116,15 @@ struct Steel {
 /// Material that only conducts: insulation, foundation, soil.
 struct Insulator {
   double density = 0, specific_heat = 0;
-  Table conductivity;
+  Curve conductivity;
 };
 
-Fluid solar_salt();
-Fluid caloria_ht43();
+Medium solar_salt();
+Medium caloria_ht43();
 /// Dry air as an ideal gas: constant specific heat, conductivity and viscosity by Sutherland's laws. The
 /// small heat content of the pores uses the density at the reference temperature, Ergun's equation the
 /// current one.
-Fluid air_at(double pressure, double reference_temperature, double specific_heat = 1075);
+Medium air_at(double pressure, double reference_temperature, double specific_heat = 1075);
 /// Sutherland's laws [W/(m K)], [Pa s].
 double air_conductivity(double temperature);
 double air_viscosity(double temperature);
@@ -142,7 +142,7 @@ std::vector<std::string> foundation_materials();
 
 // -- as written in the YAML file
 // -----------------------------------------------------------------------------
-struct FluidParameters {
+struct MediumInput {
   enum class Type { solar_salt, caloria_ht43, air, custom } type = Type::solar_salt;
   double pressure = 101325, reference_temperature = 600;  ///< of air [Pa], [K]
   double air_specific_heat = 1075;                        ///< of air: its mean from 300 to 900 K [J/(kg K)]
@@ -150,8 +150,8 @@ struct FluidParameters {
   double density = 0, specific_heat = 0;
   std::vector<double> temperature, conductivity, viscosity;
 };
-void declare(config::Section& section, FluidParameters& parameters);
-Fluid make_fluid(const FluidParameters& parameters);
+void declare(config::Section& section, MediumInput& parameters);
+Medium make_fluid(const MediumInput& parameters);
 
 struct FillerParameters {
   double density = Filler().density;
@@ -190,11 +190,11 @@ class GrainHeat {
 
  private:
   /// Values at the lower end, and the slope of the capacity. The first piece also holds below it.
-  struct Piece {
+  struct HeatPiece {
     double from, heat, capacity, slope;  // [K], [J/m^3], [J/(m^3 K)], [J/(m^3 K^2)]
   };
-  const Piece& piece(double Piece::*member, double value) const;
-  std::vector<Piece> pieces_;
+  const HeatPiece& piece(double HeatPiece::*member, double value) const;
+  std::vector<HeatPiece> pieces_;
 };
 
 }  // namespace couplet::thermocline

@@ -66,7 +66,7 @@ class GroundModel {
     const int parts = std::max(1, int(std::ceil(step.dt / p_.ground.step * (1 - 1e-9))));
     double entered = 0;
     for (int k = 0; k < parts; ++k) {
-      const Column::Heat heat = column_.step(step.dt / parts, plate, deep);
+      const Column::ColumnHeat heat = column_.step(step.dt / parts, plate, deep);
       entered += heat.inner, passed_ += heat.outer;
     }
     taken_ += entered;

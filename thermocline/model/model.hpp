@@ -18,7 +18,7 @@ namespace couplet::thermocline {
 struct TankSetup {
   TankSetup(const TankParameters& parameters);
   TankParameters parameters;
-  Fluid fluid;
+  Medium fluid;
   Filler filler;
   BedGrid grid;
   std::optional<Steel> steel;
@@ -137,7 +137,7 @@ class TankModel {
     WallStress stress = {};
   };
   /// Work vectors that an exchange step overwrites before reading.
-  struct Work {
+  struct WorkArrays {
     std::vector<double> source, from_wall;  // [W]
     std::vector<double> filler;             // [K]
   };
@@ -152,9 +152,9 @@ class TankModel {
   Held side_, bottom_;
   std::vector<double> into_blanket_;  // heat flow from each ring [W]
   std::vector<double> owed_;          // heat taken by the shell and not yet given by the bed, per cell [J]
-  Ullage::Heat gas_heat_;             // during an exchange step
+  Ullage::UllageHeat gas_heat_;       // during an exchange step
   HeatSums ledger_;
-  Work work_;
+  WorkArrays work_;
 };
 
 /// Detects initial bed temperatures with a forgotten unit: below the fluid's lowest, but within its limits if

@@ -97,7 +97,7 @@ void TankModel::step_ground(double t, double h) {
   const double step = std::max(h, std::min(setup_->parameters.ground->step, stable_ground()));
   const Film plate{plate_coefficient(), bed_.bottom()};
   const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
-  const Column::Heat heat = ground_->step(step, plate, deep);
+  const Column::ColumnHeat heat = ground_->step(step, plate, deep);
   bottom_ = {t + step, heat.inner / step, heat.outer / step};
 }
 
@@ -126,7 +126,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
       const Film answer = roof_->inner_response(h, roof_film_on(*roof_, p.diameter, air));
       roof_cell = answer.reference, conductance = answer.coefficient * roof_->area();
     }
-    const Ullage::Heat heat =
+    const Ullage::UllageHeat heat =
         ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
     gas_heat_.from_liquid += heat.from_liquid / parts;
     gas_heat_.from_wall += heat.from_wall / parts;

@@ -32,8 +32,8 @@ double beside_grains(const TankModel& m, std::size_t ring, Values values) {
 
 }  // namespace
 
-std::vector<Quantity<TankOutputFiles::Moment>> TankOutputFiles::quantities_of(const TankModel& model) {
-  std::vector<Quantity<Moment>> all{
+std::vector<OutputColumn<TankOutputFiles::Moment>> TankOutputFiles::quantities_of(const TankModel& model) {
+  std::vector<OutputColumn<Moment>> all{
       {"time [s]", [](const Moment& v) { return v.time; }},
       {"mass flow [kg/s]", [](const Moment& v) { return v.last.flow.mass_flow; }},
       {"inlet [degC]", [](const Moment& v) { return flowing(v.last, v.last.flow.inlet_temperature); }},
@@ -58,39 +58,39 @@ TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::
                                  double restart_time)
     : tank_(folder / "tank.csv", quantities_of(model), restart_time),
       bed_(folder / "bed.csv",
-           {{"time [s]", [](const Place& v) { return v.time; }},
-            {"z [m]", [](const Place& v) { return v.m.bed().grid().z[v.i]; }},
-            {"fluid [degC]", [](const Place& v) { return celsius(v.m.bed().fluid()[v.i]); }},
-            {"filler [degC]", [](const Place& v) { return celsius(v.filler[v.i]); }}},
+           {{"time [s]", [](const CellMoment& v) { return v.time; }},
+            {"z [m]", [](const CellMoment& v) { return v.m.bed().grid().z[v.i]; }},
+            {"fluid [degC]", [](const CellMoment& v) { return celsius(v.m.bed().fluid()[v.i]); }},
+            {"filler [degC]", [](const CellMoment& v) { return celsius(v.filler[v.i]); }}},
            restart_time),
       interval_(model.setup().parameters.output.monitor_interval) {
   if (model.shell())
     wall_.emplace(
         folder / "wall.csv",
-        std::vector<Quantity<Place>>{
-            {"time [s]", [](const Place& v) { return v.time; }},
-            {"z [m]", [](const Place& v) { return v.m.setup().rings->z[v.i]; }},
-            {"wall [degC]", [](const Place& v) { return celsius(v.m.shell()->temperature()[v.i]); }},
-            {"hoop stress [Pa]", [](const Place& v) { return v.m.stress().hoop[v.i]; }},
-            {"equivalent stress [Pa]", [](const Place& v) { return v.m.stress().equivalent[v.i]; }},
-            {"yield strength [Pa]", [](const Place& v) { return v.m.stress().yield[v.i]; }},
+        std::vector<OutputColumn<CellMoment>>{
+            {"time [s]", [](const CellMoment& v) { return v.time; }},
+            {"z [m]", [](const CellMoment& v) { return v.m.setup().rings->z[v.i]; }},
+            {"wall [degC]", [](const CellMoment& v) { return celsius(v.m.shell()->temperature()[v.i]); }},
+            {"hoop stress [Pa]", [](const CellMoment& v) { return v.m.stress().hoop[v.i]; }},
+            {"equivalent stress [Pa]", [](const CellMoment& v) { return v.m.stress().equivalent[v.i]; }},
+            {"yield strength [Pa]", [](const CellMoment& v) { return v.m.stress().yield[v.i]; }},
             {"filler pressure [Pa]",
-             [](const Place& v) {
+             [](const CellMoment& v) {
                return beside_grains(v.m, v.i, [](const FillerMechanics& filler) { return filler.lateral(); });
              }},
             {"contact [0 active; 1 rigid; 2 passive]",
-             [](const Place& v) {
+             [](const CellMoment& v) {
                return beside_grains(v.m, v.i, [](const FillerMechanics& filler) { return filler.contact(); });
              }}},
         restart_time);
   if (model.ground())
-    ground_.emplace(
-        folder / "ground.csv",
-        std::vector<Quantity<Place>>{
-            {"time [s]", [](const Place& v) { return v.time; }},
-            {"depth [m]", [](const Place& v) { return v.m.ground()->centre()[v.i]; }},
-            {"temperature [degC]", [](const Place& v) { return celsius(v.m.ground()->temperature()[v.i]); }}},
-        restart_time);
+    ground_.emplace(folder / "ground.csv",
+                    std::vector<OutputColumn<CellMoment>>{
+                        {"time [s]", [](const CellMoment& v) { return v.time; }},
+                        {"depth [m]", [](const CellMoment& v) { return v.m.ground()->centre()[v.i]; }},
+                        {"temperature [degC]",
+                         [](const CellMoment& v) { return celsius(v.m.ground()->temperature()[v.i]); }}},
+                    restart_time);
   // A continued run writes at the same times as the previous one.
   if (!std::isnan(restart_time)) next_ = after(restart_time);
 }
@@ -108,7 +108,7 @@ void TankOutputFiles::monitor(const TankModel& model, double time, const BedStep
 void TankOutputFiles::profiles(const TankModel& model, double time) {
   std::vector<double> filler;
   model.bed().filler_temperature(filler);
-  const auto write = [&](QuantityFile<Place>& file, std::size_t places) {
+  const auto write = [&](QuantityFile<CellMoment>& file, std::size_t places) {
     for (std::size_t i = 0; i < places; ++i) file.row({model, time, i, filler});
   };
   write(bed_, filler.size());

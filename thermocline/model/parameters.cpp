@@ -40,8 +40,8 @@ void check_together(config::Section& s, TankParameters& p) {
          [&p] { return p.elsewhere && p.elsewhere->insulation && !p.insulation && !p.shell; });
   refuse("insulation", "requires a shell; add one", [&p] { return p.insulation && !p.shell; });
   refuse("bed", "a gas crosses a cell in milliseconds: set bed.advection: implicit", [&p] {
-    const bool is_light = p.fluid.type == FluidParameters::Type::custom && p.fluid.density < lightest_liquid;
-    return (p.fluid.type == FluidParameters::Type::air || is_light) && p.bed.advection != Advection::implicit;
+    const bool is_light = p.fluid.type == MediumInput::Type::custom && p.fluid.density < lightest_liquid;
+    return (p.fluid.type == MediumInput::Type::air || is_light) && p.bed.advection != Advection::implicit;
   });
   s.check([&p] { return forgotten_unit_of_bed(p); }, "bed");
   s.check([&p] { return forgotten_unit_of_flow(p); }, "flow");

@@ -47,7 +47,7 @@ struct TankOutput {
 struct TankParameters {
   double diameter = 0;       ///< inner [m]
   double exchange_step = 0;  ///< longest step between exchanges [s]; 0 means that of the simulation
-  FluidParameters fluid;
+  MediumInput fluid;
   FillerParameters filler;
   BedParameters bed;
   std::optional<ShellParameters> shell;

@@ -10,7 +10,7 @@ namespace couplet::thermocline {
 namespace {
 
 /// Empty if this temperature is plausible.
-std::string forgotten_unit(const std::string& what, double kelvin_given, const Fluid& fluid) {
+std::string forgotten_unit(const std::string& what, double kelvin_given, const Medium& fluid) {
   const double as_celsius = kelvin(kelvin_given);
   if (kelvin_given >= fluid.lowest || as_celsius < fluid.lowest || as_celsius > fluid.highest) return "";
   return fmt::format(
@@ -22,7 +22,7 @@ std::string forgotten_unit(const std::string& what, double kelvin_given, const F
 }  // namespace
 
 std::string forgotten_unit_of_bed(const TankParameters& p) {
-  const Fluid fluid = make_fluid(p.fluid);
+  const Medium fluid = make_fluid(p.fluid);
   const double unsaid = BedParameters().initial_temperature;
   for (std::size_t i = 0; i < p.bed.layers.size(); ++i)
     if (p.bed.layers[i].melting) {
@@ -41,7 +41,7 @@ std::string forgotten_unit_of_bed(const TankParameters& p) {
 }
 
 std::string forgotten_unit_of_flow(const TankParameters& p) {
-  const Fluid fluid = make_fluid(p.fluid);
+  const Medium fluid = make_fluid(p.fluid);
   std::vector<std::pair<std::string, double>> given;
   if (p.flow.type == FlowParameters::Type::plant)
     given = {{"hot", p.flow.plant.hot}, {"cold", p.flow.plant.cold}};

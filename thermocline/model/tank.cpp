@@ -107,7 +107,7 @@ coupling::Interface Tank::initialise() {
   if (p.elsewhere && p.elsewhere->insulation) interface.takes.push_back({"wall-heat", "W", faces, 1});
   if (p.elsewhere && p.elsewhere->ground) interface.takes.push_back({"bottom-heat", "W", faces, 1});
   if (has_places)
-    for (const Given& one : given()) interface.gives.push_back({one.name, one.unit, faces, 1});
+    for (const GivenQuantity& one : given()) interface.gives.push_back({one.name, one.unit, faces, 1});
   return interface;
 }
 
@@ -116,12 +116,12 @@ double Tank::suggest_dt() {
   return elsewhere && elsewhere->ground ? accepted_.stable_ground() : std::numeric_limits<double>::infinity();
 }
 
-std::vector<Tank::Given> Tank::given() const {
+std::vector<Tank::GivenQuantity> Tank::given() const {
   const TankParameters& p = accepted_.setup().parameters;
   const auto everywhere = [&](double value) {
     return std::vector<double>(wall_ ? wall_->sections() : 1, value);
   };
-  std::vector<Given> all;
+  std::vector<GivenQuantity> all;
   if (p.external_wall) {
     all.push_back({"temperature", "K", wall_->to_sections(next_.shell()->temperature())});
     all.push_back({"pressure", "Pa", wall_->to_sections(next_.mechanics()->pressure())});
@@ -170,7 +170,7 @@ coupling::Exchange Tank::solve(const coupling::Exchange& in) {
   }
   coupling::Exchange out;
   if (parallel::comm_rank(comm_) == 0)
-    for (Given& one : given()) out[one.name] = std::move(one.values);
+    for (GivenQuantity& one : given()) out[one.name] = std::move(one.values);
   return out;
 }
 

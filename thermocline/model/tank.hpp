@@ -32,7 +32,7 @@ class TankOutputFiles {
     const BedStep& last;
   };
   /// Cell of the bed, ring of the wall or cell of the ground at an output time.
-  struct Place {
+  struct CellMoment {
     const TankModel& m;
     double time;
     std::size_t i;
@@ -40,11 +40,11 @@ class TankOutputFiles {
   };
   /// Time of the next row after this time [s].
   double after(double time) const;
-  static std::vector<Quantity<Moment>> quantities_of(const TankModel& model);
+  static std::vector<OutputColumn<Moment>> quantities_of(const TankModel& model);
 
   QuantityFile<Moment> tank_;
-  QuantityFile<Place> bed_;
-  std::optional<QuantityFile<Place>> wall_, ground_;
+  QuantityFile<CellMoment> bed_;
+  std::optional<QuantityFile<CellMoment>> wall_, ground_;
   double interval_, next_ = 0;
 };
 
@@ -58,7 +58,7 @@ struct TankView {
   const DayReport* report = nullptr;  ///< nullptr if the case requests none
 
   const TankParameters& parameters() const { return model.setup().parameters; }
-  const Fluid& fluid() const { return model.setup().fluid; }
+  const Medium& fluid() const { return model.setup().fluid; }
   double time() const { return step.time + step.dt; }
 };
 
@@ -88,11 +88,11 @@ class Tank final : public coupling::Participant {
 
  private:
   /// Quantity taken by other participants, at the end of the step.
-  struct Given {
+  struct GivenQuantity {
     const char *name, *unit;
     std::vector<double> values;
   };
-  std::vector<Given> given() const;
+  std::vector<GivenQuantity> given() const;
   std::vector<double> received(const coupling::Exchange& in, const char* name) const;
   void visit(io::Archive& archive);
 

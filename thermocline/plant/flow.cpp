@@ -160,10 +160,10 @@ std::string problem_of_rows(const FlowParameters& p) {
 std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& p, double specific_heat) {
   if (p.type == FlowParameters::Type::plant)
     return std::make_unique<PlantControl>(Plant(p.plant, specific_heat));
-  return std::make_unique<Schedule>(p);
+  return std::make_unique<FlowTable>(p);
 }
 
-Schedule::Place Schedule::place_of(double t) const {
+FlowTable::ScheduledRow FlowTable::place_of(double t) const {
   const double now = t + 1e-6;
   auto begin = rows_.begin(), end = rows_.end();
   const auto repeated =
@@ -177,7 +177,7 @@ Schedule::Place Schedule::place_of(double t) const {
     end = repeated;
   const auto next =
       std::partition_point(begin, end, [&](const ScheduleRow& r) { return r.at + shift <= now; });
-  Place place;
+  ScheduledRow place;
   if (next != begin)
     place.row = &*std::prev(next), place.began = place.row->at + shift;
   else if (repeating)  // the last row of the period before goes on
@@ -189,7 +189,7 @@ Schedule::Place Schedule::place_of(double t) const {
   return place;
 }
 
-Flow Schedule::decide(double t, double t_top, double t_bottom, const Ambient&) {
+Flow FlowTable::decide(double t, double t_top, double t_bottom, const Ambient&) {
   const auto [row, began, next] = place_of(t);
   Flow flow;
   flow.until = next;

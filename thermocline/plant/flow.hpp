@@ -78,18 +78,18 @@ std::string problem_of_rows(const FlowParameters& parameters);
 std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters, double specific_heat);
 
 /// Flow from a schedule. Labels: number of the row (from 1) while it flows, 0 at rest.
-class Schedule final : public FlowControl {
+class FlowTable final : public FlowControl {
  public:
-  explicit Schedule(const FlowParameters& parameters) : rows_(parameters.rows), repeat_(parameters.repeat) {}
+  explicit FlowTable(const FlowParameters& parameters) : rows_(parameters.rows), repeat_(parameters.repeat) {}
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
 
  private:
   /// Current row, its start, and the start of the next one.
-  struct Place {
+  struct ScheduledRow {
     const ScheduleRow* row = nullptr;
     double began = -1, next = std::numeric_limits<double>::infinity();
   };
-  Place place_of(double t) const;
+  ScheduledRow place_of(double t) const;
 
   std::vector<ScheduleRow> rows_;
   std::optional<ScheduleRepeat> repeat_;

@@ -20,7 +20,7 @@ namespace couplet::thermocline {
 
 /// Column of an output file: its heading with the unit, and its value for a row's view.
 template <class View>
-struct Quantity {
+struct OutputColumn {
   const char* heading;
   double (*value)(const View&);
 };
@@ -29,22 +29,22 @@ struct Quantity {
 template <class View>
 class QuantityFile {
  public:
-  QuantityFile(const std::filesystem::path& file, const std::vector<Quantity<View>>& quantities,
+  QuantityFile(const std::filesystem::path& file, const std::vector<OutputColumn<View>>& quantities,
                double restart_time)
       : quantities_(quantities), series_(file, headings(quantities), restart_time) {}
   void row(const View& view) {
     row_.clear();
-    for (const Quantity<View>& quantity : quantities_) row_.push_back(quantity.value(view));
+    for (const OutputColumn<View>& quantity : quantities_) row_.push_back(quantity.value(view));
     series_.row(row_);
   }
 
  private:
-  static std::vector<std::string> headings(const std::vector<Quantity<View>>& quantities) {
+  static std::vector<std::string> headings(const std::vector<OutputColumn<View>>& quantities) {
     std::vector<std::string> all;
-    for (const Quantity<View>& quantity : quantities) all.emplace_back(quantity.heading);
+    for (const OutputColumn<View>& quantity : quantities) all.emplace_back(quantity.heading);
     return all;
   }
-  std::vector<Quantity<View>> quantities_;
+  std::vector<OutputColumn<View>> quantities_;
   io::Series series_;
   std::vector<double> row_;
 };
@@ -250,7 +250,7 @@ class DayReport final {
     double thickness;                        ///< of the thermocline [m]
   };
   /// Cell of the bed and its ring at the end of a step.
-  struct Place {
+  struct BedCell {
     const TankRecord& record;
     std::size_t i;
     bool has_ring() const { return i < record.wall_z.size(); }
@@ -273,7 +273,7 @@ class DayReport final {
   double largest_pump_ = 0;  // of the run [W]
   std::unique_ptr<io::Series> days_;
   std::optional<QuantityFile<StepRow>> series_;
-  std::optional<QuantityFile<Place>> profiles_;
+  std::optional<QuantityFile<BedCell>> profiles_;
 };
 
 /// Thickness of the thermocline [m], equation 5.30 of [thesis]: the height between the critical temperatures

@@ -29,7 +29,7 @@ DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, con
   days_ = std::make_unique<io::Series>(folder_ / "days.csv", columns, restart_time);
   series_.emplace(
       folder_ / "plant.csv",
-      std::vector<Quantity<StepRow>>{
+      std::vector<OutputColumn<StepRow>>{
           {"time [s]", [](const StepRow& v) { return v.record.time; }},
           {"solar field [W]", [](const StepRow& v) { return v.field / v.record.dt; }},
           {"power block [W]", [](const StepRow& v) { return v.taken / v.record.dt; }},
@@ -47,15 +47,15 @@ DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, con
   if (p_.profile_day)
     profiles_.emplace(
         folder_ / "profiles.csv",
-        std::vector<Quantity<Place>>{
-            {"time [s]", [](const Place& v) { return v.record.time; }},
-            {"z [m]", [](const Place& v) { return v.record.z[v.i]; }},
-            {"fluid [degC]", [](const Place& v) { return celsius(v.record.fluid_temperature[v.i]); }},
-            {"filler [degC]", [](const Place& v) { return celsius(v.record.filler_temperature[v.i]); }},
+        std::vector<OutputColumn<BedCell>>{
+            {"time [s]", [](const BedCell& v) { return v.record.time; }},
+            {"z [m]", [](const BedCell& v) { return v.record.z[v.i]; }},
+            {"fluid [degC]", [](const BedCell& v) { return celsius(v.record.fluid_temperature[v.i]); }},
+            {"filler [degC]", [](const BedCell& v) { return celsius(v.record.filler_temperature[v.i]); }},
             {"wall [degC]",
-             [](const Place& v) { return v.has_ring() ? celsius(v.record.wall_temperature[v.i]) : none; }},
+             [](const BedCell& v) { return v.has_ring() ? celsius(v.record.wall_temperature[v.i]) : none; }},
             {"share of yield strength [-]",
-             [](const Place& v) {
+             [](const BedCell& v) {
                return v.has_ring() ? v.record.equivalent_stress[v.i] / v.record.yield_strength[v.i] : none;
              }}},
         restart_time);

@@ -15,7 +15,7 @@ void Layers::add_cell(double inwards, double outwards, double capacity) {
 
 void Layers::add_material(const Insulator& material, double outer_surface) {
   std::size_t before = 0;
-  for (const Material& known : materials_) before += known.cells;
+  for (const LayerMaterial& known : materials_) before += known.cells;
   materials_.push_back({capacity_.size() - before, Ramps(material.conductivity)});
   outer_surface_ = outer_surface;
   temperature_.assign(capacity_.size() * length_.size(), 293.15);
@@ -25,7 +25,7 @@ void Layers::add_material(const Insulator& material, double outer_surface) {
 
 void Layers::find_conductivity() {
   std::size_t at = 0;
-  for (const Material& material : materials_) {
+  for (const LayerMaterial& material : materials_) {
     material.conductivity.values(&temperature_[at], &k_[at], material.cells * length_.size());
     at += material.cells * length_.size();
   }
@@ -128,13 +128,13 @@ Column::Column(const std::vector<ColumnLayer>& layers, double area) : Layers({&a
   }
 }
 
-Column::Heat Column::step(double dt, const Film& inner, const Film& outer) {
+Column::ColumnHeat Column::step(double dt, const Film& inner, const Film& outer) {
   double into = 0;
   const double lost = advance(dt, {&inner.reference, 1}, inner.coefficient, 0, outer, {&into, 1});
   return {dt * into, lost};
 }
 
-Column::Heat Column::step(double dt, double inner_power, const Film& outer) {
+Column::ColumnHeat Column::step(double dt, double inner_power, const Film& outer) {
   double into = 0;
   const double none = 0, lost = advance(dt, {&none, 1}, 0, inner_power / area(), outer, {&into, 1});
   return {dt * into, lost};

@@ -43,11 +43,11 @@ class Layers {
                  const Film& outside, std::span<double> into);
   void find_conductivity();
 
-  struct Material {
+  struct LayerMaterial {
     std::size_t cells;
     Ramps conductivity;
   };
-  std::vector<Material> materials_;
+  std::vector<LayerMaterial> materials_;
   std::vector<double> length_;
   std::vector<double> shape_;     // conductances of the half cells over the conductivity, 2 per cell
   std::vector<double> capacity_;  // of each cell
@@ -60,12 +60,12 @@ class Column final : public Layers {
  public:
   Column(const std::vector<ColumnLayer>& layers, double area);
 
-  struct Heat {
+  struct ColumnHeat {
     double inner = 0, outer = 0;  ///< into the inner side, out of the outer side [J]
   };
   /// Performs a step with a film on each side, or with a given heat flow into the inner side [W].
-  Heat step(double dt, const Film& inner, const Film& outer);
-  Heat step(double dt, double inner_power, const Film& outer);
+  ColumnHeat step(double dt, const Film& inner, const Film& outer);
+  ColumnHeat step(double dt, double inner_power, const Film& outer);
 
   /// Response to a heat flow into the inner surface over a step of dt, as coefficient (T_surface - reference)
   /// [W/m^2] with the final surface temperature. Does not change the temperatures.

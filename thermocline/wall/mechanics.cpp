@@ -15,8 +15,8 @@ double rankine_active(const Filler& filler) {
   return (1 - s) / (1 + s);
 }
 
-InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid& fluid, const Filler& filler,
-                             double ullage_gauge, std::span<const double> temperature) {
+InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Medium& fluid,
+                             const Filler& filler, double ullage_gauge, std::span<const double> temperature) {
   InnerPressure p;
   p.fluid.assign(rings.size(), ullage_gauge);
   p.vertical.assign(rings.size(), 0.0);

@@ -14,7 +14,7 @@ struct InnerPressure {
   std::vector<double> vertical;  ///< p_v of the buoyant grains (5.14-5.16)
 };
 /// `temperature`: temperature of the fluid in each bed cell; empty if its density does not depend on it.
-InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid& fluid, const Filler& filler,
+InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Medium& htf, const Filler& filler,
                              double ullage_gauge, std::span<const double> temperature = {});
 
 /// Stress in a wall of rings (thesis 5.4): sigma_rr = -p_f, sigma_zz = -(weight above)/(pi D e), sigma_tt = p

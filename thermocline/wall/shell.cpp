@@ -83,7 +83,7 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
 
 double Shell::energy(double reference) const {
   double sum = 0;
-  const Table& cp = steel_->specific_heat;
+  const Curve& cp = steel_->specific_heat;
   for (int i = 0; i < rings_->size(); ++i)
     sum += steel_->density * std::numbers::pi * rings_->diameter * rings_->thickness[i] * rings_->dz[i] *
            (cp.integral(temperature_[i]) - cp.integral(reference));
@@ -123,7 +123,7 @@ coupling::Interface WallInterface::describe() const {
 }
 
 std::vector<double> WallInterface::to_sections(std::span<const double> rings) const {
-  const Table profile(ring_z_, {rings.begin(), rings.end()});
+  const Curve profile(ring_z_, {rings.begin(), rings.end()});
   std::vector<double> values(sections_);
   const double dz = height_ / sections_, from = ring_z_.front();
   for (int k = 0; k < sections_; ++k) {
@@ -157,7 +157,7 @@ std::vector<double> WallInterface::radial(std::span<const double> displacement) 
     z.push_back(k * height_ / sections_);
     u.push_back(0.5 * ((d[0] * c - d[1] * s) + (d[3] * c + d[4] * s)));
   }
-  const Table profile(std::move(z), std::move(u));
+  const Curve profile(std::move(z), std::move(u));
   std::vector<double> values;
   for (const double at : ring_z_) values.push_back(profile(at));
   return values;

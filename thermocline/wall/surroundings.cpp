@@ -110,8 +110,8 @@ Ullage::Ullage(double gauge_pressure, double diameter, double height, const std:
   capacity_ = air.density * air.specific_heat * area_ * height;
 }
 
-Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cell, double roof_conductance,
-                          double air_pressure) {
+Ullage::UllageHeat Ullage::step(double dt, double liquid, double wall, double roof_cell,
+                                double roof_conductance, double air_pressure) {
   const auto& x = enclosure_.exchange;
   const double pressure = air_pressure + gauge_pressure_;
   const double store = capacity_ / dt, before = gas_;
@@ -140,7 +140,7 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
     if (!std::isfinite(gas_ + roof_)) throw SolveFailure("The ullage's heat balance has no solution.");
     if (std::abs(dg) + std::abs(dr) < 1e-9 * (gas_ + roof_)) break;
   }
-  Heat heat;
+  UllageHeat heat;
   heat.roof_surface = roof_;
   heat.wall_coefficient = (side + 4 * x[2][2] * fourth(wall) / wall) / side_;
   heat.into_roof = roof_conductance * (roof_ - roof_cell);

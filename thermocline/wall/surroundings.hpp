@@ -62,15 +62,15 @@ class Ullage {
   Ullage(double gauge_pressure, double diameter, double height,
          const std::array<double, 3>& emissivity = ullage_emissivity);
 
-  struct Heat {
+  struct UllageHeat {
     double from_liquid = 0, from_wall = 0, into_roof = 0;  // [W]
     double roof_surface = 0;                               // [K]
     double wall_coefficient = 0;  // d(from_wall)/d(wall temperature) per area of the wall [W/(m^2 K)]
   };
   /// Performs a step of dt at given surface temperatures [K] and updates the gas. `roof_conductance`:
   /// conductance from the roof surface to its first cell [W/K], 0 without an insulated roof.
-  Heat step(double dt, double liquid, double wall, double roof_cell, double roof_conductance,
-            double air_pressure);
+  UllageHeat step(double dt, double liquid, double wall, double roof_cell, double roof_conductance,
+                  double air_pressure);
   double gas_temperature() const { return gas_; }
   void set_gas(double temperature) { gas_ = temperature, roof_ = temperature; }
   double energy(double reference) const { return capacity_ * (gas_ - reference); }  ///< [J]

@@ -17,11 +17,11 @@ constexpr double degree = pi / 180;
 /// Declination of the sun [rad] [duffie2013, equation 1.6.1a], with January 1 as day 1.
 double declination(int day) { return 23.45 * degree * std::sin(2 * pi * (285 + day) / 365.); }
 
-struct Correction {
+struct ClimateFactors {
   double r0, r1, rk;
 };
 /// Corrections of the constants for the climate [hottel1976, table 2].
-Correction climate(double latitude, double declination) {
+ClimateFactors climate(double latitude, double declination) {
   constexpr double tropic = 23.45 * degree, subarctic = 60 * degree;
   if (std::abs(latitude) <= tropic) return {0.95, 0.98, 1.02};
   if (latitude * declination < 0) return {1.03, 1.01, 1.00};
@@ -58,7 +58,7 @@ double clear_sky_irradiance(const ClearSky& site, int day, double hour) {
   const double cos_zenith = sine_of_sun_height(site.latitude, day, hour);
   if (cos_zenith <= 0) return 0;
   const double km = site.altitude / 1000;
-  const Correction c = climate(site.latitude * degree, declination(day));
+  const ClimateFactors c = climate(site.latitude * degree, declination(day));
   const double a0 = c.r0 * (0.4237 - 0.00821 * (6 - km) * (6 - km));
   const double a1 = c.r1 * (0.5055 + 0.00595 * (6.5 - km) * (6.5 - km));
   const double k = c.rk * (0.2711 + 0.01858 * (2.5 - km) * (2.5 - km));

@@ -25,7 +25,7 @@ std::pair<int, int> split_day(int day) {
   return {int(month), day};
 }
 
-struct Quantity {
+struct WeatherColumn {
   std::string name, head;  ///< in messages and in the CSV
   double lowest, highest;
   double factor;  ///< from the unit of the CSV
@@ -35,7 +35,7 @@ constexpr std::vector<double> WeatherHours::*weather_quantities[] = {
     &WeatherHours::dni, &WeatherHours::temperature, &WeatherHours::wind, &WeatherHours::humidity,
     &WeatherHours::pressure};
 constexpr std::size_t n_quantities = std::size(weather_quantities);
-const std::array<Quantity, n_quantities> quantities{{
+const std::array<WeatherColumn, n_quantities> quantities{{
     // The solar constant with the eccentricity of the orbit bounds what reaches the ground.
     {"direct normal irradiance [W/m^2]", "dni_W_m2", 0, 1412, 1},
     {"air temperature [degC]", "T_degC", -70, 65, 1},
@@ -96,7 +96,7 @@ void HourCollector::add(int hour, std::span<const double> values, int line) {
     lines_.push_back(line);
   }
   for (std::size_t q = 0; q < n_quantities; ++q) {
-    const Quantity& quantity = quantities[q];
+    const WeatherColumn& quantity = quantities[q];
     if (values[q] < quantity.lowest || values[q] > quantity.highest)
       throw Error("{}: the {} is {:g}; it must be from {:g} to {:g}.", place(line), quantity.name, values[q],
                   quantity.lowest, quantity.highest);
@@ -231,7 +231,7 @@ std::vector<std::size_t> read_head(const std::string& head, const std::filesyste
           "numbers. 'couplet weather' converts it.",
           place, other == ';' ? "';'" : "tabs");
   std::vector<std::string> known;
-  for (const Quantity& q : quantities) known.push_back(q.head);
+  for (const WeatherColumn& q : quantities) known.push_back(q.head);
   known.emplace_back("hour");
   const std::vector<std::string> names = csv::fields(head);
   if (std::find_first_of(names.begin(), names.end(), known.begin(), known.end()) == names.end())

@@ -240,9 +240,9 @@ std::vector<std::string> doubts_of_wall_mass(const config::Document& document) {
 
 namespace {
 
-class Seat {
+class ContactSeat {
  public:
-  Seat(config::Document& document, std::string contact)
+  ContactSeat(config::Document& document, std::string contact)
       : document_(document), contact_(std::move(contact)), keys_(config::keys_of(document, contact_)) {}
 
   std::vector<std::string> problems() {
@@ -307,7 +307,7 @@ std::vector<std::string> share_seats(config::Document& document) {
   if (!structure) return {};
   const std::string contact = "participants." + *structure + ".contact";
   if (config::keys_of(document, contact).empty()) return {};
-  return Seat(document, contact).problems();
+  return ContactSeat(document, contact).problems();
 }
 
 }  // namespace couplet::app

@@ -269,11 +269,11 @@ Attendance attendance_of(const std::vector<Attendant>& attendants, const std::ve
   return cannot_start(text, true);
 }
 
-std::vector<Member> members(const std::vector<Attendant>& attendants) {
-  std::vector<Member> list;
+std::vector<JobMember> members(const std::vector<Attendant>& attendants) {
+  std::vector<JobMember> list;
   for (const Attendant& a : attendants) {
     auto it = std::find_if(list.begin(), list.end(),
-                           [&](const Member& m) { return m.participant == a.participant; });
+                           [&](const JobMember& m) { return m.participant == a.participant; });
     if (it == list.end()) it = list.insert(list.end(), {a.participant, a.program, a.world_rank, 0});
     ++it->ranks;
   }

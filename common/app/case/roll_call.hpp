@@ -33,7 +33,7 @@ struct Expected {
 };
 
 /// Participant as found in the job.
-struct Member {
+struct JobMember {
   std::string participant, program;
   int first_rank = 0, ranks = 0;  ///< in MPI_COMM_WORLD
 };
@@ -77,6 +77,6 @@ Attendance attendance_of(const std::vector<Attendant>& attendants, const std::ve
 bool all_agree_to_start(MPI_Comm world, bool problem);
 
 /// Participants in order of their first world rank.
-std::vector<Member> members(const std::vector<Attendant>& attendants);
+std::vector<JobMember> members(const std::vector<Attendant>& attendants);
 
 }  // namespace couplet::app

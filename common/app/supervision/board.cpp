@@ -219,7 +219,7 @@ void Listener::hear(int i) {
     asleep = 0;
   else if (asleep == 0)
     asleep = last_look_;
-  Work& work = work_[std::size_t(i)];
+  WorkTime& work = work_[std::size_t(i)];
   if (i == board.mine || slot.finished || !works_long(slot)) {
     work.since = 0;
     return;

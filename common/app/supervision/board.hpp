@@ -107,7 +107,7 @@ class Listener {
 
  private:
   /// Processor time of a process during long work, and the time of its last increase.
-  struct Work {
+  struct WorkTime {
     double seconds = 0, since = 0;  // since = 0 means no long work
   };
   void hear(int i);
@@ -117,7 +117,7 @@ class Listener {
 
   double patience_, period_, last_look_, started_;
   std::vector<double> asleep_since_;  // 0 means awake
-  std::vector<Work> work_;
+  std::vector<WorkTime> work_;
 };
 
 }  // namespace couplet::app::watching

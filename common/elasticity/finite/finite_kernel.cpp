@@ -17,24 +17,24 @@ namespace {
 constexpr std::size_t chunk = 16;
 
 // Loops compiled for several generations of processors, selected at program start.
-COUPLET_PROCESSOR_CLONES void deform_pass(finite::Group& group, std::size_t first, const finite::Values& at,
+COUPLET_PROCESSOR_CLONES void deform_pass(finite::FaceSet& group, std::size_t first, const finite::Values& at,
                                           std::span<Invariants> found) {
   group.dim == 2 ? finite::deform_loop<2>(group, first, at, found)
                  : finite::deform_loop<3>(group, first, at, found);
 }
-COUPLET_PROCESSOR_CLONES void stress_pass(finite::Group& group, const finite::Values& at) {
+COUPLET_PROCESSOR_CLONES void stress_pass(finite::FaceSet& group, const finite::Values& at) {
   if (group.law->has_second_invariant)
     group.dim == 2 ? finite::stress_loop<2, true>(group, at) : finite::stress_loop<3, true>(group, at);
   else
     group.dim == 2 ? finite::stress_loop<2, false>(group, at) : finite::stress_loop<3, false>(group, at);
 }
-COUPLET_PROCESSOR_CLONES void tangent_pass(const finite::Group& group, const finite::Values& at) {
+COUPLET_PROCESSOR_CLONES void tangent_pass(const finite::FaceSet& group, const finite::Values& at) {
   if (group.law->has_second_invariant)
     group.dim == 2 ? finite::tangent_loop<2, true>(group, at) : finite::tangent_loop<3, true>(group, at);
   else
     group.dim == 2 ? finite::tangent_loop<2, false>(group, at) : finite::tangent_loop<3, false>(group, at);
 }
-COUPLET_PROCESSOR_CLONES void volume_pass(const finite::Group& group, const finite::Values& at) {
+COUPLET_PROCESSOR_CLONES void volume_pass(const finite::FaceSet& group, const finite::Values& at) {
   group.dim == 2 ? finite::volume_loop<2>(group, at) : finite::volume_loop<3>(group, at);
 }
 
@@ -51,7 +51,7 @@ FiniteKernel::FiniteKernel(const mesh::Mesh& mesh, const ElasticOperator& rows,
       return laws_.size() == 1 || std::size_t(mesh.material_of(mesh.owner[f])) == m;
     };
     for (int i = 0; i < (edges_ ? 2 : 1); ++i) {
-      finite::Group& group = groups_.emplace_back();
+      finite::FaceSet& group = groups_.emplace_back();
       static_cast<FaceGroup&>(group) =
           make_group(mesh, rows, shared, i == 0 ? nullptr : &edges_->edges(), takes);
       group.dim = mesh.dim;
@@ -81,7 +81,7 @@ finite::Values FiniteKernel::values() {
 }
 
 /// Computes states, energy and the smallest volume ratio of one material's faces.
-void FiniteKernel::deform(finite::Group& group) {
+void FiniteKernel::deform(finite::FaceSet& group) {
   std::array<Invariants, chunk> invariants;
   std::array<Energy, chunk> energy;
   for (std::size_t first = 0; first < group.blocks.size(); first += chunk) {
@@ -103,14 +103,14 @@ void FiniteKernel::internal_forces() {
   energy_ = 0;
   worst_ = {};
   std::ranges::fill(cells_.of_nodes, 0.0);
-  for (finite::Group& group : groups_) deform(group);
+  for (finite::FaceSet& group : groups_) deform(group);
   for (std::size_t i = 0; i < elsewhere_.blocks.size(); ++i) {
     const auto deformation = mesh_.dim == 2 ? finite::deformation<2> : finite::deformation<3>;
     deformation(elsewhere_.blocks[i], space_.values(), false, elsewhere_.states[i].f);
   }
   if (edges_) {
     edges_->clear();
-    for (const finite::Group& group : groups_) finite::to_edges(group, space_.values(), edges_->values());
+    for (const finite::FaceSet& group : groups_) finite::to_edges(group, space_.values(), edges_->values());
     edges_->finish_means();
     if (worst_.ratio > 0) worst_.take(edges_->to_stress(cells_.of_nodes.empty(), energy_), worst_.face);
   }
@@ -118,7 +118,7 @@ void FiniteKernel::internal_forces() {
   if (!cells_.of_nodes.empty()) find_pressures();
   if (has_start_) return conserving_forces();
   if (!(worst_.ratio > 0)) return;
-  for (finite::Group& group : groups_) {
+  for (finite::FaceSet& group : groups_) {
     stress_pass(group, values());
     if (edges_) finite::from_edges(group, edges_->values(), space_.forces());
   }
@@ -150,13 +150,13 @@ void FiniteKernel::apply_tangent(std::span<const double> v, std::span<const doub
     sum_volume_changes();
     mesh_.cells.update_ghosts(std::span(cells_.of_nodes).first(std::size_t(mesh_.cells.n_local())));
   }
-  for (const finite::Group& group : groups_) tangent_pass(group, values());
+  for (const finite::FaceSet& group : groups_) tangent_pass(group, values());
   if (edges_) {
     edges_->clear();
-    for (const finite::Group& group : groups_) finite::to_edges(group, space_.values(), edges_->values());
+    for (const finite::FaceSet& group : groups_) finite::to_edges(group, space_.values(), edges_->values());
     edges_->finish_means();
     edges_->to_tangent();
-    for (const finite::Group& group : groups_) finite::from_edges(group, edges_->values(), space_.forces());
+    for (const finite::FaceSet& group : groups_) finite::from_edges(group, edges_->values(), space_.forces());
   }
   pressure_.add_tangent(space_);
   finish(v, known, mass_factor, result);
@@ -164,7 +164,7 @@ void FiniteKernel::apply_tangent(std::span<const double> v, std::span<const doub
 
 /// Includes the share of the edges, if there are any.
 void FiniteKernel::visit(const Take& take) {
-  for (const finite::Group& group : groups_)
+  for (const finite::FaceSet& group : groups_)
     for (std::size_t i = 0; i < group.blocks.size(); ++i) {
       Four p[3][3];
       finite::stress<true>(group.states[i], p);
@@ -229,7 +229,7 @@ void FiniteKernel::find_pressures() {
 /// Computes U'' dJ of owned cells for the increment in the space.
 void FiniteKernel::sum_volume_changes() {
   std::ranges::fill(cells_.of_nodes, 0.0);
-  for (const finite::Group& group : groups_) volume_pass(group, values());
+  for (const finite::FaceSet& group : groups_) volume_pass(group, values());
   const std::span<double> cells = sum_over_ranks(cells_.of_nodes);
   for (std::size_t c = 0; c < cells_.modulus.size(); ++c) cells[c] *= cells_.modulus[c];
 }
@@ -247,7 +247,7 @@ void FiniteKernel::add_pressure_defect(std::span<double> result) {
     cells[c] = cells_.pressure[c] - cells_.own[c] - cells_.fraction * cells_.change[c];
   mesh_.cells.update_ghosts(cells);
   space_.clear_forces();
-  for (const finite::Group& group : groups_) finite::pressure_loop(group, values());
+  for (const finite::FaceSet& group : groups_) finite::pressure_loop(group, values());
   space_.add_collected(result);
 }
 
@@ -255,7 +255,7 @@ void FiniteKernel::add_pressure_defect(std::span<double> result) {
 void FiniteKernel::conserving_pressures() {
   std::ranges::fill(cells_.of_nodes, 0.0);
   std::vector<double> before(cells_.of_nodes.size(), 0);
-  for (const finite::Group& group : groups_)
+  for (const finite::FaceSet& group : groups_)
     finite::end_volumes(group, before.data(), cells_.of_nodes.data());
   const std::span<double> cells = sum_over_ranks(cells_.of_nodes), starts = sum_over_ranks(before);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
@@ -275,7 +275,7 @@ void FiniteKernel::set_start(std::span<const double> unknowns, std::span<const d
   space_.fill(unknowns, known);
   space_.clear_forces();
   internal_forces();
-  for (finite::Group& group : groups_) group.set_start(cells_.of_nodes.empty());
+  for (finite::FaceSet& group : groups_) group.set_start(cells_.of_nodes.empty());
   if (edges_) edges_->set_start(cells_.of_nodes.empty());
   has_start_ = true;
 }
@@ -283,7 +283,7 @@ void FiniteKernel::set_start(std::span<const double> unknowns, std::span<const d
 /// Adds the forces of an energy-conserving step. The tangent remains that of the midpoint states. It is
 /// symmetric and differs by the square of the step.
 void FiniteKernel::conserving_forces() {
-  for (finite::Group& group : groups_) {
+  for (finite::FaceSet& group : groups_) {
     // The tangent includes the pressure of the midpoint states.
     if (!cells_.of_nodes.empty())
       for (std::size_t i = 0; i < group.blocks.size(); ++i)
@@ -298,7 +298,7 @@ void FiniteKernel::conserving_forces() {
   }
   if (!cells_.of_nodes.empty()) conserving_pressures();
   if (edges_) edges_->to_conserving(cells_.of_nodes.empty());
-  for (const finite::Group& group : groups_) {
+  for (const finite::FaceSet& group : groups_) {
     finite::conserving_loop(group, values());
     if (edges_) finite::from_edges(group, edges_->values(), space_.forces());
   }
@@ -323,7 +323,7 @@ std::vector<Wrench> FiniteKernel::holding_forces(std::span<const double> unknown
 
 void FiniteKernel::set_stretch(std::span<const double> of_faces) {
   cells_.swelling.clear();
-  for (finite::Group& group : groups_) {
+  for (finite::FaceSet& group : groups_) {
     group.stretch.assign(of_faces.empty() ? 0 : group.blocks.size(), Four{} + 1.0);
     for (std::size_t i = 0; i < group.stretch.size() * 4 && i < group.faces.size(); ++i)
       group.stretch[i / 4][i % 4] = of_faces[std::size_t(group.faces[i])];
@@ -341,7 +341,7 @@ void FiniteKernel::set_stretch(std::span<const double> of_faces) {
 /// Averages the stretches of the faces around each edge, like F. Collective.
 void FiniteKernel::stretch_edges() {
   edges_->clear();
-  for (const finite::Group& group : groups_)
+  for (const finite::FaceSet& group : groups_)
     for (std::size_t i = 0; i < group.edges.size(); ++i)
       for (int k = 0; k < 4; ++k)
         for (const Index e : group.edges[i][std::size_t(k)])
@@ -352,7 +352,7 @@ void FiniteKernel::stretch_edges() {
 
 /// Computes nine changes of F. A pressure acts on edges through their own F; here the face takes all of it.
 void FiniteKernel::visit_tangents(const std::function<void(const FaceTangent&)>& take) {
-  const auto take_cofactors = [](const finite::State& state, FaceTangent(&of)[4]) {
+  const auto take_cofactors = [](const finite::StrainState& state, FaceTangent(&of)[4]) {
     Four h[3][3];
     finite::cofactors(state.f, h);
     for (int k = 0; k < 4; ++k)
@@ -364,9 +364,9 @@ void FiniteKernel::visit_tangents(const std::function<void(const FaceTangent&)>&
       if (of[k].face >= 0) take(of[k]);
     }
   };
-  for (const finite::Group& group : groups_)
+  for (const finite::FaceSet& group : groups_)
     for (std::size_t i = 0; i < group.blocks.size(); ++i) {
-      finite::State state = group.states[i];
+      finite::StrainState state = group.states[i];
       const Four own = blocks::wide(group.volumes[i].own);
       if (!group.edges.empty() && !cells_.of_nodes.empty())
         state.wj -= (1 - own) / own * finite::between(group, i, cells_.there.data());

@@ -63,14 +63,14 @@ class FiniteKernel {
   double energy() const { return energy_; }
 
   /// Smallest det F of the last linearise() on this rank, and its face.
-  struct Worst {
+  struct WorstFace {
     double ratio = 1;
     Index face = -1;
     void take(double other, Index at) {
       if (!(other >= ratio)) ratio = other, face = at;
     }
   };
-  Worst worst() const { return worst_; }
+  WorstFace worst() const { return worst_; }
   /// Receives (flux face, F, P) of the last linearise() for the faces whose owner cell is on this rank. F(i,
   /// j) = d x_i / d X_j. P includes the share of the edges.
   using Take = std::function<void(Index, const Tensor3&, const Tensor3&)>;
@@ -108,7 +108,7 @@ class FiniteKernel {
   };
   void stretch_edges();
   void internal_forces();
-  void deform(finite::Group& group);
+  void deform(finite::FaceSet& group);
   void find_pressures();
   std::span<double> sum_over_ranks(std::vector<double>& of_nodes) const;
   void sum_volume_changes();
@@ -125,15 +125,15 @@ class FiniteKernel {
   const ElasticOperator& rows_;
   SymmetricSpace space_;
   const std::vector<FiniteLaw> laws_;
-  std::vector<finite::Group> groups_;
-  finite::Group elsewhere_;  // other ranks' faces at owned cells: only F, for one volume ratio per cell
+  std::vector<finite::FaceSet> groups_;
+  finite::FaceSet elsewhere_;  // other ranks' faces at owned cells: only F, for one volume ratio per cell
   std::unique_ptr<FiniteEdges> edges_;  // nullptr without triangular faces in 3-D
   Cells cells_;
   FollowerPressure pressure_;
   Vec3 pressure_force_ = Vec3::Zero();
   bool has_start_ = false;
   double energy_ = 0;
-  Worst worst_;
+  WorstFace worst_;
 };
 
 /// Assembled tangent at the last linearise(), for factorizations of small bodies. As in symmetric_matrix(),

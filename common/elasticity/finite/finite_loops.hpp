@@ -9,7 +9,7 @@
 /// Loops of FiniteKernel over faces of one material, four at a time.
 namespace couplet::elastic::finite {
 
-struct Group : FaceGroup, Places {
+struct FaceSet : FaceGroup, Places {
   int dim = 3;
 };
 
@@ -35,7 +35,7 @@ template <int D>
 }
 
 template <int D>
-[[gnu::always_inline]] inline void push_stress(const Group& group, std::size_t i, const Tensor4& p,
+[[gnu::always_inline]] inline void push_stress(const FaceSet& group, std::size_t i, const Tensor4& p,
                                                const Four& share, double* forces) {
   const Four weight = share * blocks::wide(group.volumes[i].whole);
   Four scaled[D][D];
@@ -44,21 +44,21 @@ template <int D>
   blocks::push<D>(group.blocks[i], scaled, forces);
 }
 
-inline void push_stress(const Group& group, std::size_t i, const Tensor4& p, const Four& share,
+inline void push_stress(const FaceSet& group, std::size_t i, const Tensor4& p, const Four& share,
                         double* forces) {
   group.dim == 2 ? push_stress<2>(group, i, p, share, forces) : push_stress<3>(group, i, p, share, forces);
 }
 
-inline Four between(const Group& group, std::size_t i, const double* of_nodes) {
+inline Four between(const FaceSet& group, std::size_t i, const double* of_nodes) {
   return blocks::between(group.blocks[i], group.volumes[i], of_nodes);
 }
 
 /// Computes F and the invariants of some blocks. Adds V_fP J to the cells.
 template <int D>
-[[gnu::always_inline]] inline void deform_loop(Group& group, std::size_t first, const Values& at,
+[[gnu::always_inline]] inline void deform_loop(FaceSet& group, std::size_t first, const Values& at,
                                                std::span<Invariants> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
-    State& state = group.states[first + i];
+    StrainState& state = group.states[first + i];
     deformation<D>(group.blocks[first + i], at.values, false, state.f);
     found[i] = invariants(state.f);
     if (at.of_cells)
@@ -67,7 +67,7 @@ template <int D>
 }
 
 template <int D, bool HasSecond>
-[[gnu::always_inline]] inline void stress_loop(Group& group, const Values& at) {
+[[gnu::always_inline]] inline void stress_loop(FaceSet& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     const Four own = blocks::wide(group.volumes[i].own);
     Four p[3][3];
@@ -79,7 +79,7 @@ template <int D, bool HasSecond>
 }
 
 /// Adds the forces p H of the cell pressures.
-inline void pressure_loop(const Group& group, const Values& at) {
+inline void pressure_loop(const FaceSet& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four h[3][3];
     cofactors(group.states[i].f, h);
@@ -92,7 +92,7 @@ inline void pressure_loop(const Group& group, const Values& at) {
 
 /// Adds V_fP dJ to the cells.
 template <int D>
-[[gnu::always_inline]] inline void volume_loop(const Group& group, const Values& at) {
+[[gnu::always_inline]] inline void volume_loop(const FaceSet& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four df[3][3], h[3][3];
     deformation<D>(group.blocks[i], at.values, true, df);
@@ -102,7 +102,7 @@ template <int D>
 }
 
 template <int D, bool HasSecond>
-[[gnu::always_inline]] inline void tangent_loop(const Group& group, const Values& at) {
+[[gnu::always_inline]] inline void tangent_loop(const FaceSet& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     const Four own = blocks::wide(group.volumes[i].own);
     Four df[3][3], dp[3][3], dpressure{};
@@ -142,13 +142,13 @@ template <int D, bool HasSecond>
 }
 
 /// F at the end of a step.
-inline void end_of(const Group& group, std::size_t i, Tensor4& f) {
+inline void end_of(const FaceSet& group, std::size_t i, Tensor4& f) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) f[a][b] = 2.0 * group.states[i].f[a][b] - group.start[i].f[a][b];
 }
 
 /// Adds V_fP J at the start and end of a step to the cells.
-inline void end_volumes(const Group& group, double* at_start, double* at_end) {
+inline void end_volumes(const FaceSet& group, double* at_start, double* at_end) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four f[3][3];
     end_of(group, i, f);
@@ -158,7 +158,7 @@ inline void end_volumes(const Group& group, double* at_start, double* at_end) {
 }
 
 /// Smallest det F at the end of a step.
-inline double least_end_ratio(const Group& group) {
+inline double least_end_ratio(const FaceSet& group) {
   double least = 1;
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four f[3][3];
@@ -172,7 +172,7 @@ inline double least_end_ratio(const Group& group) {
 
 /// Adds the forces of an energy-conserving step, which replace those of the midpoint states. `at.of_cells`
 /// holds the conserving pressure p* of the cells.
-inline void conserving_loop(const Group& group, const Values& at) {
+inline void conserving_loop(const FaceSet& group, const Values& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four p[3][3];
     const Four own = blocks::wide(group.volumes[i].own);

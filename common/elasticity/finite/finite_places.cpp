@@ -41,7 +41,7 @@ double step(const Energy& e, const Four& square, const Four& area, Four& l) {
 }
 
 /// Sets dW/dJ of a sheet from P_33 = 0, without the round-off of det F times the bulk modulus.
-void balance(State& state) {
+void balance(StrainState& state) {
   const Tensor4& f = state.f;
   const Four square = f[0][0] * f[0][0] + f[0][1] * f[0][1] + f[1][0] * f[1][0] + f[1][1] * f[1][1];
   const Four area = f[0][0] * f[1][1] - f[0][1] * f[1][0];
@@ -53,7 +53,7 @@ void balance(State& state) {
 /// Sets `thinning` to -d ln l / d ln (in-plane area) of the linear sheet.
 void Places::set_plane_stress() {
   sheet.resize(states.size());
-  State state{};
+  StrainState state{};
   for (int a = 0; a < 3; ++a) state.f[a][a] = Four{} + 1.0;
   const Invariants at = invariants(state.f);
   Energy e;
@@ -112,7 +112,7 @@ void Places::set_start(bool with_bulk) {
   }
 }
 
-Sheet sheet_of(const State& state) {
+Sheet sheet_of(const StrainState& state) {
   Four across[3][3] = {}, dp[3][3];
   across[2][2] = Four{} + 1.0;
   tangent<true>(state, across, Four{}, dp);
@@ -154,7 +154,7 @@ FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, co
     for (std::size_t i = 0; i < shared.faces.size(); ++i)
       for (const Index e : edges_.edges_of(i)) material[e] = mesh.material_of(mesh.owner[shared.faces[i]]);
   for (std::size_t m = 0; m < laws.size(); ++m) {
-    Group group;
+    EdgeGroup group;
     group.law = &laws[m];
     Index last = -1;  // padding uses the last edge of the block
     std::size_t n = 0;
@@ -176,7 +176,7 @@ FiniteEdges::FiniteEdges(const mesh::Mesh& mesh, const ElasticOperator& rows, co
 }
 
 void FiniteEdges::take_stretch() {
-  for (Group& group : groups_) {
+  for (EdgeGroup& group : groups_) {
     group.stretch.resize(group.edges.size());
     for (std::size_t i = 0; i < group.edges.size(); ++i)
       for (int k = 0; k < 4; ++k) group.stretch[i][k] = 1 + at(group.edges[i][std::size_t(k)])[0];
@@ -184,15 +184,15 @@ void FiniteEdges::take_stretch() {
 }
 
 void FiniteEdges::forget_stretch() {
-  for (Group& group : groups_) group.stretch.clear();
+  for (EdgeGroup& group : groups_) group.stretch.clear();
 }
 
 double FiniteEdges::to_stress(bool with_bulk, double& energy) {
   double least = 1;
   std::ranges::copy(value_, kept_.begin());
-  for (Group& group : groups_)
+  for (EdgeGroup& group : groups_)
     for (std::size_t i = 0; i < group.edges.size(); ++i) {
-      finite::State& state = group.states[i];
+      finite::StrainState& state = group.states[i];
       gather(kept_.data(), group.edges[i], false, state.f);
       Invariants at = finite::invariants(state.f);
       for (int k = 0; k < 4; ++k)
@@ -209,11 +209,11 @@ double FiniteEdges::to_stress(bool with_bulk, double& energy) {
 }
 
 void FiniteEdges::set_start(bool with_bulk) {
-  for (Group& group : groups_) group.set_start(with_bulk);
+  for (EdgeGroup& group : groups_) group.set_start(with_bulk);
 }
 
 void FiniteEdges::to_conserving(bool with_bulk) {
-  for (const Group& group : groups_)
+  for (const EdgeGroup& group : groups_)
     for (std::size_t i = 0; i < group.edges.size(); ++i) {
       Four p[3][3];
       finite::conserving_stress(*group.law, group.states[i].f, group.start[i].f, group.start[i].energy,
@@ -223,7 +223,7 @@ void FiniteEdges::to_conserving(bool with_bulk) {
 }
 
 void FiniteEdges::to_tangent() {
-  for (const Group& group : groups_)
+  for (const EdgeGroup& group : groups_)
     for (std::size_t i = 0; i < group.edges.size(); ++i) {
       Four df[3][3], dp[3][3];
       gather(value_.data(), group.edges[i], true, df);

@@ -23,7 +23,7 @@ struct alignas(32) Sheet {
 constexpr double thinnest = 1e-3;
 
 /// Requires a state with known l and derivatives of W.
-Sheet sheet_of(const State& state);
+Sheet sheet_of(const StrainState& state);
 
 /// Changes in-plane dP at fixed l to that with varying l.
 [[gnu::always_inline]] inline void condense(const Sheet& sheet, const Tensor4& df, Tensor4& dp) {
@@ -37,7 +37,7 @@ Sheet sheet_of(const State& state);
 /// States of one material at some locations (faces or edges), four at a time.
 struct Places {
   const FiniteLaw* law = nullptr;
-  std::vector<State> states;
+  std::vector<StrainState> states;
   std::vector<Start> start;   ///< start of the step; if empty, the stress is that of the states
   std::vector<Four> stretch;  ///< thermal; empty if there is none
   std::vector<Sheet> sheet;   ///< plane stress; otherwise empty
@@ -68,7 +68,7 @@ namespace couplet::elastic {
 class FiniteEdges {
  public:
   /// Edges of one material in blocks of four. The last block is padded with its last edge at volume 0.
-  struct Group : finite::Places {
+  struct EdgeGroup : finite::Places {
     std::vector<std::array<Index, 4>> edges;
     std::vector<std::array<double, 4>> volume;  ///< of edges that this rank owns, otherwise 0
   };
@@ -104,7 +104,7 @@ class FiniteEdges {
  private:
   SharedEdges edges_;
   std::vector<double> value_, kept_;
-  std::vector<Group> groups_;
+  std::vector<EdgeGroup> groups_;
 };
 
 }  // namespace couplet::elastic

@@ -15,7 +15,7 @@ namespace couplet::elastic::finite {
 using Tensor4 = Four[3][3];
 
 /// State at which the derivative is evaluated.
-struct alignas(32) State {
+struct alignas(32) StrainState {
   Four f[3][3];
   Four w1, w2, wj, w11, w12, w1j, w22, w2j, wjj;
 };
@@ -67,7 +67,7 @@ struct alignas(32) State {
 }
 
 template <bool HasSecond>
-[[gnu::always_inline]] inline void stress(const State& s, Tensor4& p) {
+[[gnu::always_inline]] inline void stress(const StrainState& s, Tensor4& p) {
   Tensor4 h, b;
   cofactors(s.f, h);
   if constexpr (HasSecond) second(s.f, product(s.f, s.f), b);
@@ -79,7 +79,7 @@ template <bool HasSecond>
 }
 
 /// dB = dI1 F + I1 dF - dF C - F (dF^T F + F^T dF).
-[[gnu::always_inline]] inline void second_change(const State& s, const Tensor4& df, const Four& i1,
+[[gnu::always_inline]] inline void second_change(const StrainState& s, const Tensor4& df, const Four& i1,
                                                  const Four& di1, Tensor4& db) {
   Tensor4 c, dc;
   right_cauchy_green(s.f, c);
@@ -99,7 +99,7 @@ template <bool HasSecond>
 /// Directional derivative dP. `dpressure` is the change of a separate pressure, whose value is included in
 /// s.wj.
 template <bool HasSecond>
-[[gnu::always_inline]] inline void tangent(const State& s, const Tensor4& df, const Four& dpressure,
+[[gnu::always_inline]] inline void tangent(const StrainState& s, const Tensor4& df, const Four& dpressure,
                                            Tensor4& dp) {
   Tensor4 h, b, db;
   cofactors(s.f, h);
@@ -127,7 +127,7 @@ template <bool HasSecond>
   }
 }
 
-[[gnu::always_inline]] inline void keep(const Energy& e, State& s) {
+[[gnu::always_inline]] inline void keep(const Energy& e, StrainState& s) {
   s.w1 = e.w1, s.w2 = e.w2, s.wj = e.wj;
   s.w11 = e.w11, s.w12 = e.w12, s.w1j = e.w1j, s.w22 = e.w22, s.w2j = e.w2j, s.wjj = e.wjj;
 }

@@ -58,7 +58,7 @@ StressStiffness::StressStiffness(const mesh::Mesh& mesh, const ElasticOperator& 
     edge_value_.resize(edge_stress_.size() * SharedEdges::gradient_stride);
   }
   for (int i = 0; i < (edges_ ? 2 : 1); ++i) {
-    Group& group = groups_.emplace_back();
+    StressGroup& group = groups_.emplace_back();
     static_cast<FaceGroup&>(group) =
         make_group(mesh, rows, shared, i == 0 ? nullptr : edges_.get(), [](Index) { return true; });
     group.stress.resize(group.blocks.size(), FaceStress{});
@@ -76,7 +76,7 @@ void StressStiffness::apply(std::span<const double> x, std::span<double> y) {
   space_.fill(x, {});
   space_.clear_forces();
   const auto pass = space_.mesh().dim == 2 ? plane_pass : space_pass;
-  for (const Group& group : groups_) pass(group, group.stress, space_.values(), space_.forces());
+  for (const StressGroup& group : groups_) pass(group, group.stress, space_.values(), space_.forces());
   if (edges_) push_edges();
   add_blocks(space_, loads_, 1);
   space_.collect();
@@ -86,14 +86,14 @@ void StressStiffness::apply(std::span<const double> x, std::span<double> y) {
 /// Multiplies the mean gradients of the edges by their stress.
 void StressStiffness::push_edges() {
   std::ranges::fill(edge_value_, 0);
-  for (const Group& group : groups_) to_edges_pass(group, space_.values(), edge_value_.data());
+  for (const StressGroup& group : groups_) to_edges_pass(group, space_.values(), edge_value_.data());
   edges_->finish_gradients(edge_value_);
   for (std::size_t e = 0; e < edge_stress_.size(); ++e) {
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> g(edge_value_.data() +
                                                                e * SharedEdges::gradient_stride);
     g = (g * edge_stress_[e]).eval();
   }
-  for (const Group& group : groups_) from_edges_pass(group, edge_value_.data(), space_.forces());
+  for (const StressGroup& group : groups_) from_edges_pass(group, edge_value_.data(), space_.forces());
 }
 
 }  // namespace couplet::elastic

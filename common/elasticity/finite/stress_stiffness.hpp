@@ -24,13 +24,13 @@ class StressStiffness {
   void apply(std::span<const double> x, std::span<double> y);
 
  private:
-  struct Group : FaceGroup {
+  struct StressGroup : FaceGroup {
     std::vector<FaceStress> stress;
   };
   void push_edges();
 
   SymmetricSpace space_;
-  std::vector<Group> groups_;
+  std::vector<StressGroup> groups_;
   std::unique_ptr<SharedEdges> edges_;
   std::vector<Tensor3> edge_stress_;
   std::vector<double> edge_value_;

@@ -33,13 +33,13 @@ Vec3 mode(int m, int dim, const Vec3& arm) {
 std::vector<Index> bisect(std::span<const Vec3> places, int n_parts) {
   std::vector<Index> order(places.size()), part(places.size());
   std::iota(order.begin(), order.end(), 0);
-  struct Piece {
+  struct PlaceRange {
     std::size_t first, last;
     int part, n;
   };
-  std::vector<Piece> open{{0, places.size(), 0, n_parts}};
+  std::vector<PlaceRange> open{{0, places.size(), 0, n_parts}};
   while (!open.empty()) {
-    const Piece piece = open.back();
+    const PlaceRange piece = open.back();
     open.pop_back();
     if (piece.n <= 1) {
       for (std::size_t i = piece.first; i < piece.last; ++i) part[order[i]] = piece.part;
@@ -137,11 +137,11 @@ void CurrentRigidModes::find_arms(const DeformedBody& body) {
 void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>& matrix) const {
   FaceTerms terms_of(mesh_, rows_, number_);
   const std::size_t n = centre_.size() * std::size_t(modes_);
-  struct Part {
+  struct ModeStrain {
     Index aggregate;
     Block strain;  // columns: modes; rows: xx yy zz, and the shears times sqrt(2)
   };
-  std::vector<Part> parts;
+  std::vector<ModeStrain> parts;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;
     const FaceRows face = symmetric_rows(mesh_, rows_, f);
@@ -153,7 +153,7 @@ void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>&
     for (const FaceTerm& t : terms) {
       const auto node = Index(t.block);
       const Index a = aggregate_of(node);
-      auto part = std::ranges::find(parts, a, &Part::aggregate);
+      auto part = std::ranges::find(parts, a, &ModeStrain::aggregate);
       if (part == parts.end()) part = parts.insert(parts.end(), {a, Block::Zero()});
       const Vec3 arm = place(node, body) - centre_[a];
       const Tensor3 pull = body.gradient[f].transpose() * t.turn;
@@ -169,8 +169,8 @@ void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>&
     const LameConstants lame = face_lame(mesh_, rows_, f);
     Block c = 2 * lame.mu * Block::Identity();
     c.topLeftCorner<3, 3>().array() += std::min(lame.lambda, most_lambda_over_mu * lame.mu);
-    for (const Part& i : parts)
-      for (const Part& j : parts) {
+    for (const ModeStrain& i : parts)
+      for (const ModeStrain& j : parts) {
         const Block block = face.volume * i.strain.transpose() * c * j.strain;
         for (int a = 0; a < modes_; ++a)
           for (int b = 0; b < modes_; ++b)

@@ -19,7 +19,7 @@ constexpr float of_smooth = 1.3F;
 constexpr double of_cells = 0.8, of_faces = 0.85;
 
 ComponentCycle multigrid_cycle(linalg::ComponentMultigrid::Rows rows,
-                               const linalg::ComponentMultigrid::Options& options) {
+                               const linalg::ComponentMultigrid::MultigridOptions& options) {
   return [multigrid = std::make_shared<linalg::ComponentMultigrid>(std::move(rows), options)](
              std::span<const double> b, std::span<double> x, int components) {
     multigrid->apply(b, x, components);
@@ -152,7 +152,7 @@ ElasticPreconditioner::ElasticPreconditioner(const mesh::Mesh& mesh, const Elast
   const std::span<const double> of_cells =
       options.node_inertia.first(options.node_inertia.empty() ? 0 : std::size_t(mesh.cells.n_owned()));
   linalg::ComponentMultigrid::Rows compact = CompactRows(mesh, rows, left_out_).make(of_cells);
-  const linalg::ComponentMultigrid::Options of_cycle{of_smooth, &mesh.cells, mesh.comm};
+  const linalg::ComponentMultigrid::MultigridOptions of_cycle{of_smooth, &mesh.cells, mesh.comm};
   cycle_ = options.cycle ? options.cycle(std::move(compact), of_cycle)
                          : multigrid_cycle(std::move(compact), of_cycle);
   find_face_rows(options.node_inertia);
@@ -171,7 +171,7 @@ void ElasticPreconditioner::find_face_rows(std::span<const double> node_inertia)
   };
   for (const Index f : rows_->unknown_faces()) {
     Tensor3 own = stiffness(f), cell = own;
-    FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
+    FaceElimination row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
     const BoundaryRow& s = rows_->at(f);
     if (s.has_value()) {
       const Tensor3 open = Tensor3::Identity() - s.known;
@@ -226,7 +226,7 @@ void ElasticPreconditioner::solve_faces(std::span<const double> r, std::span<dou
   const int dim = mesh_->dim;
   const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * dim;
   for (std::size_t i = 0; i < face_rows_.size(); ++i) {
-    const FaceRow& row = face_rows_[i];
+    const FaceElimination& row = face_rows_[i];
     const double* own = r.data() + n_cells + i * dim;
     const double* cell = z.data() + std::size_t(row.owner) * dim;
     for (int a = 0; a < dim; ++a) {
@@ -245,7 +245,7 @@ void ElasticPreconditioner::apply(std::span<const double> r, std::span<double> z
   const std::size_t n_cells = gathered_.size();
   std::copy_n(r.begin(), n_cells, gathered_.begin());
   for (std::size_t i = 0; i < face_rows_.size(); ++i) {
-    const FaceRow& row = face_rows_[i];
+    const FaceElimination& row = face_rows_[i];
     const double* own = r.data() + n_cells + i * dim;
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b) {

@@ -26,7 +26,7 @@ class ElasticPreconditioner {
     bool without_cells_bulk = false;
     /// Creates another cycle than ComponentMultigrid's for comparison (benchmarks/linalg), or empty.
     std::function<ComponentCycle(linalg::ComponentMultigrid::Rows,
-                                 const linalg::ComponentMultigrid::Options&)>
+                                 const linalg::ComponentMultigrid::MultigridOptions&)>
         cycle = {};
   };
   ElasticPreconditioner(const mesh::Mesh& mesh, const ElasticOperator& rows, const Options& options);
@@ -36,7 +36,7 @@ class ElasticPreconditioner {
 
  private:
   /// Face unknown u_B = inverse r_B + cell u_P (+ other u_P' across a bonded face).
-  struct FaceRow {
+  struct FaceElimination {
     Tensor3 inverse, cell, other;
     Index owner, twin_owner;  // -1 if not bonded or on another rank
   };
@@ -51,7 +51,7 @@ class ElasticPreconditioner {
   std::vector<double> gathered_;  // right-hand side of the cycle
   std::vector<float> inverse_diagonal_;
   ComponentCycle cycle_;
-  std::vector<FaceRow> face_rows_;
+  std::vector<FaceElimination> face_rows_;
 };
 
 }  // namespace couplet::elastic

@@ -14,7 +14,7 @@
 namespace couplet::elastic {
 
 /// Identifies an edge on every rank, together with the rank that owns it.
-struct SharedEdges::Key {
+struct SharedEdges::EdgeKey {
   GlobalIndex material, a, b;
   int rank = 0;
   Index local = -1;
@@ -98,19 +98,19 @@ void SharedEdges::number(const mesh::Mesh& mesh, std::span<const Index> faces) {
   const auto key_of = [&](Index f, std::size_t i) {
     const auto p = mesh.face_points[f];
     const GlobalIndex a = names_[p[i]], b = names_[p[(i + 1) % 3]];
-    return Key{mesh.material_of(mesh.owner[f]), std::min(a, b), std::max(a, b), rank, -1};
+    return EdgeKey{mesh.material_of(mesh.owner[f]), std::min(a, b), std::max(a, b), rank, -1};
   };
-  std::vector<Key> mine;
+  std::vector<EdgeKey> mine;
   for (const Index f : faces)
     for (std::size_t i = 0; i < 3; ++i) {
-      const Key key = key_of(f, i);
+      const EdgeKey key = key_of(f, i);
       if (!found.emplace(key.same(), -1).second || !parallel_) continue;
       const auto p = mesh.face_points[f];
       if (is_near[p[i]] && is_near[p[(i + 1) % 3]]) mine.push_back(key);
     }
   std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, int> owner;
   if (parallel_) {
-    for (const Key& k : parallel::all_gather(mesh.comm, mine)) {
+    for (const EdgeKey& k : parallel::all_gather(mesh.comm, mine)) {
       const auto [at, is_new] = owner.emplace(k.same(), k.rank);
       if (!is_new) at->second = std::min(at->second, k.rank);
     }
@@ -131,10 +131,10 @@ void SharedEdges::number(const mesh::Mesh& mesh, std::span<const Index> faces) {
     for (std::size_t k = 0; k < 3; ++k) edges_of_[i][k] = found.at(key_of(faces[i], k).same());
   if (!parallel_) return;
   // Positions at the owners.
-  std::erase_if(mine, [&](const Key& k) { return owner_of(k.same()) != rank; });
-  for (Key& k : mine) k.local = found.at(k.same());
+  std::erase_if(mine, [&](const EdgeKey& k) { return owner_of(k.same()) != rank; });
+  for (EdgeKey& k : mine) k.local = found.at(k.same());
   std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, Index> remote;
-  for (const Key& k : parallel::all_gather(mesh.comm, mine)) remote[k.same()] = k.local;
+  for (const EdgeKey& k : parallel::all_gather(mesh.comm, mine)) remote[k.same()] = k.local;
   std::vector<int> ghost_owner(next - n_owned);
   std::vector<Index> ghost_remote(next - n_owned);
   for (const auto& [key, local] : found) {

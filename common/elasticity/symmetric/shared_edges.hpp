@@ -71,7 +71,7 @@ class SharedEdges {
   void to_stress();
 
  private:
-  struct Key;
+  struct EdgeKey;
   void number(const mesh::Mesh& mesh, std::span<const Index> faces);
   void find_matrices(const mesh::Mesh& mesh, const ElasticOperator& rows, const SharedFaces& shared);
   void finish(std::span<double> values, int step, std::span<const int, 9> place) const;

@@ -8,7 +8,7 @@ namespace couplet::elastic {
 namespace {
 
 /// Triangle between the node of a face and one of its edges, or in 2-D a line between node and corner.
-struct Piece {
+struct Facet {
   std::array<Index, 3> at;            ///< locations
   std::array<std::size_t, 3> corner;  ///< of the face from 1; 0 for its node
   std::array<Tensor3, 3> turn;        ///< da/dx of each corner
@@ -30,7 +30,7 @@ void visit_pieces(const mesh::Mesh& mesh, Index face, const Position& position, 
   if (mesh.dim == 3) {
     for (std::size_t k = 0; k < points.size(); ++k) {
       const std::size_t next = (k + 1) % points.size();
-      Piece piece{
+      Facet piece{
           {node, first_point + points[k], first_point + points[next]}, {0, k + 1, next + 1}, {}, {}, 3};
       std::array<Vec3, 3> x;
       for (std::size_t s = 0; s < 3; ++s) x[s] = position(piece.at[s]);
@@ -43,7 +43,7 @@ void visit_pieces(const mesh::Mesh& mesh, Index face, const Position& position, 
   Tensor3 right = Tensor3::Zero();
   right(0, 1) = 1, right(1, 0) = -1;
   const auto half = [&](Index from, Index to, std::size_t first, std::size_t second) {
-    take(Piece{{from, to, -1},
+    take(Facet{{from, to, -1},
                {first, second, 0},
                {Tensor3(-right), right, {}},
                right * (position(to) - position(from)),
@@ -53,7 +53,7 @@ void visit_pieces(const mesh::Mesh& mesh, Index face, const Position& position, 
   half(node, first_point + points[1], 0, 2);
 }
 
-void add_blocks_of(const Piece& piece, const std::array<double, 5>& pressure, std::vector<PlaceBlock>& to) {
+void add_blocks_of(const Facet& piece, const std::array<double, 5>& pressure, std::vector<PlaceBlock>& to) {
   for (std::size_t r = 0; r < piece.n; ++r)
     for (std::size_t s = 0; s < piece.n; ++s)
       to.push_back({piece.at[r], piece.at[s], pressure[piece.corner[r]] / double(piece.n) * piece.turn[s]});
@@ -85,7 +85,7 @@ void FollowerPressure::set(const mesh::Mesh& mesh, const mesh::Geometry& geometr
     Vec3 area = Vec3::Zero();
     visit_pieces(
         mesh, f, [&](Index place) { return position(mesh, geometry, place); },
-        [&](const Piece& piece) { area += piece.area; });
+        [&](const Facet& piece) { area += piece.area; });
     if (area.dot(geometry.face_area[f]) < 0)
       for (double& p : here) p = -p;
     faces_.push_back({f, here});
@@ -99,7 +99,7 @@ Vec3 FollowerPressure::add_forces(SymmetricSpace& space) {
     return Vec3(position(space.mesh(), space.rows().geometry(), place) + space.value(place));
   };
   for (const Loaded& loaded : faces_)
-    visit_pieces(space.mesh(), loaded.face, now, [&](const Piece& piece) {
+    visit_pieces(space.mesh(), loaded.face, now, [&](const Facet& piece) {
       for (std::size_t s = 0; s < piece.n; ++s) {
         const Vec3 inner = loaded.pressure[piece.corner[s]] * piece.area / double(piece.n);
         total -= inner;
@@ -118,7 +118,7 @@ std::vector<PlaceBlock> pressure_stiffness(const mesh::Mesh& mesh, const mesh::G
   for (const auto& [face, p] : follower.loaded())
     visit_pieces(
         mesh, face, [&](Index place) { return position(mesh, geometry, place); },
-        [&](const Piece& piece) { add_blocks_of(piece, p, whole); });
+        [&](const Facet& piece) { add_blocks_of(piece, p, whole); });
   for (const PlaceBlock& b : whole) {
     blocks.push_back({b.i, b.j, 0.5 * b.block});
     blocks.push_back({b.j, b.i, 0.5 * b.block.transpose()});

@@ -42,7 +42,7 @@ SymmetricKernel::SymmetricKernel(const mesh::Mesh& mesh, const ElasticOperator& 
     bulk_.push_back(bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[c]);
 }
 
-void SymmetricKernel::add_laws(Group& group) const {
+void SymmetricKernel::add_laws(LawGroup& group) const {
   rows_.is_anisotropic() ? group.matrix.resize(group.blocks.size()) : group.hooke.resize(group.blocks.size());
   const int n = mesh_.dim == 3 ? 6 : 3;
   for (std::size_t i = 0; i < group.blocks.size() * 4; ++i) {
@@ -76,7 +76,7 @@ void SymmetricKernel::make_ring(Index f) {
 
 /// V sigma of block i of the group without the pressure of cells.
 template <int D>
-inline void SymmetricKernel::stress_of(const Group& group, std::size_t i, const Four (&g)[D][D],
+inline void SymmetricKernel::stress_of(const LawGroup& group, std::size_t i, const Four (&g)[D][D],
                                        Four (&stress)[D][D]) const {
   if (group.matrix.empty()) {
     const Four mu = blocks::wide(group.hooke[i].mu);
@@ -112,7 +112,7 @@ inline void SymmetricKernel::stress_of(const Group& group, std::size_t i, const 
 
 /// Adds V_fP p_P + V_fQ p_Q to V sigma, where p is the mean stress of the cells.
 template <int D>
-inline void SymmetricKernel::add_pressure_of_cells(const Group& group, std::size_t i,
+inline void SymmetricKernel::add_pressure_of_cells(const LawGroup& group, std::size_t i,
                                                    Four (&stress)[D][D]) const {
   if (pressure_.empty()) return;
   const Four pressure = blocks::wide(group.volumes[i].whole) *
@@ -137,7 +137,7 @@ inline void SymmetricKernel::faces_loop() {
 /// Adds V_fP tr e_f to the cells.
 template <int D>
 inline void SymmetricKernel::volumes_loop() {
-  for (const Group* group : {&plain_, &sharing_})
+  for (const LawGroup* group : {&plain_, &sharing_})
     for (std::size_t i = 0; i < group->blocks.size(); ++i) {
       Four g[D][D];
       blocks::gradient<D>(group->blocks[i], space_.values(), g);

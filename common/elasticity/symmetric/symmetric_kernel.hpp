@@ -52,7 +52,7 @@ class SymmetricKernel {
   struct Anisotropic {
     double c[21][4];
   };
-  struct Group : FaceGroup {
+  struct LawGroup : FaceGroup {
     std::vector<Hooke> hooke;
     std::vector<Anisotropic> matrix;  // empty for the isotropic law
   };
@@ -61,16 +61,16 @@ class SymmetricKernel {
     double mu, lambda, shear;    // times the volume
     std::array<Index, 4> place;  // see FaceRows
   };
-  struct Kept {
+  struct KeptStress {
     double stress[6][4];
   };
-  void add_laws(Group& group) const;
+  void add_laws(LawGroup& group) const;
   void make_ring(Index f);
   template <int D>
-  [[gnu::always_inline]] inline void stress_of(const Group& group, std::size_t i, const Four (&g)[D][D],
+  [[gnu::always_inline]] inline void stress_of(const LawGroup& group, std::size_t i, const Four (&g)[D][D],
                                                Four (&stress)[D][D]) const;
   template <int D>
-  [[gnu::always_inline]] inline void add_pressure_of_cells(const Group& group, std::size_t i,
+  [[gnu::always_inline]] inline void add_pressure_of_cells(const LawGroup& group, std::size_t i,
                                                            Four (&stress)[D][D]) const;
   void forces_of_stress();
   void forces_of_rings();
@@ -82,11 +82,11 @@ class SymmetricKernel {
   const mesh::Mesh& mesh_;
   const ElasticOperator& rows_;
   SymmetricSpace space_;
-  Group plain_, sharing_;  // sharing_: faces with shared edges
+  LawGroup plain_, sharing_;  // sharing_: faces with shared edges
   std::vector<RingFace> rings_;
   std::vector<Index> shared_index_;  // of each flux face in edges_, or -1
   std::vector<double> share_;        // of the faces in edges_
-  std::vector<Kept> kept_;           // own part of V sigma of the blocks of sharing_
+  std::vector<KeptStress> kept_;     // own part of V sigma of the blocks of sharing_
   std::unique_ptr<SharedEdges> edges_;
   std::vector<double> pressure_, bulk_;  // of nodes; K / V of owned cells [Pa/m^3]
 };

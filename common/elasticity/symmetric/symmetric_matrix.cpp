@@ -301,9 +301,9 @@ namespace {
 // Block entries are xx, yy, zz, then xy, yz, xz.
 constexpr int block_size = 6, diagonal_size = 3;
 
-class Sum {
+class MatrixSum {
  public:
-  Sum(const mesh::Mesh& mesh, const ElasticOperator& rows, VolumeStrain without)
+  MatrixSum(const mesh::Mesh& mesh, const ElasticOperator& rows, VolumeStrain without)
       : mesh_(mesh),
         rows_(rows),
         without_(without),
@@ -335,7 +335,7 @@ class Sum {
   std::vector<double> cells_, boundary_;
 };
 
-void Sum::add_face(Index f) {
+void MatrixSum::add_face(Index f) {
   const FaceRows face = symmetric_rows(mesh_, rows_, f);
   const Index first_point = n_node_places(mesh_);
   const bool mirrored = rows_.mirrored(f);
@@ -356,7 +356,7 @@ void Sum::add_face(Index f) {
 }
 
 /// Adds V [(lambda + mu) b b^T + mu b.b I] of each node.
-void Sum::add_squares(double volume, const LameConstants& lame) {
+void MatrixSum::add_squares(double volume, const LameConstants& lame) {
   const double mu = volume * lame.mu, both = volume * (lame.lambda + lame.mu);
   for (const Index node : nodes_) {
     const Vec3 b = gradient_[node];
@@ -372,7 +372,7 @@ void Sum::add_squares(double volume, const LameConstants& lame) {
   nodes_.clear();
 }
 
-SymmetricDiagonal Sum::finish() {
+SymmetricDiagonal MatrixSum::finish() {
   mesh_.cells.add_to_owners(cells_, diagonal_size);
   mesh_.boundary.add_to_owners(boundary_, block_size);
   mesh_.boundary.update_ghosts(boundary_, block_size);  // other sides of bonded faces
@@ -397,7 +397,7 @@ SymmetricDiagonal Sum::finish() {
 
 SymmetricDiagonal symmetric_diagonal(const mesh::Mesh& mesh, const ElasticOperator& rows,
                                      VolumeStrain without) {
-  Sum sum(mesh, rows, without);
+  MatrixSum sum(mesh, rows, without);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f)
     if (mesh.owner[f] < mesh.cells.n_owned()) sum.add_face(f);  // otherwise another rank adds it
   return sum.finish();

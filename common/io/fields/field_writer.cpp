@@ -61,15 +61,15 @@ Topology make_topology(const mesh::Mesh& mesh) {
 
 }  // namespace
 
-struct FieldWriter::State {
+struct FieldWriter::FieldFiles {
   const mesh::Mesh& mesh;
   std::filesystem::path folder;
   std::string name;
   bool moving;
   std::string format;
-  xdmf::Series index;  // complete only on rank 0
-  int number = 0;      // of the next entry
-  hdf5::Rows point_rows, cell_rows;
+  xdmf::FieldIndex index;  // complete only on rank 0
+  int number = 0;          // of the next entry
+  hdf5::RowSpan point_rows, cell_rows;
   // Numbers in the file, of as many rows as this rank has.
   std::vector<GlobalIndex> points_there{}, cells_there{};
   int compression = 0;
@@ -86,7 +86,7 @@ struct FieldWriter::State {
 
   void write_rows(const hdf5::Handle& id, const std::string& path, bool on_cells, std::size_t width,
                   std::span<const double> values) const {
-    hdf5::Rows rows = on_cells ? cell_rows : point_rows;
+    hdf5::RowSpan rows = on_cells ? cell_rows : point_rows;
     rows.width = width;
     rows.compression = compression;
     const auto& order = on_cells ? cell_order : point_order;
@@ -122,12 +122,12 @@ struct FieldWriter::State {
   void read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps, double restart_time);
 };
 
-void FieldWriter::State::start(std::span<const Vec3> places) {
+void FieldWriter::FieldFiles::start(std::span<const Vec3> places) {
   hdf5::Handle id = hdf5::create_file(mesh.comm, file());
   hdf5::write_attribute(id, "format", format);
   hdf5::write_attribute(id, "ranks", double(parallel::comm_size(mesh.comm)));
   const Topology topology = make_topology(mesh);
-  const hdf5::Rows rows =
+  const hdf5::RowSpan rows =
       hdf5::distribute_rows(mesh.comm, topology.values.size() / topology.width, topology.width);
   hdf5::write_table(id, "mesh/cells", rows, topology.values.data());
   hdf5::write_table(id, "mesh/cell-id", cell_rows, mesh.cell_id.data());
@@ -144,8 +144,8 @@ void FieldWriter::State::start(std::span<const Vec3> places) {
            {}};
 }
 
-void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps,
-                                      double restart_time) {
+void FieldWriter::FieldFiles::read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps,
+                                           double restart_time) {
   const double last = restart_time + 1e-9 * std::abs(restart_time);
   for (const std::string& step : steps) {
     const std::string group = "steps/" + step;
@@ -164,7 +164,7 @@ void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vecto
   }
 }
 
-std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
+std::vector<std::string> FieldWriter::FieldFiles::read_index(double restart_time) {
   const hdf5::Reader in(file(), "output");
   if (in.text("/", "format") != format)
     in.refuse(format == surface_format ? "it is not a surface output file" : "it is not a field output file");
@@ -188,9 +188,9 @@ std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
 }
 
 /// Finds the order of a file written on other ranks, so that new entries have the same order.
-void FieldWriter::State::find_order() {
+void FieldWriter::FieldFiles::find_order() {
   try {
-    const auto here = [](const std::vector<GlobalIndex>& ids, const hdf5::Rows& rows) {
+    const auto here = [](const std::vector<GlobalIndex>& ids, const hdf5::RowSpan& rows) {
       return std::span(ids).first(rows.count);
     };
     cell_order = parallel::GlobalOrder::of_rows(mesh.comm, cells_there, here(mesh.cell_id, cell_rows));
@@ -200,7 +200,7 @@ void FieldWriter::State::find_order() {
   }
 }
 
-bool FieldWriter::State::continue_from(double restart_time) {
+bool FieldWriter::FieldFiles::continue_from(double restart_time) {
   int there = parallel::comm_rank(mesh.comm) == 0 && std::filesystem::exists(file()) ? 1 : 0;
   MPI_Bcast(&there, 1, MPI_INT, 0, mesh.comm);
   if (there == 0) {
@@ -225,7 +225,7 @@ bool FieldWriter::State::continue_from(double restart_time) {
 
 /// Renames a file that cannot be continued. Damaged outputs must not keep a run from resuming, because its
 /// state is in the checkpoint.
-void FieldWriter::State::set_aside(const std::string& problem) {
+void FieldWriter::FieldFiles::set_aside(const std::string& problem) {
   point_order.reset();
   cell_order.reset();
   number = 0;
@@ -239,7 +239,7 @@ void FieldWriter::State::set_aside(const std::string& problem) {
 }
 
 /// Creates the folder and continues an existing series or begins one. Collective.
-void FieldWriter::State::begin(std::span<const Vec3> places, double restart_time) {
+void FieldWriter::FieldFiles::begin(std::span<const Vec3> places, double restart_time) {
   point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
   cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);
   parallel::on_root(mesh.comm, [&] {
@@ -262,7 +262,7 @@ FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, s
       return;
     }
   }
-  state_ = std::make_unique<State>(State{
+  state_ = std::make_unique<FieldFiles>(FieldFiles{
       part_ ? part_->mesh : mesh, std::move(folder), std::move(name), moving, fields_format, {}, 0, {}, {}});
   state_->compression = choice.compression;
   state_->begin(part_ ? part_->places : places, restart_time);
@@ -270,8 +270,8 @@ FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, s
 
 FieldWriter::FieldWriter(const MeshPart& surface, std::filesystem::path folder, std::string name, bool moving,
                          double restart_time)
-    : state_(std::make_unique<State>(
-          State{surface.mesh, std::move(folder), std::move(name), moving, surface_format, {}, 0, {}, {}})) {
+    : state_(std::make_unique<FieldFiles>(FieldFiles{
+          surface.mesh, std::move(folder), std::move(name), moving, surface_format, {}, 0, {}, {}})) {
   state_->begin(surface.places, restart_time);
 }
 
@@ -279,7 +279,7 @@ FieldWriter::~FieldWriter() = default;
 
 void FieldWriter::write(double time, std::span<const Vec3> points, const std::vector<OutputField>& fields) {
   if (!state_) return;
-  State& s = *state_;
+  FieldFiles& s = *state_;
   std::vector<Vec3> places;
   if (part_ && s.moving)
     for (const Index v : part_->points) places.push_back(points[v]);

@@ -32,9 +32,9 @@ class FieldWriter {
   void write(double time, std::span<const Vec3> points, const std::vector<OutputField>& fields);
 
  private:
-  struct State;
+  struct FieldFiles;
   std::optional<MeshPart> part_;
-  std::unique_ptr<State> state_;  // nullptr if no cell lies in the box
+  std::unique_ptr<FieldFiles> state_;  // nullptr if no cell lies in the box
 };
 
 }  // namespace couplet::io

@@ -41,7 +41,7 @@ std::string wrong_surfaces(const std::vector<std::string>& names, const std::vec
   return "";
 }
 
-struct SurfaceSeries::Surface {
+struct SurfaceSeries::OpenSurface {
   MeshPart surface;
   std::optional<FieldWriter> writer{};
 };
@@ -60,7 +60,7 @@ SurfaceSeries::SurfaceSeries(const mesh::Mesh& body, std::span<const Vec3> place
     for (const std::string& name : names)
       patches_.push_back(there[std::size_t(std::ranges::find(known, name) - known.begin())]);
   for (const mesh::Patch* patch : patches_)
-    surfaces_.push_back(std::make_unique<Surface>(make_surface(body, places, *patch)));
+    surfaces_.push_back(std::make_unique<OpenSurface>(make_surface(body, places, *patch)));
 }
 
 SurfaceSeries::~SurfaceSeries() = default;
@@ -82,7 +82,7 @@ std::vector<std::uint8_t> SurfaceSeries::points() const {
 void SurfaceSeries::write(std::size_t i, double time, std::span<const Vec3> places,
                           const std::vector<OutputField>& fields) {
   const mesh::Patch& patch = *patches_[i];
-  Surface& one = *surfaces_[i];
+  OpenSurface& one = *surfaces_[i];
   std::vector<Vec3> points;
   for (const Index v : one.surface.points) points.push_back(places[v]);
   std::deque<std::vector<double>> values;

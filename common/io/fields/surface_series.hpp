@@ -47,10 +47,10 @@ class SurfaceSeries {
              const std::vector<OutputField>& fields);
 
  private:
-  struct Surface;
+  struct OpenSurface;
   const mesh::Mesh& body_;
   std::vector<const mesh::Patch*> patches_;
-  std::vector<std::unique_ptr<Surface>> surfaces_;  // one per patch
+  std::vector<std::unique_ptr<OpenSurface>> surfaces_;  // one per patch
 };
 
 }  // namespace couplet::io

@@ -28,22 +28,22 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-struct Kind {
+struct CellKind {
   std::int64_t code;
   const char* name;
   std::uint64_t points;
 };
 /// In the order of mesh::CellType, followed by edges.
-constexpr Kind kinds[] = {{4, "Triangle", 3},        {5, "Quadrilateral", 4}, {6, "Tetrahedron", 4},
-                          {9, "Hexahedron", 8},      {8, "Wedge", 6},         {7, "Pyramid", 5},
-                          {edge_code, "Polyline", 2}};
+constexpr CellKind kinds[] = {{4, "Triangle", 3},        {5, "Quadrilateral", 4}, {6, "Tetrahedron", 4},
+                              {9, "Hexahedron", 8},      {8, "Wedge", 6},         {7, "Pyramid", 5},
+                              {edge_code, "Polyline", 2}};
 
 const char* kind_name(std::int64_t code) {
-  const auto kind = std::ranges::find(kinds, code, &Kind::code);
+  const auto kind = std::ranges::find(kinds, code, &CellKind::code);
   return kind == std::end(kinds) ? "Mixed" : kind->name;
 }
 
-std::string topology(const Series& s) {
+std::string topology(const FieldIndex& s) {
   const std::string size =
       s.kind == 0 ? fmt::format("{}", s.topology_size) : fmt::format("{} {}", s.n_cells, points_of(s.kind));
   const char* width = s.kind == edge_code ? " NodesPerElement=\"2\"" : "";
@@ -55,7 +55,7 @@ std::string topology(const Series& s) {
       kind_name(s.kind), s.n_cells, width, size, escaped(s.file));
 }
 
-std::string attribute(const Series& s, const Entry& entry, const Field& field) {
+std::string attribute(const FieldIndex& s, const OutputTime& entry, const Field& field) {
   const std::uint64_t n = field.on_cells ? s.n_cells : s.n_points;
   const std::string size =
       field.components == 1 ? fmt::format("{}", n) : fmt::format("{} {}", n, field.components);
@@ -70,7 +70,7 @@ std::string attribute(const Series& s, const Entry& entry, const Field& field) {
       field.on_cells ? "cells" : "points", escaped(field.name));
 }
 
-std::string grid(const Series& s, const Entry& entry) {
+std::string grid(const FieldIndex& s, const OutputTime& entry) {
   std::string text = fmt::format(
       "      <Grid Name=\"mesh\" GridType=\"Uniform\">\n        <Time Value=\"{}\"/>\n", entry.time);
   text += topology(s);
@@ -88,9 +88,9 @@ std::string grid(const Series& s, const Entry& entry) {
 
 std::int64_t cell_code(mesh::CellType type) { return kinds[static_cast<std::size_t>(type)].code; }
 
-std::uint64_t points_of(std::int64_t code) { return std::ranges::find(kinds, code, &Kind::code)->points; }
+std::uint64_t points_of(std::int64_t code) { return std::ranges::find(kinds, code, &CellKind::code)->points; }
 
-void Series::add(std::string group, double time, std::vector<Field> fields) {
+void FieldIndex::add(std::string group, double time, std::vector<Field> fields) {
   auto shared = !entries.empty() && *entries.back().fields == fields
                     ? entries.back().fields
                     : std::make_shared<const std::vector<Field>>(std::move(fields));
@@ -98,7 +98,7 @@ void Series::add(std::string group, double time, std::vector<Field> fields) {
 }
 
 // The text of all outputs would take more memory than the run itself.
-void write(const std::filesystem::path& index, const Series& series) {
+void write(const std::filesystem::path& index, const FieldIndex& series) {
   std::size_t parts = series.entries.size() + 2, next = 0;
   base::write_file(index, [=, text = std::string()]() mutable -> std::string_view {
     if (next == parts) return {};

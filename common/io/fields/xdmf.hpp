@@ -26,24 +26,24 @@ struct Field {
   bool operator==(const Field&) const = default;
 };
 
-struct Entry {
+struct OutputTime {
   std::string group;  ///< where it is in the HDF5 file
   double time = 0;    ///< [s]
   std::shared_ptr<const std::vector<Field>> fields;
 };
 
-struct Series {
+struct FieldIndex {
   std::string file;       ///< HDF5 file, relative to the index
   std::int64_t kind = 0;  ///< code of all cells; 0 if mixed
   std::uint64_t topology_size = 0, n_cells = 0, n_points = 0;
   bool moving = false;
-  std::vector<Entry> entries;
+  std::vector<OutputTime> entries;
 
   /// Adds an output. Its fields are kept once if they are those of the last one.
   void add(std::string group, double time, std::vector<Field> fields);
 };
 
 /// Replaces the index by a rename, so that a viewer never reads half of it.
-void write(const std::filesystem::path& index, const Series& series);
+void write(const std::filesystem::path& index, const FieldIndex& series);
 
 }  // namespace couplet::io::xdmf

@@ -149,7 +149,7 @@ std::optional<std::array<double, 8>> weights_in_cell(mesh::CellType type, std::s
   return std::nullopt;
 }
 
-struct Balls::Group {
+struct Balls::BallGroup {
   double radius = 0;  // largest
   std::vector<Vec3> centres{};
   std::vector<Index> number{};
@@ -157,10 +157,10 @@ struct Balls::Group {
 };
 
 Balls::Balls(std::vector<Vec3> centres, std::vector<double> radii) {
-  std::map<int, std::unique_ptr<Group>> by_size;
+  std::map<int, std::unique_ptr<BallGroup>> by_size;
   for (std::size_t i = 0; i < centres.size(); ++i) {
     auto& group = by_size[radii[i] > 0 ? std::ilogb(radii[i]) : -10000];
-    if (!group) group = std::make_unique<Group>();
+    if (!group) group = std::make_unique<BallGroup>();
     group->radius = std::max(group->radius, radii[i]);
     group->centres.push_back(centres[i]);
     group->number.push_back(static_cast<Index>(i));

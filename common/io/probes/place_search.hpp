@@ -35,8 +35,8 @@ class Balls {
   std::vector<Index> near(const Vec3& x, double slack) const;
 
  private:
-  struct Group;
-  std::vector<std::unique_ptr<Group>> groups_;
+  struct BallGroup;
+  std::vector<std::unique_ptr<BallGroup>> groups_;
 };
 
 /// Diagonal of the bounding box of the reference mesh [m]. Collective.

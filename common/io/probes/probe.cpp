@@ -103,15 +103,15 @@ std::pair<double, int> agree(MPI_Comm comm, double key) {
 
 // Finds a mesh point, a cell, or else the nearest boundary position: this rank's candidate, and the best key
 // with its rank. `look` returns points, cells and faces within a distance. Collective.
-struct Chosen {
+struct ChosenPlace {
   Candidate candidate;
   double key = none;  // distance from the boundary if outside [m]
   int rank = 0;
   bool outside = false;
 };
-Chosen choose(const mesh::Mesh& mesh, std::span<const Vec3> places, const Vec3& place, double size,
-              const auto& look) {
-  Chosen chosen;
+ChosenPlace choose(const mesh::Mesh& mesh, std::span<const Vec3> places, const Vec3& place, double size,
+                   const auto& look) {
+  ChosenPlace chosen;
   chosen.candidate = nearest_point(places, look.points(place, on_point * size), place);
   std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
   if (chosen.key <= on_point * size) return chosen;
@@ -151,7 +151,7 @@ Probe::Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::st
              std::optional<double> tolerance)
     : comm_(mesh.comm) {
   const double size = mesh_size(mesh, places);
-  Chosen chosen = choose(mesh, places, place, size, Everything{mesh});
+  ChosenPlace chosen = choose(mesh, places, place, size, Everything{mesh});
   take(chosen.candidate.place, chosen.rank, chosen.candidate.points, chosen.candidate.weights);
   if (chosen.outside && chosen.key > tolerance.value_or(on_boundary * size))
     throw Error(
@@ -163,7 +163,7 @@ Probe::Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::st
 std::optional<Probe> Probe::in(const PlaceSearch& search, const Vec3& place) {
   const mesh::Mesh& mesh = search.mesh();
   const double size = search.size();
-  Chosen chosen = choose(mesh, search.places(), place, size, search);
+  ChosenPlace chosen = choose(mesh, search.places(), place, size, search);
   if (chosen.outside && !(chosen.key <= on_boundary * size)) return {};
   Probe probe(mesh.comm);
   probe.take(chosen.candidate.place, chosen.rank, chosen.candidate.points, chosen.candidate.weights);

@@ -195,7 +195,7 @@ class BlockFaces {
   GlobalIndex first_cell_, n_boundary_ = 0;
   std::vector<int> material_of_zone_;
   std::vector<FaceSide> sides_;  // without a partner in this block
-  std::vector<BlockGraph::Pair> within_;
+  std::vector<BlockGraph::CellPair> within_;
   // Cells that share a periodic face, the one of this block first.
   std::vector<std::array<GlobalIndex, 2>> joined_;
   std::vector<FacePair> bonded_;  // as seen by the cell with the smaller number

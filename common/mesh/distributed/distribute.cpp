@@ -118,7 +118,7 @@ class Part {
   /// Takes the faces from the block if its cells are those of the piece.
   void take_inner_faces() {
     inner_.reserve(source_.graph.within.size());
-    for (const BlockGraph::Pair& p : source_.graph.within)
+    for (const BlockGraph::CellPair& p : source_.graph.within)
       if (p.bonded)
         bonded_.emplace_back(p.cell, p.other);
       else
@@ -238,13 +238,13 @@ class Part {
   }
 
   void fill_boundary_faces() {
-    struct Chosen {
+    struct ChosenFace {
       bool ghost;
       int patch;
       Index cell, face;
-      auto operator<=>(const Chosen&) const = default;
+      auto operator<=>(const ChosenFace&) const = default;
     };
-    std::vector<Chosen> chosen;
+    std::vector<ChosenFace> chosen;
     for (std::size_t b = 0; b < piece_.boundary_cell.size(); ++b) {
       const Index cell = cell_local_[piece_.boundary_cell[b]];
       chosen.push_back({cell >= mesh_.cells.n_owned(), raw_.boundary_patch[b], cell, static_cast<Index>(b)});
@@ -253,7 +253,7 @@ class Part {
     for (const std::string& name : raw_.patches) mesh_.patches.push_back({name});
     Index n_owned = 0;
     std::vector<int> ghost_owner;
-    for (const Chosen& f : chosen) {
+    for (const ChosenFace& f : chosen) {
       Patch& patch = mesh_.patches[f.patch];
       ++(f.ghost ? patch.ghost_count : patch.count);
       if (f.ghost)

@@ -9,7 +9,7 @@ namespace couplet::mesh {
 /// Face adjacency of the cells of the block.
 struct BlockGraph {
   /// Two cells of the block that share a face.
-  struct Pair {
+  struct CellPair {
     Index cell, other;
     std::int8_t face;  ///< position in `cell`, which has the smaller number
     bool bonded;
@@ -17,7 +17,7 @@ struct BlockGraph {
   std::vector<Index> offset;
   std::vector<GlobalIndex> neighbours;
   GlobalIndex first_bonded = -1;  ///< number of the first boundary face that is a side of a bonded one, or -1
-  std::vector<Pair> within;  ///< pairs on one rank, to avoid a second search; `neighbours` is empty there
+  std::vector<CellPair> within;  ///< pairs on one rank, to avoid a second search; `neighbours` is empty there
   std::vector<Vec3> translation;  ///< of each pair of periodic patches, from the first to the second
 };
 

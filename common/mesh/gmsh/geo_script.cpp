@@ -75,9 +75,9 @@ std::string read_file(const fs::path& file) {
 }
 
 /// Names and numbers of one file that must be known before gmsh reads it.
-class Facts {
+class ScriptFacts {
  public:
-  Facts(GeoScript& script, Tokens tokens) : script_(script), tokens_(std::move(tokens)) {
+  ScriptFacts(GeoScript& script, Tokens tokens) : script_(script), tokens_(std::move(tokens)) {
     tokens_.insert(tokens_.end(), 4, Token{});
     for (std::size_t i = 0; i + 4 < tokens_.size(); ++i)
       if (tokens_[i].is_word()) statement(i);
@@ -152,7 +152,7 @@ class Scan {
     const std::string text = add(file);
     find_lost(file, text);
     const Tokens tokens = tokens_of(text);
-    Facts(script_, tokens);
+    ScriptFacts(script_, tokens);
     open_.push_back(fs::weakly_canonical(file));
     for (const Token& token : tokens) refuse_endless(token, file);
     for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {

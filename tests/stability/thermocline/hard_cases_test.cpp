@@ -128,7 +128,7 @@ TEST(Implicit, ten_times_the_advective_limit_stays_bounded_and_keeps_the_heat) {
   p.advection = Advection::upwind;
   p.courant = 1;
   p.initial_temperature = 400;
-  const Fluid fluid = constant_fluid(1800, 1500, 0.5);
+  const Medium fluid = constant_fluid(1800, 1500, 0.5);
   const double limit = PackedBed(p, fluid, Filler{}, 10).largest_step(50);
   p.advection = Advection::implicit;
   Audit a(PackedBed(p, fluid, Filler{}, 10), 300, 400);

@@ -61,10 +61,10 @@ TEST(Messages, commands_arrive_as_they_were_sent) {
   EXPECT_EQ(got.data, (Exchange{{"displacement", {}}, {"velocity", {}}}));
 }
 
-const Cut some_cut{{0, 5, 7}, {0, 0, 9}};
+const Partition some_cut{{0, 5, 7}, {0, 0, 9}};
 
 TEST(Messages, replies_arrive_as_they_were_sent) {
-  Cut cut;
+  Partition cut;
   const Reply sent = some_reply(), got = unpack_reply(pack(sent, some_cut), cut);
   EXPECT_EQ(cut.vertices, some_cut.vertices);
   EXPECT_EQ(cut.faces, some_cut.faces);
@@ -87,7 +87,7 @@ TEST(Messages, replies_arrive_as_they_were_sent) {
 
 TEST(Messages, a_message_cut_anywhere_is_refused) {
   const std::vector<char> command = pack(some_command()), reply = pack(some_reply(), some_cut);
-  Cut cut;
+  Partition cut;
   for (std::size_t n = 0; n < command.size(); ++n)
     EXPECT_THROW(unpack_command({command.data(), n}), Error) << n << " of " << command.size() << " bytes";
   for (std::size_t n = 0; n < reply.size(); ++n)
@@ -96,7 +96,7 @@ TEST(Messages, a_message_cut_anywhere_is_refused) {
 
 TEST(Messages, another_kind_or_version_is_refused) {
   std::vector<char> bytes = pack(some_reply(), some_cut);
-  Cut cut;
+  Partition cut;
   EXPECT_THROW(unpack_command(bytes), Error);
   bytes[8] = 99;  // the version follows the 8-byte mark
   EXPECT_EQ(support::error_of([&] { unpack_reply(bytes, cut); }),

@@ -405,7 +405,7 @@ std::vector<double> step_to_one(std::span<const double> u, double rate) {
 }
 
 TEST(Acceleration, aitken_lands_on_the_fixed_point_of_a_contraction) {
-  Accelerator accelerator(MPI_COMM_WORLD, 3, {Acceleration::Type::aitken, 5, 0});
+  VectorAccelerator accelerator(MPI_COMM_WORLD, 3, {Acceleration::Type::aitken, 5, 0});
   std::vector<double> u{5, -3, 0.5};
   for (int k = 0; k < 4; ++k) {
     accelerator.advance(u, step_to_one(u, 0.8));
@@ -420,7 +420,7 @@ TEST(Acceleration, anderson_solves_as_many_unknowns_as_it_remembers_and_forgets_
   // combination drops its oldest difference from the fifth step on and needs twelve.
   const std::array<double, 4> rate{0.99, 0.9, -0.5, 0.3};
   for (const auto& [history, steps] : {std::pair(4, 6), std::pair(3, 13)}) {
-    Accelerator accelerator(MPI_COMM_SELF, 4, {Acceleration::Type::anderson, 0, history});
+    VectorAccelerator accelerator(MPI_COMM_SELF, 4, {Acceleration::Type::anderson, 0, history});
     std::vector<double> u(4, 0.0), step(4);
     for (int k = 0; k < steps; ++k) {
       for (std::size_t i = 0; i < 4; ++i) step[i] = (1 - rate[i]) * (double(i) + 1 - u[i]);

@@ -40,7 +40,7 @@ TEST(StepErrorsTest, of_a_damped_motion_that_loads_keep_going_old_ones_are_forgo
       undamped;  // u = sin(t) for ever; errors die at 0.5 1/s: 1e-5 / (1 - exp(-0.05)) are left
   const double dt = 0.1;
   for (int n = 1; n <= 5000; ++n) {
-    StepErrors::Seen seen{
+    StepErrors::Inputs seen{
         .error = 1e-5, .rate = std::abs(std::cos(n * dt)), .size = std::abs(std::sin(n * dt)), .dt = dt};
     undamped.add(seen);
     seen.forgotten = 0.5;

@@ -348,7 +348,7 @@ TEST(PlateGuards, a_direction_may_have_any_length) {
     p.contact->direction = {0, 0, length};
     p.contact->starts_inside = true;
     Structure plate(p, PlateContext{}, &raw);
-    Contact::Result seat;
+    Contact::ContactResult seat;
     plate.contact()->look(plate.state().q, seat);
     return seat.total;
   };

@@ -9,7 +9,7 @@ namespace couplet::thermocline::bed_test {
 /// The bed of the Schumann problem: xi = 20 at its top for a mass flux of 1 kg/(m^2 s).
 struct Schumann {
   double flux = 1, height = 5, porosity = 0.4, diameter = 0.02;
-  Fluid fluid = constant_fluid(1800, 1500, 0.5);
+  Medium fluid = constant_fluid(1800, 1500, 0.5);
   Filler filler{2500, 900, 1e7};  // no resistance inside the grains
   double h_v = 20 * flux * fluid.specific_heat / height;
 
@@ -257,7 +257,7 @@ TEST(Front, late_width_grows_by_dispersion_film_and_conduction_in_the_grains_tog
   // k_tot = k_eff + (G c beta)^2/h_v', 1/h' = 1/h + d/(10 k_s), beta = (1 - eps) rho_s c_s/(rho c)_eff, and
   // the front moves with G c/(rho c)_eff.
   const double flux = 0.3, porosity = 0.22, d = 0.0046, k = 2, film = 30;
-  const Fluid oil = constant_fluid(692.4, 2700, 0.09);
+  const Medium oil = constant_fluid(692.4, 2700, 0.09);
   const Filler filler;
   BedParameters p = plain_bed(1500, 60, porosity, d);
   p.closures.conductivity = k;
@@ -288,7 +288,7 @@ TEST(Front, numerical_diffusion_of_upwind_is_that_of_theory) {
   // k_num = G c dz (1 - Courant)/2 for the fluid; through the bed's heat capacity 1 - Courant becomes 1 -
   // Courant eps rho c/(rho c)_eff.
   const double flux = 0.3, porosity = 0.22;
-  const Fluid oil = constant_fluid(692.4, 2700, 0.09);
+  const Medium oil = constant_fluid(692.4, 2700, 0.09);
   const Filler filler;
   const double effective = porosity * oil.volumetric() + (1 - porosity) * filler.volumetric(300);
   const double speed = flux * oil.specific_heat / effective;

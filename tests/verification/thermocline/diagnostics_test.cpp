@@ -61,7 +61,7 @@ TEST(Diagnostics, findings_turn_at_their_limits_and_belong_to_what_is_left_out) 
   p.bed.mix_inversions = true;
   EXPECT_FALSE(finding(p, "mixing-of-inverted-fluid"));
   EXPECT_FALSE(finding(p, "compressibility")) << "a liquid";
-  p.fluid.type = FluidParameters::Type::air;
+  p.fluid.type = MediumInput::Type::air;
   p.flow.rows.front().mass_flow = -0.1;
   expect(p, "compressibility", 0.05, true);
   expect(p, "specific-heat-of-a-gas-by-its-temperature", 0.05, true);
@@ -148,7 +148,7 @@ TEST(Diagnostics, capsules_that_did_not_melt_are_said) {
 TEST(Warnings, a_fluid_outside_the_range_of_its_own_tables_is_named_once) {
   TankParameters p = solar_one_parameters();
   p.bed.cells = 20;
-  p.fluid.type = FluidParameters::Type::custom;
+  p.fluid.type = MediumInput::Type::custom;
   p.fluid.density = 700, p.fluid.specific_heat = 2700;
   p.fluid.temperature = {200, 300};  // degC were meant
   p.fluid.conductivity = {0.1, 0.1}, p.fluid.viscosity = {1e-3, 5e-4};

@@ -79,7 +79,7 @@ TEST(Closures, wakao_and_beek_have_the_values_of_their_formulae) {
   // Solar One's mixture at 70 kg/s: 1.67 W/(m K), 37 W/(m^2 K) (independent evaluation).
   ClosureParameters p;
   p.conduction = Conduction::wakao;
-  const Fluid oil = caloria_ht43();
+  const Medium oil = caloria_ht43();
   const double area = 0.25 * 3.14159265358979 * 18.2 * 18.2, g = 70 / area;
   const LayerClosure mixture(p, oil, Filler{}, 0.22, 0.0046);
   const double t = 254 + zero_celsius, k = oil.conductivity(t), mu = oil.viscosity(t), re = g * 0.0046 / mu;
@@ -99,7 +99,7 @@ TEST(Closures, wakao_and_beek_have_the_values_of_their_formulae) {
 TEST(Closures, wakao_and_kaguei_are_those_of_the_paper) {
   // By hand: Re = 32, Pr = 8: Re^0.6 = 2^3, Pr^(1/3) = 2, Nu = 2 + 1.1 * 2 * 8 = 19.6, and 2 at rest. A fluid with these
   // numbers, k = 0.5, d = 0.02: h = 19.6 * 0.5/0.02.
-  const Fluid fluid{"fluid", 1000, 4000, Table(0.5), Table(1e-3), 1, 1e4};  // Pr = 8
+  const Medium fluid{"fluid", 1000, 4000, Curve(0.5), Curve(1e-3), 1, 1e4};  // Pr = 8
   const LayerClosure layer({}, fluid, Filler{}, 0.4, 0.02);
   EXPECT_NEAR(layer.at(350, MassFlux(1.6)).film, 490, 1e-9);  // Re = 1.6 * 0.02/1e-3
   EXPECT_NEAR(layer.at(350, MassFlux(0)).film, 50, 1e-9);
@@ -107,7 +107,7 @@ TEST(Closures, wakao_and_kaguei_are_those_of_the_paper) {
 
 // A run that leaves the limits of its fluid is warned about and goes on: the properties follow it for 100 K above and 50 K below.
 TEST(Closures, follow_the_fluid_a_little_beyond_its_limits) {
-  const Fluid fluid{"fluid", 1000, 4000, Table({200, 1200}, {0.2, 1.2}), Table(1e-3), 400, 700};
+  const Medium fluid{"fluid", 1000, 4000, Curve({200, 1200}, {0.2, 1.2}), Curve(1e-3), 400, 700};
   const LayerClosure layer({}, fluid, Filler{}, 0.4, 0.02);
   for (const double t : {355., 390., 550., 710., 795.})  // still: Nu = 2, k = t / 1000
     EXPECT_NEAR(layer.at(t, MassFlux(0)).film, 2 * t / 1000 / 0.02, 1e-9) << t;
@@ -128,7 +128,7 @@ TEST(Closures, a_stagnant_bed_conducts_as_the_formula_of_its_porosity) {
 }
 
 TEST(Properties, solar_salt_has_the_values_of_its_source) {
-  const Fluid salt = solar_salt();
+  const Medium salt = solar_salt();
   EXPECT_NEAR(salt.viscosity(290 + zero_celsius), 3.50e-3, 1e-5);
   EXPECT_NEAR(salt.viscosity(340 + zero_celsius), 2.49e-3, 1e-5);
   EXPECT_NEAR(salt.viscosity(390 + zero_celsius), 1.86e-3, 1e-5);
@@ -156,7 +156,7 @@ TEST(SolarOne, hoop_stress_after_the_first_discharge) {
   run.until(24 * 3600, 900);
   const TankModel& m = run.model();
   const Rings& rings = *m.setup().rings;
-  const Table hoop(rings.z, m.stress().hoop);
+  const Curve hoop(rings.z, m.stress().hoop);
   double worst = 0, place = 0;
   for (int i = 0; i < rings.size(); ++i)
     if (m.stress().equivalent[i] > worst * m.stress().yield[i])

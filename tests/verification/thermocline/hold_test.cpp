@@ -26,7 +26,7 @@ TankParameters salt() {
 }
 TankParameters air(double cold = 100, double hot = 650, double grain = 0.03) {
   TankParameters p = half_charged(cold, hot, 0.4, grain);
-  p.fluid.type = FluidParameters::Type::air;
+  p.fluid.type = MediumInput::Type::air;
   p.filler.density = 2680, p.filler.specific_heat = {"1068"}, p.filler.conductivity = {"2.5"};
   return p;
 }
@@ -138,7 +138,7 @@ TEST(Hold, gravel_and_cool_air_do_not_need_radiation) {
 
 TEST(Hold, a_stagnant_bed_has_the_conductivity_of_its_source_with_and_without_radiation) {
   Filler rock{2680, 1068, 2.5};
-  const Fluid gas = air_at(101325, 600);
+  const Medium gas = air_at(101325, 600);
   for (const auto& [t, dark, bright] :
        {std::tuple{400., 0.27, 0.58}, {650., 0.34, 1.34}, {900., 0.40, 2.17}}) {
     rock.emissivity = 0.85;
@@ -158,7 +158,7 @@ TEST(Hold, properties_of_the_grains_follow_the_temperature) {
   TankParameters p = air();
   p.filler.conductivity = {"table(T, 300, 4.5, 600, 2.5, 1000, 1.5)"};
   p.filler.specific_heat = {"table(T, 300, 800, 700, 1150, 1000, 1250)"};
-  const Table k({300, 600, 1000}, {4.5, 2.5, 1.5}), c({300, 700, 1000}, {800, 1150, 1250});
+  const Curve k({300, 600, 1000}, {4.5, 2.5, 1.5}), c({300, 700, 1000}, {800, 1150, 1250});
   const double wanted = reference(
       p, [&](double t) { return 0.6 * 2680 * c(t) + 0.4 * 0.6 * 1075; },
       [&](double t) {

@@ -7,7 +7,7 @@ namespace couplet::thermocline::melting_test {
 /// A resting bed whose tiny capsules follow the fluid: one medium with conductivity k, heated from below.
 struct Stefan {
   double k = 2, height = 1, porosity = 0.3, cold = 300, melts = 300, hot = 310, width = 0.001;
-  Fluid fluid = constant_fluid(1000, 2000, 0.5);
+  Medium fluid = constant_fluid(1000, 2000, 0.5);
   Filler filler{2000, 1000, 1e6};
   Melting melting{0, 0, 100e3};
 
@@ -132,7 +132,7 @@ TEST(Melting, heat_and_temperature_are_inverse) {
 
 const double c0 = zero_celsius;
 
-Fluid real(Fluid fluid) {
+Medium real(Medium fluid) {
   fluid.real_density = true;
   return fluid;
 }
@@ -147,7 +147,7 @@ TEST(RealDensity, of_the_salt_is_the_constant_of_the_table_at_340_degc_and_of_th
 TEST(RealDensity, a_bed_that_warms_through_has_taken_the_integral_of_its_capacity) {
   BedParameters p = plain_bed(100, 10, 0.22, 0.005);
   p.initial_temperature = 290 + c0;
-  const Fluid salt = real(solar_salt());
+  const Medium salt = real(solar_salt());
   const Filler filler;
   for (const Advection advection : {Advection::upwind, Advection::tvd, Advection::implicit}) {
     p.advection = advection;

@@ -15,9 +15,9 @@ inline std::map<std::string, std::vector<double>> read_columns(const std::string
   return support::Csv(std::string(COUPLET_TEST_DATA) + "/" + file).columns();
 }
 
-inline Fluid constant_fluid(double density, double specific_heat, double conductivity,
-                            double viscosity = 1e-3) {
-  return {"fluid", density, specific_heat, Table(conductivity), Table(viscosity), 1, 1e4};
+inline Medium constant_fluid(double density, double specific_heat, double conductivity,
+                             double viscosity = 1e-3) {
+  return {"fluid", density, specific_heat, Curve(conductivity), Curve(viscosity), 1, 1e4};
 }
 
 /// One layer; conduction and film are constants.
@@ -38,7 +38,7 @@ inline std::vector<double> temperatures_of(const PackedBed& bed) {
 
 /// Value at a height, linear between cell centres.
 inline double value_at(const BedGrid& grid, std::span<const double> values, double z) {
-  return Table(grid.z, {values.begin(), values.end()})(z);
+  return Curve(grid.z, {values.begin(), values.end()})(z);
 }
 
 /// n steps of equal length up to `time`, no longer than the scheme allows.

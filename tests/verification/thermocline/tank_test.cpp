@@ -179,7 +179,7 @@ TEST(Bed, without_filler_has_the_fluids_temperature_where_grains_would_be) {
 }
 
 TEST(Schedule, repeats_its_rows_and_stops_at_the_outlet) {
-  Schedule s(solar_one_parameters().flow);
+  FlowTable s(solar_one_parameters().flow);
   const double hot = 304 + zero_celsius, cold = 204 + zero_celsius, hour = 3600;
   const Ambient air;
   EXPECT_EQ(s.decide(0, cold, cold, air).mass_flow, -90);

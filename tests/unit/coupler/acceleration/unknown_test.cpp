@@ -92,7 +92,7 @@ TEST(Unknown, rest_is_a_start_for_motion_alone) {
 
 /// Motion with velocity v(t) = 2 + 3 t and displacement 2 t + 1.5 t^2, known at t = 1 and, with a step of
 /// 0.4, before.
-History accelerated_motion() { return {{{3.5}, {5.}}, {{0.}, {2 + 3 * 0.6}}, {}, 0.4, 0}; }
+CouplingHistory accelerated_motion() { return {{{3.5}, {5.}}, {{0.}, {2 + 3 * 0.6}}, {}, 0.4, 0}; }
 
 TEST(Predictor, order_0_repeats_the_last_state) {
   const Pair p;
@@ -120,7 +120,7 @@ TEST(Predictor, order_2_is_exact_for_constant_acceleration_also_when_the_step_ch
 
 TEST(Predictor, first_step_of_order_2_is_of_order_1) {
   const Pair p;
-  History history = accelerated_motion();
+  CouplingHistory history = accelerated_motion();
   history.old = {};
   history.old_dt = 0;
   const Iterate guess = predict(p.serial, history, 0.2, 2);
@@ -132,7 +132,7 @@ TEST(Predictor, data_without_velocity_follow_the_polynomial_through_their_last_v
   const Pair p;
   const Unknown forces(MPI_COMM_SELF, p.sides, p.links, {1, 0}, false);
   const auto f = [](double t) { return 1 + 2 * t - 3 * t * t; };
-  History history;
+  CouplingHistory history;
   for (const auto& [t, dt] : {std::pair{0.1, 0.1}, std::pair{0.5, 0.4}, std::pair{0.7, 0.2}})
     history.accepted({{f(t)}, {}}, dt, 2);
   EXPECT_NEAR(predict(forces, history, 0.3, 2).unknown[0], f(1.0), 1e-14);

@@ -174,7 +174,7 @@ TEST(WorkBalance, a_guess_that_jitters_parts_the_work_but_is_no_instability) {
   EXPECT_FALSE(guard.result().sound) << "it is said at the end";
   EXPECT_THAT(guard.result().text, HasSubstr("NOT CLOSED"));
   EXPECT_TRUE(guard.result().useless);  // of an iteration
-  const WorkBalance::Result lagging = guard.result(true, true);
+  const WorkBalance::WorkResult lagging = guard.result(true, true);
   EXPECT_FALSE(lagging.useless) << "the motion may be right";
   EXPECT_FALSE(lagging.sound);
   EXPECT_THAT(lagging.text, HasSubstr("in explicit coupling load and motion belong to different times"));

@@ -23,8 +23,8 @@ FiniteLaw make(const laws::Entry& entry) {
   return entry.make(lame, std::span(coefficients).first(entry.n_coefficients));
 }
 
-finite::State state_of(const FiniteLaw& law, const Tensor3& f, double* energy = nullptr) {
-  finite::State state;
+finite::StrainState state_of(const FiniteLaw& law, const Tensor3& f, double* energy = nullptr) {
+  finite::StrainState state;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) state.f[a][b] = Four{} + f(a, b);
   const Invariants at = finite::invariants(state.f);
@@ -44,7 +44,7 @@ Tensor3 first_of(const Four (&p)[3][3]) {
 
 Tensor3 stress_of(const FiniteLaw& law, const Tensor3& f) {
   Four p[3][3];
-  const finite::State state = state_of(law, f);
+  const finite::StrainState state = state_of(law, f);
   law.has_second_invariant ? finite::stress<true>(state, p) : finite::stress<false>(state, p);
   return first_of(p);
 }
@@ -59,7 +59,7 @@ Tensor3 tangent_of(const FiniteLaw& law, const Tensor3& f, const Tensor3& change
   Four df[3][3], dp[3][3];
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) df[a][b] = Four{} + change(a, b);
-  const finite::State state = state_of(law, f);
+  const finite::StrainState state = state_of(law, f);
   law.has_second_invariant ? finite::tangent<true>(state, df, Four{}, dp)
                            : finite::tangent<false>(state, df, Four{}, dp);
   return first_of(dp);

@@ -5,7 +5,7 @@
 
 namespace couplet::thermocline::pressure_loss_test {
 
-Fluid water() { return {"water", 1000, 4180, Table(0.6), Table(1e-3), 1, 1e4}; }
+Medium water() { return {"water", 1000, 4180, Curve(0.6), Curve(1e-3), 1, 1e4}; }
 
 TEST(Ergun, of_a_liquid_is_that_by_hand) {
   // eps 0.4, d 10 mm, G 20 kg/(m^2 s), mu 1e-3: 150*1e-3*20*0.36/(0.064*1e-4) + 1.75*400*0.6/(0.064*0.01) =
@@ -23,7 +23,7 @@ TEST(Ergun, of_a_gas_agrees_with_quadrature_along_the_bed) {
   // Two layers, a smooth front from 300 to 900 K, pressures that fall by a fifth: the density changes
   // fourfold.
   const std::vector<BedLayer> layers{{2, 0.35, 0.004}, {4, 0.42, 0.02}};
-  const Fluid air = air_at(101325, 600);
+  const Medium air = air_at(101325, 600);
   const double flux = 0.9, area = 10;
   const auto temperature = [](double z) { return 600 + 300 * std::tanh(1.5 * (z - 3)); };
   const BedGrid grid(layers, 4000);
@@ -52,7 +52,7 @@ TEST(Ergun, of_a_gas_agrees_with_quadrature_along_the_bed) {
 }
 
 TEST(Ergun, fan_work_is_that_of_an_isentropic_compression) {
-  const Fluid air = air_at(1e5, 600);
+  const Medium air = air_at(1e5, 600);
   // T2 = T1 (p2/p1)^(R/c)
   const double hotter = 300 * (std::pow(1.2, 287.05 / 1075) - 1);
   EXPECT_NEAR(pump_power({1.2e5, 1e5}, air, 300, 5, 0.8), 5 * 1075 * hotter / 0.8, 1e-6);

@@ -56,7 +56,7 @@ TEST(Questions, a_temperature_without_its_unit_is_refused) {
   p.flow.type = FlowParameters::Type::schedule;
   p.flow.rows = {{0, 0, 0, {}, {}}, {10, -70, kelvin(390), 300, {}}};
   EXPECT_THAT(forgotten_unit_of_flow(p), HasSubstr("rows[1].stop-above is 300 K"));
-  p.fluid.type = FluidParameters::Type::caloria_ht43;
+  p.fluid.type = MediumInput::Type::caloria_ht43;
   EXPECT_EQ(forgotten_unit_of_flow(p), "") << "an oil is a liquid at 300 K";
   p.flow = {};
   p.bed = sound().bed;

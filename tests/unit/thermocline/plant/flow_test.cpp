@@ -96,7 +96,7 @@ TEST(Schedule, finds_the_row_that_looking_at_all_finds) {
       p.repeat->every = p.rows.back().at - p.repeat->from + 1 + place(random);
     }
     ASSERT_EQ(problem_of_rows(p), "");
-    Schedule schedule(p);
+    FlowTable schedule(p);
     for (int i = 0; i < 200; ++i) {
       const double t = i % 5 == 0 ? p.rows[std::size_t(i) % p.rows.size()].at : 20 * place(random);
       double next = 0;

@@ -60,7 +60,7 @@ TEST(Slab, two_layers_pass_the_heat_of_resistances_in_series) {
   const Insulator wool = mineral_wool(), constant{100, 840, 0.05};
   Column column({{constant, 0.1, 7}, {soil, 0.5, 9}}, 3);
   column.set_steady(300, 300);
-  Column::Heat heat;
+  Column::ColumnHeat heat;
   for (int i = 0; i < 400; ++i) heat = column.step(1e6, Film{25, 500}, Film{10, 290});
   const double wanted = 3 * (500 - 290) / (1 / 25.0 + 0.1 / 0.05 + 0.5 / 1.2 + 1 / 10.0);
   EXPECT_NEAR(heat.inner / 1e6, wanted, 1e-9 * wanted);
@@ -152,11 +152,11 @@ TEST(Enclosure, view_factors_and_two_parallel_discs) {
 TEST(Ullage, what_enters_leaves_and_equal_temperatures_exchange_nothing) {
   Ullage gas(0, 20, 1);
   gas.set_gas(500);
-  const Ullage::Heat still = gas.step(60, 500, 500, 500, 1000, 101325);
+  const Ullage::UllageHeat still = gas.step(60, 500, 500, 500, 1000, 101325);
   EXPECT_NEAR(still.from_liquid, 0, 1e-3);
   EXPECT_NEAR(still.into_roof, 0, 1e-3);
   double before = gas.energy(300);
-  const Ullage::Heat heat = gas.step(60, 560, 540, 400, 2000, 101325);
+  const Ullage::UllageHeat heat = gas.step(60, 560, 540, 400, 2000, 101325);
   EXPECT_NEAR(heat.from_liquid + heat.from_wall - heat.into_roof, (gas.energy(300) - before) / 60,
               1e-9 * heat.into_roof);
   EXPECT_GT(heat.into_roof, 0);
@@ -171,7 +171,7 @@ TEST(Ullage, convection_below_a_roof_is_that_of_globe_and_dropkin) {
   for (const double roof : {440., 560.}) {
     Ullage gas(0, 20, height, dull);
     gas.set_gas(500);
-    const Ullage::Heat heat = gas.step(1e9, 520, 490, roof, 1e7, 101325);
+    const Ullage::UllageHeat heat = gas.step(1e9, 520, 490, roof, 1e7, 101325);
     const Air air(0.5 * (520 + heat.roof_surface), 101325);
     const double ra = heat.roof_surface < 520 ? air.rayleigh(520 - heat.roof_surface, height) : 0;
     const double nu = std::max(1.0, 0.069 * std::cbrt(ra) * std::pow(air.prandtl, 0.074));

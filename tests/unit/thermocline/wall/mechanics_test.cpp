@@ -25,7 +25,7 @@ struct Plant {
     ShellParameters shell;
     for (const double e : {0.039, 0.032, 0.0255, 0.0185, 0.0115, 0.010})
       shell.plates.push_back({ring > 0 ? ring : h / 6, e * thicker});
-    if (constant_modulus) steel.youngs_modulus = Table(steel.youngs_modulus(cold));
+    if (constant_modulus) steel.youngs_modulus = Curve(steel.youngs_modulus(cold));
     const Rings rings(shell, bed, diameter, 0);
     const Filler filler;
     const InnerPressure pressure = inner_pressure(rings, bed, solar_salt(), filler, 0);
@@ -91,7 +91,7 @@ TEST(Filler, solar_one_at_3_4_m_has_active_54_and_thermal_124_megapascal) {
                   {2.86, 0.0095}, {2.86, 0.0079}, {0.38, 0.019}};
   const Rings rings(shell, bed, 18.2, 0);
   Steel steel = steel_a537();
-  steel.youngs_modulus = Table(steel.youngs_modulus(204 + c0));
+  steel.youngs_modulus = Curve(steel.youngs_modulus(204 + c0));
   const Filler filler;
   const InnerPressure p = inner_pressure(rings, bed, caloria_ht43(), filler, 2240);
   const std::vector<double> cold(500, 204 + c0), hot(500, 304 + c0);
@@ -183,7 +183,7 @@ TEST(Bending, of_a_step_in_temperature_is_the_closed_form) {
   const BedGrid bed({{14, 0.22, 0.0046}}, 1400);
   const Rings rings(shell, bed, 18.2, 0);
   Steel steel = steel_a537();
-  steel.youngs_modulus = Table(1.88e11), steel.expansion = Table(1.44e-5);
+  steel.youngs_modulus = Curve(1.88e11), steel.expansion = Curve(1.44e-5);
   std::vector<double> temperature(1400, 477.15), hoop(1400, 0.0);
   std::fill(temperature.begin() + 700, temperature.end(), 577.15);
   const WallBending bent = wall_bending(rings, steel, hoop, temperature);
