@@ -42,7 +42,7 @@ void Coupler::initialise() {
   pass_.set_given(std::move(given));
   coupling_diagnostics_ = coupling_diagnostics(*view_, diagnostics_);
   pass_.on_solved([this](std::size_t i, const coupling::Exchange& taken, const coupling::Exchange& given) {
-    for (const auto& d : coupling_diagnostics_) d->answered(i, taken, given);
+    for (const auto& d : coupling_diagnostics_) d->received(i, taken, given);
   });
 }
 

@@ -31,7 +31,7 @@ int run(const couplet::app::Job& job, const couplet::coupler::CouplingParameters
   report.total(coupler.time(), long(coupler.steps()), coupler.iterations());
   report.finish(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), problem,
                 coupler.errors(), coupler.position());
-  log::tell_where(job.output_folder.parent_path().string(), "coupler/" + job.name + ".log");
+  log::log_where(job.output_folder.parent_path().string(), "coupler/" + job.name + ".log");
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;

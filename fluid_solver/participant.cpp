@@ -197,7 +197,7 @@ coupling::Interface FluidParticipant<D>::initialise() {
 
 /// Reports forces of the first step that are not caused by the flow.
 template <int D>
-void FluidParticipant<D>::tell_impulse() const {
+void FluidParticipant<D>::log_impulse() const {
   const Boundary<D>& boundary = fluid_->boundary();
   if (boundary.body_patches().empty() || !prescribed_ || fluid_->state().start != Start::at_rest) return;
   Vectors<D> w(mesh_.boundary.n_owned()), no_turn;
@@ -219,7 +219,7 @@ void FluidParticipant<D>::begin_step(const coupling::Step& step) {
     std::vector<Vec3> points = fluid_->state().points;
     keep_volume(*fluid_, points, step.time);
   }
-  if (step.number == 0) tell_impulse();
+  if (step.number == 0) log_impulse();
   predicted_ = renewed_now_ = false;
   fluid_->begin_step(step.time, step.dt);
 }
@@ -352,7 +352,7 @@ coupling::StepReport FluidParticipant<D>::accept_step() {
   displacement_ = trial_displacement_;
   structure_area_.swap(trial_area_);
   fluid_->accept();
-  tell_sub_steps();
+  log_sub_steps();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};
@@ -411,7 +411,7 @@ std::vector<std::string> FluidParticipant<D>::finish() {
 
 /// Logs the number of sub-steps, with the limiting cell, if it has changed much since the last entry.
 template <int D>
-void FluidParticipant<D>::tell_sub_steps() {
+void FluidParticipant<D>::log_sub_steps() {
   const int now = fluid_->statistics().sub_steps;
   const bool as_told =
       now < most_times_as_many * told_sub_steps_ && told_sub_steps_ < most_times_as_many * now;

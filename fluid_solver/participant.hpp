@@ -70,11 +70,11 @@ class FluidParticipant final : public coupling::Participant {
   void prepare(const Vectors<D>& w);
   void set_up_motion();
   void set_up_interface(const mesh::Geometry& geometry);
-  void tell_impulse() const;
+  void log_impulse() const;
   std::vector<Vec3> receive_points();
   void place_structure(const coupling::Exchange& in);
   coupling::Exchange forces() const;
-  void tell_sub_steps();
+  void log_sub_steps();
 
   const mesh::Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;

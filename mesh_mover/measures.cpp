@@ -156,7 +156,7 @@ std::string CellMeasures::refusal(const mesh::Geometry& moved, bool by_corners) 
   if (const auto trouble = mesh::find_crossed(mesh_, moved))
     return fmt::format("makes cell {} at {} intersect itself. Try more stiffening or a coarser mesh there.",
                        trouble->cell_id, at(trouble->centre));
-  if (!limits_.judges_shape() && !by_corners) return "";
+  if (!limits_.checks_shape() && !by_corners) return "";
   const MeshState state = measure(moved);
   const auto beyond = [&](MeshState::Measure measure, double limit, const char* key) {
     const Worst& worst = state.worst[measure];

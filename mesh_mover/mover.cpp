@@ -170,7 +170,7 @@ void Mover::refuse_torn() const {
 }
 
 /// Describes a problem of the mesh of displacement_; empty if there is none. Collective.
-std::string Mover::place_and_judge(bool by_corners) {
+std::string Mover::place_and_check(bool by_corners) {
   placed_ = false;
   curved_.put_back(displacement_);
   refuse_torn();
@@ -183,7 +183,7 @@ void Mover::move(const coupling::Exchange& in) {
   const std::vector<double> wanted = prescribed(in);
   displacement_ = method_->solve(wanted);
   const bool may_change = chooses_ && parameters_.method == Method::automatic;
-  std::string refusal = place_and_judge(may_change && sound_);
+  std::string refusal = place_and_check(may_change && sound_);
   if (!refusal.empty() && may_change) {
     laplacian_ = std::move(method_);
     parameters_.method = Method::barrier;
@@ -193,10 +193,10 @@ void Mover::move(const coupling::Exchange& in) {
     const std::vector<double> by_laplacian = displacement_;
     try {
       displacement_ = method_->solve(wanted);
-      refusal = place_and_judge();
+      refusal = place_and_check();
     } catch (const SolveFailure&) {
       displacement_ = by_laplacian;
-      refusal = place_and_judge();
+      refusal = place_and_check();
       if (!refusal.empty()) throw;
       begin_step(step_);  // the boundaries themselves fold a corner, which is a finding
     }
@@ -223,7 +223,7 @@ coupling::Exchange Mover::solve(const coupling::Exchange& in) {
 coupling::StepReport Mover::accept_step() {
   const coupling::StepReport report{.dt = step_.dt, .iterations = method_->last().iterations};
   accepted_ = displacement_;
-  if (laplacian_) tell_choice();
+  if (laplacian_) log_choice();
   laplacian_.reset();
   quality_now_ = state();
   const double jacobian = quality_now_.worst[MeshState::scaled_jacobian].value;
@@ -293,7 +293,7 @@ void Mover::write_output(double time, int) {
                   {"edge-ratio", "1", Place::cells, 1, edges}});
 }
 
-void Mover::tell_choice() const {
+void Mover::log_choice() const {
   if (parallel::comm_rank(mesh_.comm) == 0) log::info("auto: method: barrier ({})", reason_);
 }
 
@@ -316,7 +316,7 @@ void Mover::choose_method(const app::SimulationParameters& simulation) {
   for (int i = 1; i <= looks && reason_.empty() && !moving_.empty(); ++i) {
     step_ = {.time = 0, .dt = simulation.end_time * i / looks};
     displacement_ = method_->solve(prescribed({}));
-    const std::string refusal = place_and_judge();
+    const std::string refusal = place_and_check();
     if (!refusal.empty())
       reason_ = fmt::format("at t = {:.4g} s the prescribed motion with laplacian {}", step_.dt,
                             refusal.substr(0, std::min(refusal.find(". "), refusal.size() - 1)));
@@ -328,7 +328,7 @@ void Mover::choose_method(const app::SimulationParameters& simulation) {
   if (!ahead_) return;
   parameters_.method = Method::barrier;
   make_method();
-  tell_choice();
+  log_choice();
 }
 
 }  // namespace couplet::mesh_mover

@@ -50,10 +50,10 @@ class Mover final : public coupling::Participant {
  private:
   Mover(mesh::LoadedMesh loaded, const Parameters& parameters, const app::ParticipantContext& context);
   void make_method();
-  void tell_choice() const;
+  void log_choice() const;
   void choose_method(const app::SimulationParameters& simulation);
   void move(const coupling::Exchange& in);
-  std::string place_and_judge(bool by_corners = false);
+  std::string place_and_check(bool by_corners = false);
   std::vector<double> prescribed(const coupling::Exchange& in) const;
   void refuse_torn() const;
   /// Computes the geometry for displacement_, once per motion. Collective.

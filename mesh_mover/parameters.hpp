@@ -43,7 +43,7 @@ enum class Method {
 struct QualityLimits {
   double smallest_scaled_jacobian = -1;
   std::optional<double> largest_angle;
-  bool judges_shape() const { return smallest_scaled_jacobian > -1 || largest_angle; }
+  bool checks_shape() const { return smallest_scaled_jacobian > -1 || largest_angle; }
 };
 
 struct Parameters {

@@ -36,7 +36,7 @@ mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& whole) {
 }
 
 /// Logs the size, which reveals a mesh in another unit.
-void tell_size(const Structure& structure) {
+void log_size(const Structure& structure) {
   const modes::ModalModel& model = structure.model();
   const Vec3 side = modes::extent_of(model);
   std::string slender;
@@ -110,7 +110,7 @@ io::Series& PlateResults::series(std::optional<io::Series>& one, const char* fil
 
 void PlateResults::write_start() {
   if (root_) {
-    tell_size(structure_);
+    log_size(structure_);
     const auto& frequency = structure_.model().frequency;
     std::string list;
     for (std::size_t m = 0; m < std::min<std::size_t>(8, frequency.size()); ++m)
@@ -123,7 +123,7 @@ void PlateResults::write_start() {
     write_shapes();
 }
 
-void PlateResults::tell() const {
+void PlateResults::log() const {
   if (!root_) return;
   const std::vector<double>&frequency = structure_.model().frequency, &u = structure_.displacement();
   diagnostics::set_result({.name = "frequencies",
@@ -227,7 +227,7 @@ void PlateResults::write_energies(double time) {
 
 void PlateResults::write_contact(double time) {
   Contact::ContactResult seat;
-  structure_.contact()->look(structure_.state().q, seat);
+  structure_.contact()->find(structure_.state().q, seat);
   series(contact_, "contact.csv", {"time [s]", "force [N]", "penetration [m]", "energy [J]"})
       .row(std::vector<double>{time, seat.total, seat.penetration, seat.energy});
 }

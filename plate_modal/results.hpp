@@ -30,7 +30,7 @@ class PlateResults final {
   void write_fields(double time);
   void write_series(double time);
   /// Adds frequencies and the largest displacement to the results of the run.
-  void tell() const;
+  void log() const;
 
  private:
   std::vector<Vec3> places() const;  // of the vertices, on rank 0

@@ -293,7 +293,7 @@ void Structure::visit(io::Archive archive) {
 void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
 std::vector<std::string> Structure::finish() {
-  results_->tell();
+  results_->log();
   if (parameters_.analysis != Parameters::Analysis::modal) return {};
   std::vector<std::string> planes;
   for (const auto& [name, edge] : parameters_.boundaries)

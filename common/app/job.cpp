@@ -72,7 +72,7 @@ void find_restart(Job& job, const CommandLine& command_line, bool is_driver) {
   job.restart_time = read_run_state(job.restart_folder).time;
   if (is_driver)
     for (const std::string& change :
-         judge_changes(job.restart_folder, job.simulation.keys, command_line.restart_with_changes))
+         check_changes(job.restart_folder, job.simulation.keys, command_line.restart_with_changes))
       diagnostics::finding(job.rank, {.id = "changed-since-checkpoint",
                                       .sentence = "since the checkpoint: " + change,
                                       .subject = change});

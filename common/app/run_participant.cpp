@@ -290,7 +290,7 @@ int run_alone(const Job& job, coupling::Participant& participant, const Diagnose
   closing_words(job, participant, diagnostics, {.has_failed = !problem.empty()}, console.seconds(),
                 loop.time());
   run.finish(console.seconds(), problem, diagnostics.errors(), diagnostics.position());
-  if (job.rank == 0) log::tell_where(job.output_folder.string(), job.name + ".log");
+  if (job.rank == 0) log::log_where(job.output_folder.string(), job.name + ".log");
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;

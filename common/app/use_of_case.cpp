@@ -47,7 +47,7 @@ class UseOfCase final : public diagnostics::Diagnostic {
       return entry.second.kind == Use::Kind::effect && entry.second.is_used() && entry.second.largest() > 0;
     });
     for (const auto& [name, use] : all) {
-      if (use.is_used() && !(acts && use.kind == Use::Kind::energy)) judge(report, name, use);
+      if (use.is_used() && !(acts && use.kind == Use::Kind::energy)) report_use(report, name, use);
       // A part that never acted is then the reason.
       if (is_at_rest && use.kind == Use::Kind::effect && !report.findings.empty() &&
           report.findings.back().id == "given-without-effect")
@@ -93,7 +93,7 @@ class UseOfCase final : public diagnostics::Diagnostic {
     return all;
   }
 
-  static void judge(diagnostics::Report& report, const std::string& name, const Use& use) {
+  static void report_use(diagnostics::Report& report, const std::string& name, const Use& use) {
     const auto find = [&](const char* id, double number, double limit, std::string sentence) {
       report.findings.push_back(
           {.id = id, .number = number, .limit = limit, .sentence = std::move(sentence), .subject = name});

@@ -54,7 +54,7 @@ class Inspection {
  public:
   std::vector<Message> messages;
 
-  void look(const YAML::Node& node, const std::string& path, int depth = 0) {
+  void inspect(const YAML::Node& node, const std::string& path, int depth = 0) {
     if (messages.size() >= most_messages) return;
     // Nested anchors double the size with every line.
     if (++nodes_ > most_nodes)
@@ -66,9 +66,9 @@ class Inspection {
     if (node.IsScalar()) check_text(node, path, false);
     if (node.IsSequence()) {
       std::size_t i = 0;
-      for (const YAML::Node& entry : node) look(entry, fmt::format("{}[{}]", path, i++), depth + 1);
+      for (const YAML::Node& entry : node) inspect(entry, fmt::format("{}[{}]", path, i++), depth + 1);
     }
-    if (node.IsMap()) look_at_map(node, path, depth);
+    if (node.IsMap()) inspect_map(node, path, depth);
   }
 
  private:
@@ -86,7 +86,7 @@ class Inspection {
     return false;
   }
 
-  void look_at_map(const YAML::Node& node, const std::string& path, int depth) {
+  void inspect_map(const YAML::Node& node, const std::string& path, int depth) {
     std::map<std::string, Origin> seen;
     for (const auto& item : node) {
       if (!item.first.IsScalar()) {
@@ -108,7 +108,7 @@ class Inspection {
         messages.push_back({place, here,
                             fmt::format("this key appears twice (first at {}:{}); remove one of the two.",
                                         first->second.line, first->second.column)});
-      look(item.second, here, depth + 1);
+      inspect(item.second, here, depth + 1);
     }
   }
 
@@ -248,7 +248,7 @@ Document Document::parse(const std::string& text, const std::string& name) {
   content.root = parse_yaml(text, name);
   Inspection inspection;
   try {
-    inspection.look(content.root, "");
+    inspection.inspect(content.root, "");
   } catch (const Error& error) {
     throw Error("{}:1:1: {}", name, error.what());
   }
@@ -280,7 +280,7 @@ void Document::set(const std::string& assignment) {
     throw Error("{}: the value is not valid YAML: {}.", option, explain(error.msg, ""));
   }
   Inspection inspection;
-  inspection.look(value, path);
+  inspection.inspect(value, path);
   if (!inspection.messages.empty())
     throw Error("{}: {}: {}", option, inspection.messages[0].path, inspection.messages[0].text);
   if (std::find(parts.begin(), parts.end(), "") != parts.end())

@@ -257,7 +257,7 @@ void Loader::key(const KeyFacts& facts, const Slot& slot) {
     if (const auto* number = std::get_if<int*>(&slot); number && facts.name == "dimension")
       frame.dimension = **number;
     if (const std::string problem = problem_of(facts, slot); !problem.empty()) throw Error("{}", problem);
-    if (const std::string doubt = doubt_of_magnitude(facts, slot); !doubt.empty())
+    if (const std::string doubt = check_magnitude(facts, slot); !doubt.empty())
       doubts_.push_back(message(entry.place, path, doubt));
   } catch (const Error& error) {
     report_key(entry.place, path, wrong_value(entry.node, error.what()));

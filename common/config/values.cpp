@@ -381,7 +381,7 @@ std::string format_value(const Slot& slot, std::string_view unit) {
       slot);
 }
 
-std::string doubt_of_wave_speed(double modulus, double density) {
+std::string check_wave_speed(double modulus, double density) {
   constexpr double slowest = 0.2, fastest = 20e3;  // [m/s]; a gel of 100 Pa has 0.3, steel without GPa 0.16
   if (!(modulus > 0) || !(density > 0)) return "";
   const double speed = std::sqrt(modulus / density);
@@ -392,7 +392,7 @@ std::string doubt_of_wave_speed(double modulus, double density) {
       speed, modulus, density);
 }
 
-std::string doubt_of_kinematic_viscosity(double viscosity, double density) {
+std::string check_kinematic_viscosity(double viscosity, double density) {
   constexpr double least = 5e-8;  // [m^2/s]
   if (!(viscosity > 0) || !(density > 0) || viscosity / density >= least) return "";
   return fmt::format(
@@ -456,7 +456,7 @@ std::string describe_plausible(const Key::Facts& facts) {
   return fmt::format("{:g} to {:g} {}", facts.plausible->first, facts.plausible->second, facts.unit);
 }
 
-std::string doubt_of_magnitude(const Key::Facts& facts, const Slot& slot) {
+std::string check_magnitude(const Key::Facts& facts, const Slot& slot) {
   if (!facts.plausible) return "";
   for (const double value : values_of(slot)) {
     const double magnitude = std::abs(value);

@@ -30,16 +30,16 @@ std::string format_value(const Slot& slot, std::string_view unit);
 /// Reasons why a pair of individually plausible values is implausible, or empty; for Section::doubt.
 
 /// Checks sqrt(modulus/density): 1 m/s (gels) to 20 km/s (diamond).
-std::string doubt_of_wave_speed(double modulus, double density);
+std::string check_wave_speed(double modulus, double density);
 /// Checks viscosity/density, which is rarely below 5e-8 m^2/s (mercury: 1e-7, water: 1e-6).
-std::string doubt_of_kinematic_viscosity(double viscosity, double density);
+std::string check_kinematic_viscosity(double viscosity, double density);
 
 /// Plausible magnitudes of a key: "1e3 to 1e13 Pa". Empty if it has none.
 std::string describe_plausible(const Key::Facts& facts);
 
 /// Reason why the current value is implausible, or empty. Judges the largest component of a vector, the
 /// largest and smallest entry of a list, and the values of a table, but no expression.
-std::string doubt_of_magnitude(const Key::Facts& facts, const Slot& slot);
+std::string check_magnitude(const Key::Facts& facts, const Slot& slot);
 
 /// Declarations as data for generated documents: reference, schema, effective values.
 struct Item {

@@ -122,7 +122,7 @@ struct Expression::ParserState {
   /// Looks for values between the latest time and `t` that no step sees: a pulse, or a period near the step. A value that
   /// turns around from each step to the next, by more than its largest, is not seen either. Both are looked for at the
   /// place of the largest value, and at all places until one is known.
-  void look_between(const Vec3& x, double t) {
+  void search_between(const Vec3& x, double t) {
     const double last = std::isnan(use->last_time) ? 0 : use->last_time;  // a run starts at 0
     if (t > last) {
       use->earlier = std::exchange(use->since, last);
@@ -197,7 +197,7 @@ struct Expression::ParserState {
   }
 
   double at(const Vec3& x, double t) {
-    if (use && uses_time) look_between(x, t);
+    if (use && uses_time) search_between(x, t);
     xyzt = {x[0], x[1], x[2], t};
     const double value = parser.Eval();
     require_possible(value);

@@ -138,8 +138,7 @@ class Reader final {
   void check_storage(const std::string& path, const Dataset& table) const;
   void check_filters(const std::string& path, const Handle& storage) const;
   Dataset open(const std::string& path, Kind kind, const RowSpan& rows) const;
-  void read(const std::string& path, const Dataset& data, const RowSpan& rows, hid_t type,
-            void* values) const;
+  void read(const std::string& path, const Dataset& in, const RowSpan& rows, hid_t type, void* values) const;
 
   std::filesystem::path file_;
   std::string what_, advice_;

@@ -199,7 +199,7 @@ spdlog::sink_ptr terminal_sink(Screen screen, bool is_first_rank) {
                                     screen == Screen::own || (drives && is_first_rank));
 }
 
-void tell_where(const std::string& folder, const std::string& file) {
+void log_where(const std::string& folder, const std::string& file) {
   const auto& sinks = spdlog::default_logger()->sinks();
   const auto* terminal = sinks.empty() ? nullptr : dynamic_cast<Terminal*>(sinks.front().get());
   if (terminal != nullptr && terminal->is_driver())

@@ -25,7 +25,7 @@ spdlog::sink_ptr terminal_sink(Screen screen, bool is_first_rank);
 void set_driver(bool is_driver);
 
 /// Prints the last line, only on a terminal: the location of the results and the file with all lines.
-void tell_where(const std::string& folder, const std::string& file);
+void log_where(const std::string& folder, const std::string& file);
 
 /// Formats "0.4 s", "42 s", "3 min 20 s", "3 h 12 min", "2 d 5 h".
 std::string format_duration(double seconds);

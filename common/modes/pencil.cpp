@@ -320,9 +320,9 @@ LowestQuotient lowest_quotient(const Pencil& pencil, const std::vector<double>& 
   return result;
 }
 
-Curvature look_for_negative_curvature(MPI_Comm comm, const linalg::LinearMap& a,
-                                      const linalg::LinearMap& precondition, std::span<const double> b,
-                                      double tolerance, int most_iterations) {
+Curvature find_negative_curvature(MPI_Comm comm, const linalg::LinearMap& a,
+                                  const linalg::LinearMap& precondition, std::span<const double> b,
+                                  double tolerance, int most_iterations) {
   const std::size_t n = b.size();
   const auto dot = [&](std::span<const double> x, std::span<const double> y) {
     return parallel::sum(comm, std::inner_product(x.begin(), x.end(), y.begin(), 0.0));

@@ -64,9 +64,9 @@ struct Curvature {
 
 /// Applies conjugate gradients to A x = b with symmetric A until |r| <= `tolerance` |b| or it finds a
 /// direction of negative curvature. Almost any b reveals an A that is not positive. Collective.
-Curvature look_for_negative_curvature(MPI_Comm comm, const linalg::LinearMap& a,
-                                      const linalg::LinearMap& precondition, std::span<const double> b,
-                                      double tolerance, int most_iterations);
+Curvature find_negative_curvature(MPI_Comm comm, const linalg::LinearMap& a,
+                                  const linalg::LinearMap& precondition, std::span<const double> b,
+                                  double tolerance, int most_iterations);
 
 /// Returns true if the last mode and the next one differ by less than `tolerance` of the larger one. A group
 /// that is cut in two responds differently in different directions.

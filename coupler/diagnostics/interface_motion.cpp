@@ -114,7 +114,7 @@ class InterfaceWork final : public CouplingDiagnostic {
 
 }  // namespace
 
-std::string StepOscillation::told(double growth, coupling::Scheme scheme) const {
+std::string StepOscillation::message(double growth, coupling::Scheme scheme) const {
   return fmt::format(
       "interface oscillation: with a period of two steps ({:.3g} s) the amplitude grew {:.3g}-fold in {} steps, to {:.2g} of "
       "the largest motion, although every step was solved: unstable.{}",
@@ -170,14 +170,14 @@ std::optional<std::string> StepOscillation::accepted(const std::vector<double>& 
   if (!(now > 3 * then) || now < *std::ranges::max_element(speed_)) return {};
   // Two frequencies that beat, and a load that rises, grow less and less. A rise like n^k has 1.33, 1.16, 1.10 here.
   if (middle * middle > 1.1 * then * now) return {};
-  return told(now / then, scheme);
+  return message(now / then, scheme);
 }
 
 std::optional<std::string> StepOscillation::suspects(coupling::Scheme scheme) const {
   if (turns_ < 2 || !counts()) return {};
   const double factor = sizes_.back() / sizes_.front();
   if (factor < 3 || 2 * sizes_.back() < *std::ranges::max_element(speed_)) return {};
-  return told(factor, scheme);
+  return message(factor, scheme);
 }
 
 void StepOscillation::visit_numbers(io::Archive& archive) {

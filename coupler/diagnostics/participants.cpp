@@ -37,7 +37,7 @@ double largest(const std::vector<double>& values) {
 }
 
 /// Answers of a participant within a step.
-struct Answers {
+struct Received {
   std::string name;
   coupling::Exchange taken, given;
   int passes = 0, looked = 0, same = 0;
@@ -75,11 +75,11 @@ class DataOfParticipants final : public CouplingDiagnostic {
   }
 
   void begin_step() override {
-    for (Answers& one : answers_) one.passes = one.looked = one.same = 0;
+    for (Received& one : answers_) one.passes = one.looked = one.same = 0;
   }
 
-  void answered(std::size_t side, const coupling::Exchange& taken, const coupling::Exchange& given) override {
-    Answers& one = answers_[side];
+  void received(std::size_t side, const coupling::Exchange& taken, const coupling::Exchange& given) override {
+    Received& one = answers_[side];
     if (++one.passes < late) return;
     if (one.passes > late && differ(view_.comm, taken, one.taken)) {
       ++one.looked;
@@ -91,7 +91,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
   /// Names participants with identical responses to changed input in at least half of the recent passes.
   std::string remark() const override {
     std::string text;
-    for (const Answers& one : answers_)
+    for (const Received& one : answers_)
       if (one.looked > 0 && 2 * one.same >= one.looked)
         text += fmt::format(
             " '{}' gave the same answer in {} of the last {} passes although its input changed: its solver's "
@@ -165,7 +165,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
   }
 
   const CouplingView& view_;
-  std::vector<Answers> answers_;
+  std::vector<Received> answers_;
   std::vector<GivenMotion> motions_;
 };
 

@@ -78,7 +78,7 @@ class StepOscillation {
   static constexpr int periods = 3;
 
  private:
-  std::string told(double growth, coupling::Scheme scheme) const;
+  std::string message(double growth, coupling::Scheme scheme) const;
   double pair(std::size_t i) const;
   double share() const;  // amplitude over the largest motion
   bool counts() const;   // the swings are part of the answer and larger than all before
@@ -154,7 +154,7 @@ class CouplingDiagnostic : public diagnostics::Diagnostic {
  public:
   virtual void begin_step() {}
   /// Participant `side` has answered in a pass.
-  virtual void answered(std::size_t /*side*/, const coupling::Exchange& /*taken*/,
+  virtual void received(std::size_t /*side*/, const coupling::Exchange& /*taken*/,
                         const coupling::Exchange& /*given*/) {}
   /// A pass of an iteration is over; `omega` led to its x. Throws SolveFailure where the iteration runs away.
   virtual void passed(const std::vector<Residual>& /*residuals*/, double /*omega*/) {}

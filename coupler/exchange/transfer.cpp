@@ -97,15 +97,15 @@ class MapRows {
     };
     std::vector<Question> ask;
     for (const GlobalIndex p : needed) ask.push_back({p, parallel::comm_rank(comm)});
-    struct Answer {
+    struct RowReply {
       Entry entry;
       int to;
     };
-    std::vector<Answer> answers;
+    std::vector<RowReply> answers;
     for (const Question& q : to_owners(
              comm, std::move(ask), [&](const Question& q) { return coupling::owner_of(starts, q.place); }))
       for (const Entry& e : row(q.place)) answers.push_back({e, q.asks});
-    for (const Answer& a : to_owners(comm, std::move(answers), [](const Answer& a) { return a.to; }))
+    for (const RowReply& a : to_owners(comm, std::move(answers), [](const RowReply& a) { return a.to; }))
       copies_.push_back(a.entry);
   }
   std::span<const Entry> row(GlobalIndex place) const {

@@ -97,7 +97,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
     for (std::size_t i = 0; i < openings_.size(); ++i) {
       const auto& [patch, inlet, has_direction, pressure, total] = openings_[i];
       const double* sum = &sums[n_sums * i];
-      if (pressure) look_at_weight(report, *patch, sum[gross]);
+      if (pressure) check_weight(report, *patch, sum[gross]);
       const double head = sum[energy] / sum[inflow];
       if (total && range > 0 && sum[inflow] > much * largest && head > told_head * range)
         report.findings.push_back(
@@ -145,7 +145,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
  private:
   /// Reports one pressure over the height of an opening if the weight exceeds the dynamic pressure: fluid then leaves below and enters
   /// above. `volume`: that passed it in either direction [m^3].
-  void look_at_weight(diagnostics::Report& report, const mesh::Patch& patch, double volume) const {
+  void check_weight(diagnostics::Report& report, const mesh::Patch& patch, double volume) const {
     const Weight weight = weight_over({&patch});
     const double speed = volume / (weight.area * (view_.step.time + view_.step.dt)),
                  dynamic = 0.5 * view_.properties().rho * speed * speed;

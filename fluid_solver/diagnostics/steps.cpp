@@ -36,8 +36,8 @@ class GivenStep final : public diagnostics::Diagnostic {
 
  private:
   bool grows() const {
-    const EnergyLedger& ledger = view_.fluid.state().ledger;
-    return ledger.is_judged() && ledger.excess > shown * ledger.reference;
+    const EnergySums& ledger = view_.fluid.state().ledger;
+    return ledger.is_evaluated() && ledger.excess > shown * ledger.reference;
   }
   void doubt(diagnostics::Report& report) {
     if (is_told_) return;
@@ -179,8 +179,8 @@ template diagnostics::Made ringing_pressure(const FluidView<3>&);
 // The guard stops fast growth; this reports slow growth.
 template <int D>
 std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
-  const EnergyLedger& ledger = view.fluid.state().ledger;
-  if (!ledger.is_judged()) return {};
+  const EnergySums& ledger = view.fluid.state().ledger;
+  if (!ledger.is_evaluated()) return {};
   const double excess = ledger.excess / ledger.reference;
   return diagnostics::finding_of(
       {.effect = "balance of the kinetic energy",

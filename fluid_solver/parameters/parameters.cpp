@@ -156,7 +156,7 @@ void declare_scene(config::Section& s, FluidParameters& p) {
       .not_negative()
       .required()
       .doc("dynamic viscosity");
-  s.doubt([&p] { return config::doubt_of_kinematic_viscosity(p.viscosity, p.density); }, "viscosity");
+  s.doubt([&p] { return config::check_kinematic_viscosity(p.viscosity, p.density); }, "viscosity");
   s.map<BoundaryParameters>("boundaries", p.boundaries, declare_boundary, "patch",
                             "boundary condition of each patch of the mesh; every patch needs an entry");
 }

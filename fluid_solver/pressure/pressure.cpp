@@ -119,9 +119,9 @@ void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
 
 /// Rejects a tolerance that is not finite, from fluxes whose squares overflow.
 template <int D>
-linalg::SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
-                                                           std::span<double> p, double relative,
-                                                           double absolute) {
+linalg::SolveStatistics PressureEquation<D>::solve_or_report(const Placement<D>& at,
+                                                             std::span<const double> b, std::span<double> p,
+                                                             double relative, double absolute) {
   const auto where = [&] {
     return largest_entry(find_largest(mesh_, at, [&](Index c) { return std::abs(b[c]); }));
   };
@@ -159,7 +159,7 @@ linalg::SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::
   }
   const int made = solver_->solver().preconditioners_built();
   const linalg::SolveStatistics statistics =
-      solve_or_tell(at, b, std::span<double>(p).first(owned), relative, absolute);
+      solve_or_report(at, b, std::span<double>(p).first(owned), relative, absolute);
   if (!fixed_) {
     now_.memory = solver_->solver().memory();
     if (solver_->solver().preconditioners_built() != made)

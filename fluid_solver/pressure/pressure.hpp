@@ -57,8 +57,8 @@ class PressureEquation {
   void make_solver();
   std::vector<double> diagonal(const Placement<D>& at, const Diagonal& added) const;
   void remove_mean(std::vector<double>& b) const;
-  linalg::SolveStatistics solve_or_tell(const Placement<D>& at, std::span<const double> b,
-                                        std::span<double> p, double relative, double absolute);
+  linalg::SolveStatistics solve_or_report(const Placement<D>& at, std::span<const double> b,
+                                          std::span<double> p, double relative, double absolute);
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   bool fixed_, regular_ = false;

@@ -111,12 +111,12 @@ class YieldingWalls final : public Term<D> {
                       scene_.boundary.wall_load()[b];
       if (!prediction_.force.empty()) source += scene_.fluid.rho * prediction_.force[p].dot(at.area[f]) / g;
       if (!out.gradient.empty()) source -= out.gradient[p].dot(at.oblique_of(f)) / g;
-      add_answer(b, source, out);
+      add_response(b, source, out);
     }
   }
   void after(Projected<D>& out) override {
     for (std::size_t b = 0; b < resistance_.size(); ++b)
-      if (resistance_[b] > 0) add_answer(b, out.p[mesh_.owner[face(b)]], out);
+      if (resistance_[b] > 0) add_response(b, out.p[mesh_.owner[face(b)]], out);
   }
 
  private:
@@ -127,7 +127,7 @@ class YieldingWalls final : public Term<D> {
   Index face(std::size_t b) const { return mesh_.n_interior + static_cast<Index>(b); }
   auto area(std::size_t b) const { return step_.to->area[face(b)]; }
   /// Adds the response of a wall to a pressure on it to its velocity and flux.
-  void add_answer(std::size_t b, double pressure, Projected<D>& out) {
+  void add_response(std::size_t b, double pressure, Projected<D>& out) {
     const double flux = area(b).norm() * pressure / resistance_[b];
     out.w[b] += flux / area(b).squaredNorm() * area(b);
     out.phi[face(b)] = out.w[b].dot(area(b));

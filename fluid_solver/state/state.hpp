@@ -204,7 +204,7 @@ struct FlowHistory {
 };
 
 /// Kinetic energy and the part of it that no work explains, see EnergyCheck.
-struct EnergyLedger {
+struct EnergySums {
   double energy = -1;    ///< at t^n [J]; negative if not known yet
   double largest = 0;    ///< so far [J]
   double excess = 0;     ///< [J]
@@ -217,7 +217,7 @@ struct EnergyLedger {
     numbers(energy, largest, excess, reference, level, work);
   }
   /// False if the energy is at round-off relative to the largest so far.
-  bool is_judged() const { return energy > 1e-10 * largest && reference > 0; }
+  bool is_evaluated() const { return energy > 1e-10 * largest && reference > 0; }
 };
 
 /// Complete input of the next step: level n and the history of the multi-step schemes.
@@ -225,7 +225,7 @@ template <int D>
 struct State : FlowHistory<D> {
   /// Identifies u among all computed states, to avoid recomputing derived data; 0 if not computed.
   std::uint64_t number = 0;
-  EnergyLedger ledger;
+  EnergySums ledger;
   double largest_speed = 0;  ///< of u so far [m/s]
 
   Vectors<D> u;           ///< u^n per local cell, ghosts current [m/s]

@@ -87,7 +87,7 @@ void FractionalStep<D>::solve_coupled(const State<D>& from, const Vectors<D>& w)
   const std::size_t owned = std::size_t(mesh_.cells.n_owned());
   std::vector<double> p(owned + w.size()), change(p.size());
   linalg::VectorAccelerator accelerator(mesh_.comm, p.size(), pass_acceleration);
-  const double excess = step_.moving() ? judge(from).energy.ledger.excess : 0;
+  const double excess = step_.moving() ? evaluate(from).energy.ledger.excess : 0;
   auto level = std::move(level_);
   double error = first;
   for (int pass = 0; error > small_splitting && pass < most_passes; ++pass) {
@@ -108,7 +108,8 @@ void FractionalStep<D>::solve_coupled(const State<D>& from, const Vectors<D>& w)
     error = splitting_error(*level, small_splitting);
   }
   level_ = correct();
-  if (error <= largest_splitting && (!step_.moving() || judge(from).energy.ledger.excess <= excess)) return;
+  if (error <= largest_splitting && (!step_.moving() || evaluate(from).energy.ledger.excess <= excess))
+    return;
   step_.guess = step_.by.pressure[0];
   project_from_guess(from, w);
   level_ = correct();

@@ -131,8 +131,8 @@ void EnergyCheck<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
 }
 
 template <int D>
-EnergyChange EnergyCheck<D>::judge(const EnergyStep<D>& s) const {
-  const EnergyLedger& before = s.from.ledger;
+EnergyChange EnergyCheck<D>::evaluate(const EnergyStep<D>& s) const {
+  const EnergySums& before = s.from.ledger;
   enum { work, passed, weighted, fluxes, energy, old_energy };
   double sums[6] = {};
   const double level = level_of(s);
@@ -164,7 +164,7 @@ EnergyChange EnergyCheck<D>::judge(const EnergyStep<D>& s) const {
   if (j.ledger.excess > reported_excess * j.ledger.reference && sums[energy] <= energy_at_rest(s))
     j.ledger.excess = 0;
   j.out_of_bounds =
-      j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference && j.ledger.is_judged();
+      j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference && j.ledger.is_evaluated();
   return j;
 }
 

@@ -244,7 +244,7 @@ void FractionalStep<D>::complete(const State<D>& from, const Vectors<D>& w) {
   if (level_) return;
   level_ = correct();
   solve_coupled(from, w);
-  judgement_ = judge(from);
+  judgement_ = evaluate(from);
   check(from);
 }
 
@@ -252,7 +252,7 @@ template <int D>
 void FractionalStep<D>::commit(State<D>& s) {
   if (!level_) {
     level_ = correct();
-    judgement_ = judge(s);
+    judgement_ = evaluate(s);
   }
   s.largest_speed = std::max(s.largest_speed, judgement_.speed);
   s.ledger = judgement_.energy.ledger;
@@ -302,14 +302,14 @@ EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
 }
 
 template <int D>
-typename FractionalStep<D>::Outcome FractionalStep<D>::judge(const State<D>& from) const {
+typename FractionalStep<D>::Outcome FractionalStep<D>::evaluate(const State<D>& from) const {
   const double fastest = largest_square<D>({u_.data(), std::size_t(mesh_.cells.n_owned())});
   double given = 0;
   for (const Vec<D>& w : projected_.w) given = std::max(given, w.squaredNorm());
   double largest[2] = {fastest, given};
   MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, mesh_.comm);
   Outcome j;
-  j.energy = energy_check_.judge(energy_step(from));
+  j.energy = energy_check_.evaluate(energy_step(from));
   j.speed = std::sqrt(largest[0]);
   j.given_speed = std::sqrt(largest[1]);
   return j;

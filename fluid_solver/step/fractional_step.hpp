@@ -121,7 +121,7 @@ class FractionalStep {
   Vectors<D> friction_of(const Vectors<D>& x) const;
   double splitting_error(const PressureLevel<D>& now, double enough);
   EnergyStep<D> energy_step(const State<D>& from) const;
-  Outcome judge(const State<D>& from) const;
+  Outcome evaluate(const State<D>& from) const;
   bool too_fast(double so_far) const;
   void check(const State<D>& from);
   void keep_initial(State<D>& state);

@@ -119,7 +119,7 @@ struct EnergyStep {
 
 /// Change of the kinetic energy in a sub-step.
 struct EnergyChange {
-  EnergyLedger ledger;         ///< after the sub-step
+  EnergySums ledger;           ///< after the sub-step
   double gain = 0;             ///< of kinetic energy in this sub-step [J]
   double work = 0;             ///< done by boundaries and forces [J]
   bool out_of_bounds = false;  ///< the gain exceeds the work and the error of the scheme
@@ -147,7 +147,7 @@ class EnergyCheck {
         pressure_tolerance_(pressure_tolerance),
         bulk_(fluid.rho * fluid.sound * fluid.sound) {}
   /// Collective.
-  EnergyChange judge(const EnergyStep<D>& step) const;
+  EnergyChange evaluate(const EnergyStep<D>& step) const;
   /// Sum of rho V |u|^2 / 2 [J] over the cells of this rank.
   double kinetic(const Placement<D>& at, const Vectors<D>& u) const;
   /// Elastic energy V p^2/(2 rho c^2) [J] at the end of the step of pressure[0], with pressures relative to

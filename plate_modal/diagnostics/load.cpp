@@ -43,7 +43,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
  public:
   explicit PrescribedPressures(const PlateView& view) : view_(view) {}
   void observe(diagnostics::Report&) override {
-    if (const auto t = time_to_look(view_)) look_at_faces(*t);
+    if (const auto t = sample_time(view_)) check_faces(*t);
   }
   void look(diagnostics::Report& report) override {
     report_present(report, "load within a face", within_faces(), 0.05,
@@ -72,7 +72,7 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
   double within_faces() const { return fine_ > 0 ? std::sqrt(within_ / fine_) : unknown; }
   /// Adds the modal loads of the pressures at t: with one force at the center of each face, with each force
   /// along the motion of its face, and with sixteen points per face.
-  void look_at_faces(double t) {
+  void check_faces(double t) {
     const modes::ModalModel& model = view_.model();
     const PressureLoad& pressure = *view_.pressure;
     const std::size_t n = model.n_modes();

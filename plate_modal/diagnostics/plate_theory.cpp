@@ -57,10 +57,10 @@ class PlateTheory final : public diagnostics::Diagnostic {
     added_ = std::max(added_, std::sqrt(added));
   }
   void look(diagnostics::Report& report) override {
-    look_at_rotation(report, displacement_ / size_);
-    if (view_.built.stretch_limit > 0) look_at_stretch(report, displacement_ / view_.parameters.thickness);
-    if (!view_.parameters.modes_file && view_.is_dynamic()) look_at_plane(report);
-    if (!view_.parameters.modes_file) look_at_shear(report);
+    check_rotation(report, displacement_ / size_);
+    if (view_.built.stretch_limit > 0) check_stretch(report, displacement_ / view_.parameters.thickness);
+    if (!view_.parameters.modes_file && view_.is_dynamic()) check_plane(report);
+    if (!view_.parameters.modes_file) check_shear(report);
     if (view_.pressure || view_.fluid_force.empty()) return;
     if (auto found = diagnostics::atmosphere_on_one_side(MPI_COMM_SELF, 3, view_.fluid_force,
                                                          view_.surface.areas(), view_.surface.centres()))
@@ -87,7 +87,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
   // A free body may translate far but not rotate far: a mode moves it along the tangent, so that 0.25 rad
   // stretch it by 3 %. A clamped strip with a tip deflection of a quarter of its length has rotated
   // there by about 20 degrees; the neglected foreshortening is 0.6 x 0.25^2 of the length, 4 %.
-  void look_at_rotation(diagnostics::Report& report, double displacement) const {
+  void check_rotation(diagnostics::Report& report, double displacement) const {
     if (moves_freely())
       report_neglected(report, "large rotation", rotation_,
                        fmt::format("rigid rotation = {:.2g} rad", rotation_),
@@ -103,7 +103,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
 
   // Stretch stiffens a plate with held edges by about 1 + 0.5 (w/h)^2, depending on the edges: of the linear deflection w it
   // leaves the part x with x + 0.5 (w/h)^2 x^3 = 1.
-  void look_at_stretch(diagnostics::Report& report, double deflection) const {
+  void check_stretch(diagnostics::Report& report, double deflection) const {
     const double stiffening = 0.5 * deflection * deflection;
     double x = 1;
     for (int k = 0; k < 60; ++k) x -= (x + stiffening * x * x * x - 1) / (1 + 3 * stiffening * x * x);
@@ -116,7 +116,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
   }
 
   /// Largest part of loads and base motion in the plane, to which bending modes do not respond, over that across it.
-  void look_at_plane(diagnostics::Report& report) const {
+  void check_plane(diagnostics::Report& report) const {
     const Parameters& p = view_.parameters;
     const Vec3 normal = p.placement.normal();
     const auto share_of = [&](const Vec3& all) {
@@ -139,7 +139,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
 
   // Mindlin's plate compared with Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5
   // (1 - nu))), omega by 2 % if half a wave, pi/k, is ten thicknesses long, and the motion by twice as much.
-  void look_at_shear(diagnostics::Report& report) const {
+  void check_shear(diagnostics::Report& report) const {
     const std::vector<double>& omega = view_.surface.omega();
     double softening = 0, all = 0;
     for (std::size_t m = 0; m < omega.size(); ++m) {

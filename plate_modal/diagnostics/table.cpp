@@ -40,7 +40,7 @@ std::size_t PlateView::n_cells() const {
   return parameters.wetted == Wetted::both ? faces / 2 : faces;
 }
 
-std::optional<double> time_to_look(const PlateView& view) {
+std::optional<double> sample_time(const PlateView& view) {
   const coupling::Step& step = view.step;
   if (!view.is_dynamic()) {
     if (step.number > 0 && view.state.q == view.before.q) return {};

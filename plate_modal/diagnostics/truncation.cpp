@@ -18,9 +18,9 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   TruncatedModes(const PlateView& view, std::shared_ptr<const Motion> motion)
       : view_(view), motion_(std::move(motion)) {}
   void look(diagnostics::Report& report) override {
-    if (!motion_) return look_at_deflection(report);
-    look_at_load_frequency(report);
-    look_at_velocity(report);
+    if (!motion_) return check_deflection(report);
+    check_load_frequency(report);
+    check_velocity(report);
   }
   void conclude(diagnostics::Report& report) override {
     if (motion_ && !view_.parameters.modes_file)
@@ -31,7 +31,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
 
  private:
   /// In a static analysis the deflection itself is known.
-  void look_at_deflection(diagnostics::Report& report) const {
+  void check_deflection(diagnostics::Report& report) const {
     const auto& d = view_.deflection;
     const double apart = d && d->direct > 0 ? d->apart / d->direct : unknown;
     report_neglected(
@@ -43,7 +43,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   }
   // A mode responds to a load of frequency f by 1/(1 - (f/f_mode)^2): at two thirds of its frequency 1.8
   // times the static measure, and near it without bound. How much of the load is in truncated modes is unknown.
-  void look_at_load_frequency(diagnostics::Report& report) const {
+  void check_load_frequency(diagnostics::Report& report) const {
     const Motion::LoadFrequency seen = motion_->load_frequency(view_.step.is_last);
     report_neglected(
         report, "load faster than the modes", seen.over_last,
@@ -53,7 +53,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
         2. / 3, "deflection-beyond-the-modes");
   }
   /// Share of the initial kinetic energy that is in no mode.
-  void look_at_velocity(diagnostics::Report& report) const {
+  void check_velocity(diagnostics::Report& report) const {
     const Vec3& v = view_.parameters.initial_velocity;
     if (!(v.norm() > 0)) return;
     double kept = 0;

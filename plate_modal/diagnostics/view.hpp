@@ -41,7 +41,7 @@ struct PlateView {
 
 /// Time at which to examine the loads of the accepted step. In a dynamic analysis it is mid-step, at growing
 /// intervals. In a static analysis it is the end, if the result changes.
-std::optional<double> time_to_look(const PlateView& view);
+std::optional<double> sample_time(const PlateView& view);
 
 class Motion;
 

@@ -185,7 +185,7 @@ bool reuse_modes(Built& built, const std::filesystem::path& file, const std::str
 }
 
 /// Adds notes about curved edges drawn as straight lines.
-void look_at_corners(Built& built, const Midsurface& surface, const std::vector<Support>& support) {
+void check_corners(Built& built, const Midsurface& surface, const std::vector<Support>& support) {
   const std::vector<OutlinePoint> outline = outline_of(surface);
   const std::vector<Index> corners = blunt_corners(surface, outline, support);
   if (corners.empty()) return;
@@ -281,7 +281,7 @@ Built build_model(const Parameters& p, const PlateContext& context, const mesh::
     auto plate = std::make_unique<PlateModel>(
         plate_of(raw ? midsurface_of(*raw) : read(p, context.case_folder), p, context.name));
     const std::vector<Support> held = supports(plate->surface(), p);
-    look_at_corners(built, plate->surface(), held);
+    check_corners(built, plate->surface(), held);
     built.stretch_limit = stretch_limit(held);
     add_modes(built, *plate, p, context);
     if (p.analysis != Parameters::Analysis::modal) built.plate = std::move(plate);

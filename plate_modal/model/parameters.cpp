@@ -24,7 +24,7 @@ void declare_layers(config::Section& s, Parameters& p) {
             .not_negative()
             .doc("Young's modulus");
         m.value("poissons-ratio", p.material.poissons_ratio).range(-0.99, 0.499).doc("Poisson's ratio");
-        m.doubt([&] { return config::doubt_of_wave_speed(p.material.youngs_modulus, p.material.density); },
+        m.doubt([&] { return config::check_wave_speed(p.material.youngs_modulus, p.material.density); },
                 "density");
       },
       "isotropic material of the plate; needed with 'mesh'");

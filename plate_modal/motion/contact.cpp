@@ -118,7 +118,7 @@ void Contact::evaluate(std::span<const double> from, std::span<const double> q, 
   r.tangent.triangularView<Eigen::StrictlyUpper>() = r.tangent.transpose();
 }
 
-void Contact::look(std::span<const double> q, ContactResult& r) const {
+void Contact::find(std::span<const double> q, ContactResult& r) const {
   r.energy = r.total = r.penetration = 0;
   for (std::size_t f = 0; f < gap_.size(); ++f) {
     const double delta = penetration(f, q);

@@ -32,7 +32,7 @@ class Contact final {
   /// the solution is unique. No allocation once `result` has its size.
   void evaluate(std::span<const double> from, std::span<const double> q, ContactResult& result) const;
   /// Energy, penetration and total force for a structure at rest in q.
-  void look(std::span<const double> q, ContactResult& result) const;
+  void find(std::span<const double> q, ContactResult& result) const;
 
   /// Position of the deepest penetration for the displacement q.
   struct DeepestPoint {

@@ -43,7 +43,7 @@ ModalState Oscillators::start(std::vector<double> q, std::vector<double> v) cons
   if (time::uses_acceleration(scheme_.type)) state.a.assign(state.q.size(), 0);
   if (time::uses_old_level(scheme_.type)) state.q_old = state.v_old = state.q;
   Contact::ContactResult seat;
-  if (contact_) contact_->look(state.q, seat);
+  if (contact_) contact_->find(state.q, seat);
   Energies& e = state.energies;
   for (std::size_t m = 0; m < omega_.size(); ++m) {
     e.kinetic += 0.5 * state.v[m] * state.v[m];
@@ -166,7 +166,7 @@ void Oscillators::finish(ModalState& state) {
     e.gravity -= gravity_[m] * state.q[m];
   }
   if (!contact_) return;
-  contact_->look(state.q, seat_);
+  contact_->find(state.q, seat_);
   e.contact = seat_.energy;
 }
 

@@ -149,7 +149,7 @@ BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fie
       of.k(x, of_stress);
       for (std::size_t i = 0; i < y.size(); ++i) y[i] += load * of_stress[i];
     };
-    return modes::look_for_negative_curvature(mesh.comm, loaded, of.solve, force, shown_at, most_searches);
+    return modes::find_negative_curvature(mesh.comm, loaded, of.solve, force, shown_at, most_searches);
   };
   // Only a solve shows that no motion at all is soft, but refinements that settle tell that none is anywhere near.
   const double near = -1 / (far_load * BucklingEstimate::low);

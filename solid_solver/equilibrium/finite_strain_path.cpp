@@ -213,7 +213,7 @@ double FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::spa
   double least = 1;
   for (int look = 0; look < 2; ++look) {
     modes::Curvature found =
-        modes::look_for_negative_curvature(mesh_.comm, of.k, of.solve, force, looked_for, most_looks);
+        modes::find_negative_curvature(mesh_.comm, of.k, of.solve, force, looked_for, most_looks);
     if (!found.is_negative) elastic(found.x, force);
     softest = modes::lowest_quotient(of, found.x, found.is_negative ? most_refined : 1,
                                      [](const std::vector<double>&) { return false; });

@@ -83,7 +83,7 @@ SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : bo
     probes_.push_back({name, std::move(probe), chosen.fields, std::move(materials)});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
-  io::doubt_mesh_scale(body.mesh(), body.geometry().points, places);
+  io::check_mesh_scale(body.mesh(), body.geometry().points, places);
   std::vector<Index> stressed;
   for (const Watched& watched : probes_)
     if (std::ranges::any_of(watched.fields, is_stress))

@@ -158,7 +158,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
                    : "";
       },
       "orthotropic");
-  s.doubt([&m] { return config::doubt_of_wave_speed(m.youngs_modulus, m.density); }, "density");
+  s.doubt([&m] { return config::check_wave_speed(m.youngs_modulus, m.density); }, "density");
   s.value("yield-strength", m.yield_strength)
       .unit("Pa", 1000, 1e11)
       .positive()

@@ -24,13 +24,13 @@ class ResolvedGrains final : public TankDiagnostic {
   void look(diagnostics::Report& report) override {
     if (bed().shells() > 1 || !(seen_->flow > 0)) return;
     const auto [biot, share] = largest_biot();
-    tell(report, {.effect = "resolved grains",
-                  .number = biot,
-                  .what = fmt::format(
-                      "Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
-                      biot, biot / 5),
-                  .advice = "set 'bed.shells': five resolve the grains",
-                  .share = share});
+    add(report, {.effect = "resolved grains",
+                 .number = biot,
+                 .what = fmt::format(
+                     "Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
+                     biot, biot / 5),
+                 .advice = "set 'bed.shells': five resolve the grains",
+                 .share = share});
     report.position.push_back({"Biot number of the grains", biot, 20, "tank-biot"});
   }
   void conclude(diagnostics::Report& report) override {
@@ -54,11 +54,11 @@ class ResolvedGrains final : public TankDiagnostic {
         fmt::format("closures: Re of the layers at the largest flow {} from the bottom up", layers));
     if (!is_outside || view_.parameters().bed.closures.film_coefficient > 0) return;
     const double share = std::sqrt(spread);
-    tell(report, {.effect = "range of the film correlation",
-                  .number = share,
-                  .what = fmt::format("Re {} of the layers, fitted from 15 to 8500", layers),
-                  .advice = "give 'bed.closures.film-coefficient'",
-                  .share = share});
+    add(report, {.effect = "range of the film correlation",
+                 .number = share,
+                 .what = fmt::format("Re {} of the layers, fitted from 15 to 8500", layers),
+                 .advice = "give 'bed.closures.film-coefficient'",
+                 .share = share});
   }
 
  private:
@@ -101,12 +101,12 @@ class StillBed final : public TankDiagnostic {
       return stagnant_conductivity(view_.fluid(), filler, layer.porosity, layer.diameter, mean);
     };
     if (kind == Conduction::wakao)
-      judge(report, "conduction through the grains", mean,
+      check(report, "conduction through the grains", mean,
             "set 'bed.closures.conduction: stagnant', the default", [&, this](std::size_t r) {
               return still(r, 0) - bed().closure(r).at(mean, MassFlux(0)).conductivity;
             });
     if (view_.fluid().is_transparent())
-      judge(report, "radiation between the grains", mean,
+      check(report, "radiation between the grains", mean,
             "give 'filler.emissivity', with 'bed.closures.conduction: stagnant', the default",
             [&, this](std::size_t r) {
               const double own = bed().filler(r).emissivity;
@@ -120,7 +120,7 @@ class StillBed final : public TankDiagnostic {
   /// conductivity that layers lack (`left_out`) it has b^2. Two steps smeared that much differ by the integral
   ///   sqrt(2/pi) (sqrt(a^2 + b^2) - (a + b)/sqrt(2))
   /// of the squares, where that of a step from its mean is a quarter of the height. A bed that has not seen its range has less of a front.
-  void judge(diagnostics::Report& report, const char* effect, double mean, const char* advice,
+  void check(diagnostics::Report& report, const char* effect, double mean, const char* advice,
              const std::function<double(std::size_t)>& left_out) const {
     const double time = view_.time(), stay = time * std::min(1., crossing_mass() / seen_->moved);
     const MassFlux flux(seen_->moved / (time * bed().area()));
@@ -146,11 +146,11 @@ class StillBed final : public TankDiagnostic {
     const auto [cold, hot] = range_to_come();
     const double share = std::min(1., 2 * std::sqrt(std::max(0., squares) / height)) *
                          (seen_->hottest - seen_->coldest) / (hot - cold);
-    tell(report, {.effect = effect,
-                  .number = share,
-                  .what = fmt::format("up to {:.2g} W/(m K) at {:.0f} degC", largest, celsius(mean)),
-                  .advice = advice,
-                  .share = share});
+    add(report, {.effect = effect,
+                 .number = share,
+                 .what = fmt::format("up to {:.2g} W/(m K) at {:.0f} degC", largest, celsius(mean)),
+                 .advice = advice,
+                 .share = share});
   }
 };
 
@@ -166,16 +166,16 @@ class Inversions final : public TankDiagnostic {
     const auto [cold, hot] = range_to_come();
     if (view_.parameters().bed.mix_inversions || worst_.depth <= 0.01 || hot <= cold + 1) return;
     const double share = worst_.depth / (hot - cold);
-    tell(report,
-         {.effect = "mixing of inverted fluid",
-          .number = share,
-          .what = fmt::format(
-              "fluid {:.3g} K colder than the fluid below it at t = {:.6g} s, z = {:.3f} m: {:.2g} of the "
-              "run's range",
-              worst_.depth, worst_.time, worst_.z, share),
-          .advice = "it would sink: set 'bed.mix-inversions: true', or check the signs of the mass flows "
-                    "(upward above 0) and the inlet temperatures",
-          .share = share});
+    add(report,
+        {.effect = "mixing of inverted fluid",
+         .number = share,
+         .what = fmt::format(
+             "fluid {:.3g} K colder than the fluid below it at t = {:.6g} s, z = {:.3f} m: {:.2g} of the "
+             "run's range",
+             worst_.depth, worst_.time, worst_.z, share),
+         .advice = "it would sink: set 'bed.mix-inversions: true', or check the signs of the mass flows "
+                   "(upward above 0) and the inlet temperatures",
+         .share = share});
   }
   void visit(io::Archive& archive) override { archive.common("worst", worst_.depth, worst_.z, worst_.time); }
 
@@ -199,13 +199,13 @@ class Pumping final : public TankDiagnostic {
       if (run.layer.porosity < 1)
         loss += run.layer.height * ergun(run.layer, f.viscosity(mean), seen_->flow / bed().area()) / density;
     const double share = loss / (density * f.specific_heat * (hot - cold));
-    tell(report, {.effect = "pressure loss of the bed",
-                  .number = share,
-                  .what = fmt::format(
-                      "pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
-                      1e-3 * loss, share),
-                  .advice = "add 'pump: {}', or check flow and grains: no real store is driven this hard",
-                  .share = share});
+    add(report, {.effect = "pressure loss of the bed",
+                 .number = share,
+                 .what = fmt::format(
+                     "pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
+                     1e-3 * loss, share),
+                 .advice = "add 'pump: {}', or check flow and grains: no real store is driven this hard",
+                 .share = share});
   }
 };
 
@@ -214,39 +214,39 @@ class IdealGas final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
   void look(diagnostics::Report& report) override {
-    if (seen_->flow > 0) look_at_speed(report);
+    if (seen_->flow > 0) check_speed(report);
     const auto [cold, hot] = range_to_come();
     if (hot <= cold + 1) return;
     const double mean = air_heat_between(cold, hot) / (hot - cold),
                  error = std::abs(mean / view_.fluid().specific_heat - 1);
-    tell(report, {.effect = "specific heat of a gas by its temperature",
-                  .number = error,
-                  .what = fmt::format("from the coldest to the hottest fluid of the run, air has {:.0f} "
-                                      "J/(kg K), a difference of {:.2g} from the constant",
-                                      mean, error),
-                  .advice = fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", mean),
-                  .share = std::min(error, 1.)});  // of another gas
+    add(report, {.effect = "specific heat of a gas by its temperature",
+                 .number = error,
+                 .what = fmt::format("from the coldest to the hottest fluid of the run, air has {:.0f} "
+                                     "J/(kg K), a difference of {:.2g} from the constant",
+                                     mean, error),
+                 .advice = fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", mean),
+                 .share = std::min(error, 1.)});  // of another gas
   }
 
  private:
   /// Mach number at the hottest gas and narrowest pores, at the outlet pressure.
-  void look_at_speed(diagnostics::Report& report) const {
+  void check_speed(diagnostics::Report& report) const {
     const Medium& f = view_.fluid();
     double narrowest = 1;
     for (const auto& run : bed().grid().runs) narrowest = std::min(narrowest, run.layer.porosity);
     const double rt = f.gas_constant * seen_->hottest,
                  speed = seen_->flow / bed().area() * rt / (f.pressure * narrowest);
     const double mach = speed / std::sqrt(f.specific_heat / (f.specific_heat - f.gas_constant) * rt);
-    tell(report,
-         {.effect = "compressible flow of a gas",
-          .id = "compressibility",
-          .number = mach,
-          .what =
-              fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow", mach),
-          .advice =
-              "the flow is compressible, and neither pressure loss nor films are valid: use less flow, a "
-              "wider bed or a higher pressure",
-          .share = 0.5 * mach * mach});
+    add(report,
+        {.effect = "compressible flow of a gas",
+         .id = "compressibility",
+         .number = mach,
+         .what =
+             fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow", mach),
+         .advice =
+             "the flow is compressible, and neither pressure loss nor films are valid: use less flow, a "
+             "wider bed or a higher pressure",
+         .share = 0.5 * mach * mach});
   }
 };
 

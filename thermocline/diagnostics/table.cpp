@@ -90,12 +90,12 @@ double TankDiagnostic::variance_of_grains() const {
   return variance / (bed().grid().height * bed().grid().height);
 }
 
-void TankDiagnostic::tell(diagnostics::Report& report, const diagnostics::EffectFinding& effect) {
+void TankDiagnostic::add(diagnostics::Report& report, const diagnostics::EffectFinding& effect) {
   if (auto finding = diagnostics::finding_of(effect)) report.findings.push_back(std::move(*finding));
 }
 
-void TankDiagnostic::tell(diagnostics::Report& report, const char* id, std::string subject,
-                          const std::string& sentence) const {
+void TankDiagnostic::add(diagnostics::Report& report, const char* id, std::string subject,
+                         const std::string& sentence) const {
   report.findings.push_back(
       {.id = id, .sentence = fmt::format("{}: {}", view_.name, sentence), .subject = std::move(subject)});
 }

@@ -43,10 +43,10 @@ class TankDiagnostic : public diagnostics::Diagnostic {
   /// times).
   double variance_of_grains() const;
   /// Reports an effect, unless its number is unknown.
-  static void tell(diagnostics::Report& report, const diagnostics::EffectFinding& effect);
+  static void add(diagnostics::Report& report, const diagnostics::EffectFinding& effect);
   /// Reports a sentence. `subject` distinguishes it from others with the same id.
-  void tell(diagnostics::Report& report, const char* id, std::string subject,
-            const std::string& sentence) const;
+  void add(diagnostics::Report& report, const char* id, std::string subject,
+           const std::string& sentence) const;
 
   TankView view_;
   std::shared_ptr<Extremes> seen_;

@@ -17,7 +17,7 @@ class WallStrength final : public TankDiagnostic {
  public:
   using TankDiagnostic::TankDiagnostic;
   void observe(diagnostics::Report& report) override {
-    look_at_temperature(report);
+    check_temperature(report);
     constexpr double every = 2 * 3600;  // [s]
     const bool is_due = std::floor(view_.time() / every + 1e-9) != std::floor(view_.step.time / every + 1e-9);
     if (view_.parameters().external_wall || !is_due) return;
@@ -33,23 +33,23 @@ class WallStrength final : public TankDiagnostic {
     double share = 0;
     for (std::size_t i = 0; i < stress.equivalent.size(); ++i)
       share = std::max(share, stress.equivalent[i] / stress.yield[i]);
-    tell(report,
-         {.effect = "yielding of the wall",
-          .id = "yielding",
-          .number = share,
-          .what = fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", share),
-          .advice = "the wall would yield: its stress and that of the grains are those of an elastic wall",
-          .share = std::clamp(share - 1, 0., 1.)});  // of the temperatures it changes nothing
+    add(report,
+        {.effect = "yielding of the wall",
+         .id = "yielding",
+         .number = share,
+         .what = fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", share),
+         .advice = "the wall would yield: its stress and that of the grains are those of an elastic wall",
+         .share = std::clamp(share - 1, 0., 1.)});  // of the temperatures it changes nothing
     if (share_.shell > 0)
-      tell(report,
-           {.effect = "bending of the wall",
-            .number = share_.shell - share_.rings,
-            .what = fmt::format(
-                "max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
-                share_.rings, share_.shell),
-            .advice = "reduce the factors of safety accordingly, or compute the wall as a solid "
-                      "('external-wall')",
-            .share = std::max(0., 1 - share_.rings / share_.shell)});
+      add(report,
+          {.effect = "bending of the wall",
+           .number = share_.shell - share_.rings,
+           .what = fmt::format(
+               "max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
+               share_.rings, share_.shell),
+           .advice = "reduce the factors of safety accordingly, or compute the wall as a solid "
+                     "('external-wall')",
+           .share = std::max(0., 1 - share_.rings / share_.shell)});
   }
   void visit(io::Archive& archive) override { archive.common("bending", share_.rings, share_.shell); }
 
@@ -57,7 +57,7 @@ class WallStrength final : public TankDiagnostic {
   const Rings& rings() const { return *view_.model.setup().rings; }
   const Steel& steel() const { return *view_.model.setup().steel; }
 
-  void look_at_temperature(diagnostics::Report& report) const {
+  void check_temperature(diagnostics::Report& report) const {
     const std::vector<double>& wall = view_.model.shell()->temperature();
     const auto [coldest, hottest] = std::ranges::minmax_element(wall);
     const auto z = [&](auto ring) { return rings().z[std::size_t(ring - wall.begin())]; };
@@ -66,15 +66,15 @@ class WallStrength final : public TankDiagnostic {
     const double slack = 0.1 * (high - low);
     const auto outside = *coldest < low - slack ? coldest : hottest;
     if (high > low && (*outside < low - slack || *outside > high + slack))
-      tell(report, "tank-state", "tables of the wall",
-           fmt::format("the wall of {} is at {:.1f} degC at z = {:.3f} m; its properties are known from "
-                       "{:.0f} to {:.0f} degC; the end values are used beyond.",
-                       steel().name, celsius(*outside), z(outside), celsius(low), celsius(high)));
+      add(report, "tank-state", "tables of the wall",
+          fmt::format("the wall of {} is at {:.1f} degC at z = {:.3f} m; its properties are known from "
+                      "{:.0f} to {:.0f} degC; the end values are used beyond.",
+                      steel().name, celsius(*outside), z(outside), celsius(low), celsius(high)));
     if (*hottest > steel().highest)
-      tell(report, "tank-state", "hot wall",
-           fmt::format("the wall of {} is at {:.1f} degC at z = {:.3f} m, above its maximum service "
-                       "temperature of {:.1f} degC.",
-                       steel().name, celsius(*hottest), z(hottest), celsius(steel().highest)));
+      add(report, "tank-state", "hot wall",
+          fmt::format("the wall of {} is at {:.1f} degC at z = {:.3f} m, above its maximum service "
+                      "temperature of {:.1f} degC.",
+                      steel().name, celsius(*hottest), z(hottest), celsius(steel().highest)));
   }
 
   YieldShares share_;  // largest shares of the yield strength

@@ -75,7 +75,7 @@ std::vector<std::string> sun_at_night(const WeatherHours& record) {
 
 }  // namespace
 
-std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
+std::vector<std::string> check_sun(const WeatherHours& record) {
   constexpr std::size_t fortnight = 14 * hours_a_day;
   if (record.dni.size() >= fortnight && *std::max_element(record.dni.begin(), record.dni.end()) <= 0)
     return {fmt::format("{}: no direct irradiance in any of its {} days", record.source, record.days())};
@@ -274,7 +274,7 @@ WeatherHours constant_year(const WeatherParameters& p) {
 WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& case_folder) {
   if (p.kind == WeatherKind::file) {
     WeatherHours record = read_weather(case_folder / p.file);
-    for (const std::string& doubt : doubts_about_sun(record)) record.doubts.push_back(doubt);
+    for (const std::string& doubt : check_sun(record)) record.doubts.push_back(doubt);
     return record;
   }
   if (p.kind == WeatherKind::smooth_days) {

@@ -84,6 +84,6 @@ std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
 
 /// Reasons to doubt the sun of a record, as sentences: irradiance with the sun below the horizon, or a clock far
 /// from that of the longitude. Without a site: irradiance around midnight of the clock.
-std::vector<std::string> doubts_about_sun(const WeatherHours& record);
+std::vector<std::string> check_sun(const WeatherHours& record);
 
 }  // namespace couplet::thermocline

@@ -181,7 +181,7 @@ CaseFile read_case(const CommandLine& command_line, const Program& program) {
     append(result.doubts, doubts);
     // Reported once per job.
     if (config::text_of(*result.document, "coupling.fluid.participant") == result.participant)
-      append(result.doubts, doubts_of_wall_mass(*result.document));
+      append(result.doubts, check_wall_mass(*result.document));
   } catch (const Error& error) {
     result.errors.emplace_back(error.what());
   }

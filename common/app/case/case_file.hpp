@@ -51,7 +51,7 @@ KeyChanges changes_between(const std::string& then, const std::string& now);
 
 /// Returns the changes of the solution by those of the case since the checkpoint in this folder. Throws Error if there are any
 /// without `consent` (--restart-with-changes).
-std::vector<std::string> judge_changes(const std::filesystem::path& checkpoint, const std::string& now,
+std::vector<std::string> check_changes(const std::filesystem::path& checkpoint, const std::string& now,
                                        bool consent);
 
 /// Problems of the roles in a coupled case: unknown participants, participants without a role, programs that
@@ -62,7 +62,7 @@ std::vector<std::string> problems_of_roles(const config::Document& document,
 
 /// Compares the wall mass per area that a fluid assumes at an interface with the density times thickness of
 /// the plate behind it. A much larger value indicates a wrong unit, and the coupling would diverge.
-std::vector<std::string> doubts_of_wall_mass(const config::Document& document);
+std::vector<std::string> check_wall_mass(const config::Document& document);
 
 /// Copies height, direction and opening of a fluid's gap to the coupled structure with `contact.gap`, whose
 /// seat it is. The document then behaves as if they were set in `contact`. Returns missing or duplicate

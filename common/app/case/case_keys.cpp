@@ -100,7 +100,7 @@ KeyChanges changes_between(const std::string& then, const std::string& now) {
   return changes;
 }
 
-std::vector<std::string> judge_changes(const fs::path& checkpoint, const std::string& now, bool consent) {
+std::vector<std::string> check_changes(const fs::path& checkpoint, const std::string& now, bool consent) {
   const fs::path file = checkpoint / "keys.txt";
   if (const std::string problem = io::problem_in_set(file); !problem.empty()) throw Error("{}", problem);
   std::ifstream stream(file, std::ios::binary);

@@ -24,10 +24,10 @@ class Cast {
   }
 
   std::vector<std::string> problems() {
-    for (const coupling::RoleContract& contract : coupling::role_contracts()) look_at_role(contract);
-    look_at_exchange();
-    look_at_moved_walls();
-    look_at_sub_steps();
+    for (const coupling::RoleContract& contract : coupling::role_contracts()) check_role(contract);
+    check_exchange();
+    check_moved_walls();
+    check_sub_steps();
     for (const Expected& e : players_) {
       if (e.program == "coupler")
         say("participants." + e.participant + ".program",
@@ -65,7 +65,7 @@ class Cast {
     return able.empty() ? "" : fmt::format(". In this case {} can", base::join(able));
   }
 
-  void look_at_role(const coupling::RoleContract& contract) {
+  void check_role(const coupling::RoleContract& contract) {
     const std::string key = "coupling." + contract.role + ".participant";
     const auto name = config::text_of(document_, key);
     if (!name) return;
@@ -73,7 +73,7 @@ class Cast {
     const Expected* who = find(*name);
     if (who == nullptr) return unknown(key, *name);
     if (who->program == "?") return;  // reported elsewhere
-    look_at_interface(*who);
+    check_interface(*who);
     const coupling::Player* player = coupling::player_of(who->program);
     // Other programs declare their data at the start, but only the project's own programs have the mesh link.
     std::string problem;
@@ -92,7 +92,7 @@ class Cast {
 
   /// Programs whose boundary meets another participant only at patches of type interface need one. A fluid
   /// whose walls move by themselves has no structure.
-  void look_at_interface(const Expected& who) {
+  void check_interface(const Expected& who) {
     if (who.program != "solid_solver" &&
         !(who.program == "fluid_solver" && config::text_of(document_, "coupling.structure.participant")))
       return;
@@ -108,7 +108,7 @@ class Cast {
               who.participant));
   }
 
-  void look_at_exchange() {
+  void check_exchange() {
     const std::string key = "coupling.exchange.participants";
     const auto exchanging = config::texts_of(document_, key);
     for (auto here = exchanging.begin(); here != exchanging.end(); ++here) {
@@ -129,7 +129,7 @@ class Cast {
 
   /// The added mass acts on the change of the velocity over the whole step, but a structure with sub-steps vibrates
   /// within it: a light one diverges.
-  void look_at_sub_steps() {
+  void check_sub_steps() {
     const auto fluid = config::text_of(document_, "coupling.fluid.participant"),
                structure = config::text_of(document_, "coupling.structure.participant");
     const Expected *flow = fluid ? find(*fluid) : nullptr, *body = structure ? find(*structure) : nullptr;
@@ -142,7 +142,7 @@ class Cast {
   }
 
   /// Checks that a fluid and its mesh mover name the same patches: a wall moved by the structure must move.
-  void look_at_moved_walls() {
+  void check_moved_walls() {
     const auto fluid = config::text_of(document_, "coupling.fluid.participant"),
                mover = config::text_of(document_, "coupling.mesh.participant");
     const Expected *moved = fluid ? find(*fluid) : nullptr, *moves = mover ? find(*mover) : nullptr;
@@ -217,7 +217,7 @@ double mass_of(const config::Document& document, const std::string& plate) {
 
 }  // namespace
 
-std::vector<std::string> doubts_of_wall_mass(const config::Document& document) {
+std::vector<std::string> check_wall_mass(const config::Document& document) {
   const auto fluid = config::text_of(document, "coupling.fluid.participant"),
              structure = config::text_of(document, "coupling.structure.participant");
   if (!fluid || !structure) return {};
@@ -253,7 +253,7 @@ class ContactSeat {
     if (has("gap"))
       take(*config::text_of(document_, contact_ + ".gap"), gaps, names);
     else
-      look_beside(gaps, names);
+      search_beside(gaps, names);
     return problems_;
   }
 
@@ -281,7 +281,7 @@ class ContactSeat {
   }
 
   /// Reports a gap and a contact that both specify the seat.
-  void look_beside(const std::string& gaps, const std::vector<std::string>& names) {
+  void search_beside(const std::string& gaps, const std::vector<std::string>& names) {
     for (const std::string& name : names)
       if (config::text_of(document_, gaps + "." + name + ".height"))
         return say("height",

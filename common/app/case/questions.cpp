@@ -141,7 +141,7 @@ std::string problem_of_restart(const CommandLine& command_line, const CaseFile& 
           "--restart {}: the checkpoint has no file {}: the run that wrote it did not include this program.",
           folder.string(), own);
     if (is_coupler || !file.coupled)
-      judge_changes(folder, case_keys(*file.document, command_line.case_file.parent_path()),
+      check_changes(folder, case_keys(*file.document, command_line.case_file.parent_path()),
                     command_line.restart_with_changes);
   } catch (const Error& error) {
     return error.what();

@@ -190,7 +190,7 @@ Listener::Listener(double patience)
       asleep_since_(std::size_t(board.count), 0.),
       work_(std::size_t(board.count)) {}
 
-void Listener::look() {
+void Listener::check() {
   const double t = now();
   // A process that was itself stopped has heard nothing from the others.
   if (t - last_look_ > 1 + 2 * period_) {

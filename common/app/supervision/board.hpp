@@ -103,7 +103,7 @@ class Listener {
 
   /// Ends the job if a process is silent: stopped, or without a sign of life although it is not waiting. The
   /// coupler is named only if no other process can be.
-  void look();
+  void check();
 
  private:
   /// Processor time of a process during long work, and the time of its last increase.

@@ -194,7 +194,7 @@ void Supervisor::limit_silence(double seconds) {
     std::condition_variable_any bell;
     std::unique_lock lock(mutex);
     const std::chrono::duration<double> period(listener.period());
-    while (!bell.wait_for(lock, stop, period, [&] { return stop.stop_requested(); })) listener.look();
+    while (!bell.wait_for(lock, stop, period, [&] { return stop.stop_requested(); })) listener.check();
   });
 }
 

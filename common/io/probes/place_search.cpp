@@ -235,7 +235,7 @@ std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
   return faces;
 }
 
-void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
+void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
   constexpr double smallest = 1e-6, largest = 2e3;  // [m]
   constexpr double corner = 1.0 / 300;              // between sizes in one scene and a confusion of mm and m
   const double size = mesh_size(mesh, points);

@@ -64,6 +64,6 @@ class PlaceSearch {
 
 /// Warns about a mesh in millimeters that is read in meters. It judges the mesh size, or whether all `places`
 /// of the YAML (probes) lie within 1/300 of it. Collective.
-void doubt_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places);
+void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places);
 
 }  // namespace couplet::io

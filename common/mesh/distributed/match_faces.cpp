@@ -186,7 +186,7 @@ void throw_face_faults(MPI_Comm comm, const MeshBlock& block, const std::vector<
 namespace {
 
 /// Logs the number of boundary faces without a name and where some are. Collective.
-void tell_unnamed(MPI_Comm comm, const MeshBlock& block, std::span<const FaceSide> unnamed) {
+void warn_unnamed(MPI_Comm comm, const MeshBlock& block, std::span<const FaceSide> unnamed) {
   const GlobalIndex n = parallel::sum(comm, GlobalIndex(unnamed.size()));
   if (n == 0) return;
   std::vector<FaceFault> first;
@@ -250,7 +250,7 @@ MatchedFaces match_faces(MPI_Comm comm, const MeshBlock& block, const std::vecto
   const auto at_cell = [&](const FaceSide& s) { return block.cell_shares.rank_of(s.cell); };
   matched.unnamed = parallel::exchange(comm, parallel::sort_by_rank(comm, meeting.unnamed, at_cell)).items;
   std::ranges::sort(matched.unnamed, {}, [](const FaceSide& s) { return std::pair(s.cell, s.face); });
-  tell_unnamed(comm, block, matched.unnamed);
+  warn_unnamed(comm, block, matched.unnamed);
   return matched;
 }
 

@@ -109,7 +109,7 @@ TEST(EnergyGuard, the_work_on_a_fluid_that_is_pushed_through_is_its_kinetic_ener
         given ? boundary(BoundaryType::inlet, {"2*t", "0"}) : boundary(BoundaryType::outlet);
     FluidCase<2> c(MPI_COMM_WORLD, box(8), p);
     for (int i = 0; i < 40; ++i) c.step(0.025);
-    const EnergyLedger& ledger = c.state().ledger;
+    const EnergySums& ledger = c.state().ledger;
     EXPECT_NEAR(ledger.energy, 0.5 * 1.3 * 4, 1e-6);
     EXPECT_NEAR(ledger.work, ledger.energy, 0.02 * ledger.energy) << given;
   }

@@ -30,7 +30,7 @@ void declare(config::Section& s, Quantities& q) {
   s.value("load", q.load).unit("Pa", 1, 1e9);
   s.value("hot", q.hot).unit("K", 70, 5000);
   s.value("traction", q.traction).unit("Pa", 1, 1e9);
-  s.doubt([&q] { return config::doubt_of_wave_speed(q.modulus, q.density); }, "density");
+  s.doubt([&q] { return config::check_wave_speed(q.modulus, q.density); }, "density");
 }
 
 struct Judged {
@@ -133,16 +133,16 @@ TEST(Quantities, pairs_are_judged_where_each_alone_is_usual_and_nothing_is_wrong
       judge("density: 7.85\nmodulus: 210 GPa").doubts,
       ElementsAre(HasSubstr("density: waves would travel at 1.64e+05 m/s (usual: 0.2 to 20000 m/s)")));
   EXPECT_THAT(judge("density: 7850\nmodulus: 210 GPa").doubts, IsEmpty());
-  EXPECT_THAT(config::doubt_of_wave_speed(210, 7850), HasSubstr("0.164 m/s"));
-  EXPECT_EQ(config::doubt_of_wave_speed(100, 1000), "");  // a gel
+  EXPECT_THAT(config::check_wave_speed(210, 7850), HasSubstr("0.164 m/s"));
+  EXPECT_EQ(config::check_wave_speed(100, 1000), "");  // a gel
   EXPECT_THAT(judge("density: 7.85\nmodulus: 210 kg").doubts, IsEmpty());
 }
 
 TEST(Quantities, kinematic_viscosity_in_place_of_the_dynamic_one_is_found) {
-  EXPECT_THAT(config::doubt_of_kinematic_viscosity(1e-6, 1000), HasSubstr("would be 0.001 Pa s"));
-  EXPECT_EQ(config::doubt_of_kinematic_viscosity(1e-3, 1000), "");
-  EXPECT_EQ(config::doubt_of_kinematic_viscosity(1.5e-3, 13500), "");  // mercury
-  EXPECT_EQ(config::doubt_of_kinematic_viscosity(0, 1000), "");        // no friction at all
+  EXPECT_THAT(config::check_kinematic_viscosity(1e-6, 1000), HasSubstr("would be 0.001 Pa s"));
+  EXPECT_EQ(config::check_kinematic_viscosity(1e-3, 1000), "");
+  EXPECT_EQ(config::check_kinematic_viscosity(1.5e-3, 13500), "");  // mercury
+  EXPECT_EQ(config::check_kinematic_viscosity(0, 1000), "");        // no friction at all
 }
 
 TEST(Quantities, the_reference_and_the_schema_show_the_contract) {

@@ -72,8 +72,8 @@ TEST(Pencil, bounds_the_least_quotient_from_above_and_passes_failures_on) {
 TEST(NegativeCurvature, is_met_where_there_is_one_and_nowhere_else) {
   const LinearMap same = diagonal([](double) { return 1; });
   const auto look = [&](double least) {
-    return look_for_negative_curvature(MPI_COMM_WORLD, diagonal([least](double i) { return i + least; }),
-                                       same, any_start(), 1e-6, 500);
+    return find_negative_curvature(MPI_COMM_WORLD, diagonal([least](double i) { return i + least; }), same,
+                                   any_start(), 1e-6, 500);
   };
   EXPECT_FALSE(look(0.5).is_negative);
   const Curvature found = look(-0.5);

@@ -349,7 +349,7 @@ TEST(PlateGuards, a_direction_may_have_any_length) {
     p.contact->starts_inside = true;
     Structure plate(p, PlateContext{}, &raw);
     Contact::ContactResult seat;
-    plate.contact()->look(plate.state().q, seat);
+    plate.contact()->find(plate.state().q, seat);
     return seat.total;
   };
   EXPECT_GT(force(1), 0);

@@ -155,7 +155,7 @@ TEST(Weather, sun_at_night_is_doubted_without_a_site) {
     WeatherHours record;
     for (int d = 0; d < 10; ++d)
       for (int h = 0; h < 24; ++h) record.dni.push_back((h - first + 24) % 24 < hours ? 800 : 0);
-    return doubts_about_sun(record).size();
+    return check_sun(record).size();
   };
   EXPECT_EQ(doubts(6, 12), 0u);
   EXPECT_EQ(doubts(4, 17), 0u) << "a summer far in the north";
