@@ -501,8 +501,9 @@ def findings():
 def write(args):
     found = json.loads((args.build / "ablation.json").read_text())
     every = list(found.values())
+    unknown = [name for name, one in found.items() if one["with"] is None]
     n_golden, spoken, silent = findings()
-    version = text_of("git", "-C", ROOT, "describe", "--always").strip()
+    version = text_of("git", "-C", ROOT, "rev-parse", "--short=8", "HEAD").strip()
     runs = ["| run | part | estimate | truth | estimate over the truth |", "|---|---|---|---|---|"]
     runs += [f"| {name} | {one['part']} | {one['with'] if one['with'] is None else format(one['with'], '.3g')} | {one['truth']:.3g} | "
              f"{'-' if one['with'] is None else format(one['with'] / one['truth'], '.2f')} |" for name, one in found.items()]
@@ -513,8 +514,8 @@ published values, or the same case with a fine mesh or step. The estimate is the
 in all runs of its program. {coverage(every)} of {len(every)} estimates are within a factor of 2 of the truth, {sum(is_near(one['with'], one['truth'], 3) for one in every)} within 3.
 
 The truth is the error of a displacement, drag or profile, the estimate that of the whole field in a norm, so a factor between them is expected; the table shows what an estimator adds.
-Special situations have two or three runs each, so the coverage here is lower than that of the [studies](studies/README.md), and few estimators move it by three points (three runs). None was
-deleted: the last column says for what. Times were taken beside other processes and are good to a point or two.
+Special situations have two or three runs each, so the coverage here is lower than that of the [studies](studies/README.md), and few estimators move it by three points (three runs): those
+that do not are the only ones of their part, as the last column says. {len(unknown)} runs have no estimate: {'; '.join(unknown)}. Times were taken beside other processes and are good to a point or two.
 
 ## Estimators
 

@@ -37,7 +37,7 @@ class GivenStep final : public diagnostics::Diagnostic {
  private:
   bool grows() const {
     const EnergySums& ledger = view_.fluid.state().ledger;
-    return ledger.is_evaluated() && ledger.excess > shown * ledger.reference;
+    return ledger.is_known() && ledger.excess > shown * ledger.reference;
   }
   void doubt(diagnostics::Report& report) {
     if (is_told_) return;
@@ -180,7 +180,7 @@ template diagnostics::Made ringing_pressure(const FluidView<3>&);
 template <int D>
 std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
   const EnergySums& ledger = view.fluid.state().ledger;
-  if (!ledger.is_evaluated()) return {};
+  if (!ledger.is_known()) return {};
   const double excess = ledger.excess / ledger.reference;
   return diagnostics::finding_of(
       {.effect = "balance of the kinetic energy",

@@ -217,7 +217,7 @@ struct EnergySums {
     numbers(energy, largest, excess, reference, level, work);
   }
   /// False if the energy is at round-off relative to the largest so far.
-  bool is_evaluated() const { return energy > 1e-10 * largest && reference > 0; }
+  bool is_known() const { return energy > 1e-10 * largest && reference > 0; }
 };
 
 /// Complete input of the next step: level n and the history of the multi-step schemes.

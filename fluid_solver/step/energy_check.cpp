@@ -164,7 +164,7 @@ EnergyChange EnergyCheck<D>::evaluate(const EnergyStep<D>& s) const {
   if (j.ledger.excess > reported_excess * j.ledger.reference && sums[energy] <= energy_at_rest(s))
     j.ledger.excess = 0;
   j.out_of_bounds =
-      j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference && j.ledger.is_evaluated();
+      j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference && j.ledger.is_known();
   return j;
 }
 

@@ -157,7 +157,7 @@ struct Loaded {
   FluidParameters parameters;
   std::vector<Vec3> after;
   Scene<D> scene;
-  Step<D> step;
+  FluidStep<D> step;
   Prediction<D> prediction;
   Projected<D> projected;
   Loads<D> loads;

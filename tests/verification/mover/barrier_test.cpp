@@ -37,7 +37,7 @@ Eigen::Matrix<double, D, D> apply(const typename Distortion<D>::Tangent& t,
 template <int D>
 Eigen::Matrix<double, D, D> apply(const Eigen::Matrix<double, D, D>& f,
                                   const Eigen::Matrix<double, D, D>& g) {
-  const typename Distortion<D>::Curvature blocks(f, Eigen::Matrix<double, D, D>::Identity());
+  const typename Distortion<D>::SecondDerivative blocks(f, Eigen::Matrix<double, D, D>::Identity());
   Eigen::Matrix<double, D, D> change = Eigen::Matrix<double, D, D>::Zero();
   for (int k = 0; k < D; ++k)
     for (int l = 0; l < D; ++l) change.col(k) += blocks(k, l) * g.col(l);

@@ -72,7 +72,7 @@ def response(job, reduced):
 
     def make():
         out = job.scratch / f"lock-in-{reduced}"
-        out.mkdir()
+        out.mkdir(exist_ok=True)
         stiffness = 2 * (2 * math.pi / reduced) ** 2
         environment = {
             **job.environment,
