@@ -197,7 +197,9 @@ void run_gmsh(const std::vector<std::string>& options, const fs::path& source, b
   std::vector<std::string> command{"gmsh", "-nopopup", "-format", "msh41", "-v", "2"};
   command.insert(command.end(), options.begin(), options.end());
   command.insert(command.end(), {"-o", mesh.string()});
-  command.push_back(trusted ? read.string() : including(read, folder.path()).string());
+  if (const std::string own = read.string() + ".opt"; trusted && fs::exists(own))
+    command.insert(command.end(), {"-option", own});
+  command.push_back(including(read, folder.path()).string());
   const ProgramEnd end = trusted ? run_trusted(command, log)
                                  : run_in_sandbox(command, folder.path(), log, {place, fs::canonical(read)});
   const std::string errors = complaints(read_log(log));

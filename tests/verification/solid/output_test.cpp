@@ -1,24 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/support/csv.hpp"
 #include "tests/support/observed_run.hpp"
 #include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing::output_test {
 using namespace mesh;
-
-std::vector<std::string> lines_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
-std::vector<double> numbers_of(const std::string& line) {
-  std::vector<double> numbers;
-  std::istringstream in(line);
-  for (std::string word; std::getline(in, word, ',');) numbers.push_back(std::stod(word));
-  return numbers;
-}
 
 /// A sheet pulled by 100 MPa * t in plane stress between symmetry planes: u = (s x, -0.3 s y), s = sigma / E.
 SolidParameters pulled_sheet() {
@@ -44,37 +31,27 @@ TEST(SolidOutput, probes_and_reactions_hold_the_displacement_and_the_balance_of_
   }
   MPI_Barrier(MPI_COMM_WORLD);
   if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
-  const auto probes = lines_of(folder.path() / "probes.csv");
-  ASSERT_EQ(probes.size(), 4u);
-  EXPECT_EQ(probes[0], "time [s],corner x [m],corner y [m],inside x [m],inside y [m]");
+  const support::Csv probes(folder.path() / "probes.csv");
+  ASSERT_EQ(probes.rows.size(), 3u);
+  EXPECT_EQ(probes.header, "time [s],corner x [m],corner y [m],inside x [m],inside y [m]");
   const double s = 3e8 / 200e9;
   const std::vector<double> expected{3, 2 * s, -0.3 * s, 0.731 * s, -0.3 * 0.377 * s};
-  const std::vector<double> last = numbers_of(probes[3]);
+  const std::vector<double> last = probes.rows[2];
   ASSERT_EQ(last.size(), expected.size());
   for (std::size_t i = 0; i < last.size(); ++i) EXPECT_NEAR(last[i], expected[i], 1e-12);
 
-  const auto reactions = lines_of(folder.path() / "reactions.csv");
-  ASSERT_EQ(reactions.size(), 4u);
-  EXPECT_EQ(reactions[0], "time [s],xmin x [N],xmin y [N],ymin x [N],ymin y [N],load x [N],load y [N]");
-  const std::vector<double> forces = numbers_of(reactions[3]);
+  const support::Csv reactions(folder.path() / "reactions.csv");
+  ASSERT_EQ(reactions.rows.size(), 3u);
+  EXPECT_EQ(reactions.header, "time [s],xmin x [N],xmin y [N],ymin x [N],ymin y [N],load x [N],load y [N]");
+  const std::vector<double> forces = reactions.rows[2];
   EXPECT_NEAR(forces[1], -3e8, 1);
   EXPECT_NEAR(forces[5], 3e8, 1);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "solid.xdmf"));
 
-  const auto solver = lines_of(folder.path() / "solver.csv");
-  ASSERT_EQ(solver.size(), 4u);
-  EXPECT_EQ(solver[0], "time [s],solves,iterations,inner iterations,residual");
-  EXPECT_EQ(numbers_of(solver[3])[1], 1);
-}
-
-/// Column of probes.csv by its head, last row.
-double last_of(const std::vector<std::string>& lines, const std::string& head) {
-  std::vector<std::string> names;
-  std::istringstream in(lines.front());
-  for (std::string word; std::getline(in, word, ',');) names.push_back(word);
-  const auto found = std::ranges::find(names, head);
-  if (found == names.end()) throw std::runtime_error("no column '" + head + "' in " + lines.front());
-  return numbers_of(lines.back()).at(std::size_t(found - names.begin()));
+  const support::Csv solver(folder.path() / "solver.csv");
+  ASSERT_EQ(solver.rows.size(), 3u);
+  EXPECT_EQ(solver.header, "time [s],solves,iterations,inner iterations,residual");
+  EXPECT_EQ(solver.rows[2][1], 1);
 }
 
 TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them) {
@@ -91,19 +68,19 @@ TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them
   }
   MPI_Barrier(MPI_COMM_WORLD);
   if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
-  const auto lines = lines_of(folder.path() / "probes.csv");
+  const auto probes = support::Csv(folder.path() / "probes.csv").columns();
   for (const std::string probe : {"corner", "inside"}) {
     const double x = probe == "corner" ? 2 : 0.731;
-    EXPECT_NEAR(last_of(lines, probe + " velocity x [m/s]"), x * 1e8 / 200e9, 1e-12);
-    EXPECT_NEAR(last_of(lines, probe + " stress-xx [Pa]"), 2e8, 1);
-    EXPECT_NEAR(last_of(lines, probe + " stress-yy [Pa]"), 0, 1);
-    EXPECT_NEAR(last_of(lines, probe + " stress-zz [Pa]"), 0, 1e-6);
-    EXPECT_NEAR(last_of(lines, probe + " stress-xy [Pa]"), 0, 1);
-    EXPECT_NEAR(last_of(lines, probe + " strain-xx [-]"), 1e-3, 1e-11);
-    EXPECT_NEAR(last_of(lines, probe + " strain-yy [-]"), -3e-4, 1e-11);
-    EXPECT_NEAR(last_of(lines, probe + " equivalent-stress [Pa]"), 2e8, 1);
-    EXPECT_NEAR(last_of(lines, probe + " principal-stress-1 [Pa]"), 2e8, 1);
-    EXPECT_NEAR(last_of(lines, probe + " principal-stress-3 [Pa]"), 0, 1);
+    EXPECT_NEAR(probes.at(probe + " velocity x [m/s]").back(), x * 1e8 / 200e9, 1e-12);
+    EXPECT_NEAR(probes.at(probe + " stress-xx [Pa]").back(), 2e8, 1);
+    EXPECT_NEAR(probes.at(probe + " stress-yy [Pa]").back(), 0, 1);
+    EXPECT_NEAR(probes.at(probe + " stress-zz [Pa]").back(), 0, 1e-6);
+    EXPECT_NEAR(probes.at(probe + " stress-xy [Pa]").back(), 0, 1);
+    EXPECT_NEAR(probes.at(probe + " strain-xx [-]").back(), 1e-3, 1e-11);
+    EXPECT_NEAR(probes.at(probe + " strain-yy [-]").back(), -3e-4, 1e-11);
+    EXPECT_NEAR(probes.at(probe + " equivalent-stress [Pa]").back(), 2e8, 1);
+    EXPECT_NEAR(probes.at(probe + " principal-stress-1 [Pa]").back(), 2e8, 1);
+    EXPECT_NEAR(probes.at(probe + " principal-stress-3 [Pa]").back(), 0, 1);
   }
 }
 
@@ -126,9 +103,9 @@ TEST(SolidOutput, acceleration_of_a_driven_block_is_that_of_its_support) {
   MPI_Barrier(MPI_COMM_WORLD);
   if (parallel::comm_rank(MPI_COMM_WORLD) != 0) return;
   const double expected = -1e-3 * 2500 * std::sin(50 * solid.stepper().state().time);
-  const auto lines = lines_of(folder.path() / "probes.csv");
-  EXPECT_NEAR(last_of(lines, "support acceleration y [m/s^2]") / expected, 1, 1e-4);
-  EXPECT_NEAR(last_of(lines, "inside acceleration y [m/s^2]") / expected, 1, 0.01);
+  const auto probes = support::Csv(folder.path() / "probes.csv").columns();
+  EXPECT_NEAR(probes.at("support acceleration y [m/s^2]").back() / expected, 1, 1e-4);
+  EXPECT_NEAR(probes.at("inside acceleration y [m/s^2]").back() / expected, 1, 0.01);
 }
 
 // The stress at a point comes from cells and boundary faces; at a symmetry plane from their mirror images
