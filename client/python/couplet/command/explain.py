@@ -4,21 +4,14 @@ line. Runs nothing."""
 import shlex
 
 from couplet.command import check
-from couplet.command.run import build_of, pairs
+from couplet.command.run import build_of, declare_guests, pairs
 from couplet.runs.case import Case
 from couplet.runs.job import Job
 
 
 def declare(parser):
     check.declare(parser)
-    parser.add_argument(
-        "--with",
-        dest="played_by",
-        action="append",
-        default=[],
-        metavar="NAME=COMMAND",
-        help="command of an external participant in the launch line",
-    )
+    declare_guests(parser, "command of an external participant in the launch line")
     parser.add_argument("--all", action="store_true", help="also lists neglected effects and the keys that enable them")
 
 

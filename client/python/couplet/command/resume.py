@@ -7,7 +7,7 @@ import shlex
 import subprocess
 import sys
 
-from couplet.command.run import RANKS_HELP, build_of, pairs, ranks_of, shown_run
+from couplet.command.run import RANKS_HELP, build_of, declare_guests, pairs, ranks_of, shown_run
 from couplet.runs import folder as folders
 from couplet.runs.case import OURS, Case, expect
 from couplet.runs.job import Job, surroundings
@@ -27,13 +27,9 @@ def declare(parser):
         metavar="a.b=v",
         help="changes a value, such as simulation.end-time='10 s'",
     )
-    parser.add_argument(
-        "--with",
-        dest="played_by",
-        action="append",
-        default=[],
-        metavar="NAME=COMMAND",
-        help=(
+    declare_guests(
+        parser,
+        (
             "command that starts an external participant; give it again, because a resumed run starts only programs of"
             " Couplet"
         ),

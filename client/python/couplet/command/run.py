@@ -18,18 +18,15 @@ RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divide
 FLAGS = {"strict": "fails if the run warns about its own result; --strict=effects: also about neglected effects"}
 
 
+def declare_guests(parser, what):
+    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help=what)
+
+
 def declare_job(parser, ranks_help):
     parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help=ranks_help)
     parser.add_argument("--participant", metavar="NAME", help="runs only this participant")
-    parser.add_argument(
-        "--with",
-        dest="played_by",
-        action="append",
-        default=[],
-        metavar="NAME=COMMAND",
-        help="command that starts an external participant",
-    )
+    declare_guests(parser, "command that starts an external participant")
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="folder that contains the programs")
     options_of_programs(parser)
 

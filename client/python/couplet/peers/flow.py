@@ -8,30 +8,13 @@ from couplet import files
 from couplet.peers import mesh
 from couplet.peers.foam_files import PolyMesh, foam_environment, last_time, one, put, read_field, read_rows, values
 from couplet.peers.results import write_fields, write_table
-from couplet.peers.values import depends_on_time, field, number, only, refuse, settled, vector
+from couplet.peers.values import EVERYWHERE, depends_on_time, field, number, only, refuse, settled, vector
 
 PROGRAMS = ("icoFoam", "pimpleFoam")
-HERE = {
-    "program",
-    "mesh",
-    "mesh-scale",
-    "mesh-parameters",
-    "dimension",
-    "density",
-    "viscosity",
-    "boundaries",
-    "initial-velocity",
-    "initial-pressure",
-    "compressibility",
-    "probes",
-    "output",
-    "statistics",
-    "time-step",
-    "safety-factor",
-    "viscous",
-    "implicit-stretch",
-    "pressure-tolerance",
-}  # these affect how it is solved, not what
+HERE = EVERYWHERE | set("density viscosity initial-velocity initial-pressure compressibility statistics".split())
+HERE |= set(
+    "time-step safety-factor viscous implicit-stretch pressure-tolerance".split()
+)  # of no effect on what is solved
 MOVING = {"velocity", "ramp"}
 PATCHES = {
     "inlet": MOVING | {"mean-speed", "profile"},

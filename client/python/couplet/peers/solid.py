@@ -5,34 +5,10 @@ import dataclasses
 import numpy as np
 
 from couplet.peers import elements, mesh
-from couplet.peers.values import field, number, only, refuse, settled, vector
+from couplet.peers.values import EVERYWHERE, field, number, only, refuse, settled, vector
 
-HERE = {
-    "program",
-    "mesh",
-    "mesh-scale",
-    "mesh-parameters",
-    "dimension",
-    "plane",
-    "analysis",
-    "kinematics",
-    "material",
-    "boundaries",
-    "gravity",
-    "solution-method",
-    "probes",
-    "output",
-    "time-scheme",
-}  # the last ones affect how it is solved, not what
-MATERIAL = {
-    "density",
-    "youngs-modulus",
-    "poissons-ratio",
-    "yield-strength",
-    "conductivity",
-    "specific-heat",
-    "expansion",
-}
+HERE = EVERYWHERE | set("plane analysis kinematics material gravity solution-method time-scheme".split())
+MATERIAL = set("density youngs-modulus poissons-ratio yield-strength conductivity specific-heat expansion".split())
 PATCHES = {
     "free": set(),
     "fixed-displacement": {"value", "components", "traction"},

@@ -9,26 +9,12 @@ from couplet.study.axes import evaluate
 
 BASE = {"g": 1e-3, "m": 1, "l": 1e-3, "s": 1, "N": 1, "Pa": 1, "bar": 1e5, "J": 1, "W": 1, "Wh": 3600, "K": 1, "Hz": 1}
 WHOLE = {"kg": 1, "t": 1e3, "min": 60, "h": 3600, "day": 86400, "rad": 1, "deg": np.pi / 180, "%": 0.01, "1": 1}
+# Keys of a participant that any program has, or that say how it is solved and written.
+EVERYWHERE = set("program mesh mesh-scale mesh-parameters dimension boundaries probes output".split())
 PREFIX = {"G": 1e9, "M": 1e6, "k": 1e3, "h": 1e2, "d": 1e-1, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "n": 1e-9}
 QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\D.*)?")
 FUNCTIONS = {
-    name: getattr(np, name)
-    for name in (
-        "sin",
-        "cos",
-        "tan",
-        "sinh",
-        "cosh",
-        "tanh",
-        "exp",
-        "log",
-        "log10",
-        "log2",
-        "sqrt",
-        "abs",
-        "sign",
-        "rint",
-    )
+    name: getattr(np, name) for name in "sin cos tan sinh cosh tanh exp log log10 log2 sqrt abs sign rint".split()
 }
 FUNCTIONS |= {
     "asin": np.arcsin,
