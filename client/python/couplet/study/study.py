@@ -117,13 +117,13 @@ class Study:
         report = Report(f"Study: {self.title}")
         if self.section.get("text"):
             report.text(str(self.section["text"]).strip())
-        where = machine()
+        where, asked = machine(), self.case.asked.resolve()
         versions = sorted({r.record.version for r in rows})
         report.text(
             f"{len(rows)} runs, {sum(not r.good for r in rows)} of them failed. Measured at {', '.join(versions)} on"
             f" {where['processor']}, {where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table:"
             " `runs.csv`. Repeat with `couplet study"
-            f" {self.case.file.relative_to(ROOT) if self.case.file.is_relative_to(ROOT) else self.case.file.name}`."
+            f" {asked.relative_to(ROOT) if asked.is_relative_to(ROOT) else asked.name}`."
         )
         others = self.others(peers)
         for name, reason in (why or {}).items():
