@@ -16,8 +16,8 @@
 #include "common/linalg/petsc.hpp"
 #include "common/mesh/load.hpp"
 #include "solid_solver/body/method_choice.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 #include "solid_solver/method/mixed_form.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/solid.hpp"
 
 namespace couplet::benchmark {
@@ -137,7 +137,7 @@ Result by_krylov(const System& system, const SolidBody& body, const std::string&
   return result;
 }
 
-/// Like NewtonKrylov, with PETSc's preconditioner instead of the multigrid cycle.
+/// Like ConjugateGradients, with PETSc's preconditioner instead of the multigrid cycle.
 Result by_cycle(const System& system, const SolidBody& body, const std::string& options) {
   Result result;
   const SolidProblem problem = problem_of(body);

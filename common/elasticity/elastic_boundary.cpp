@@ -16,7 +16,7 @@ BoundaryRow fixed_row() { return support_row(Tensor3::Identity(), Tensor3::Zero(
 
 BoundaryRow support_row(const Tensor3& known, const Tensor3& spring) {
   BoundaryRow row;
-  row.known = row.passing = known;
+  row.known = row.transmitted = known;
   row.spring = spring;
   row.fixed = known == Tensor3::Identity();
   row.held = !known.isZero(0);
@@ -31,7 +31,7 @@ BoundaryRow mirror_row() {
 
 BoundaryRow level_row() {
   BoundaryRow row;
-  row.passing = Tensor3::Identity();
+  row.transmitted = Tensor3::Identity();
   row.level = true;
   return row;
 }
@@ -48,12 +48,12 @@ ElasticBoundary ElasticBoundary::on(const mesh::Mesh& mesh, const mesh::Geometry
     BoundaryRow row = (*this)[b];
     if (mesh.patches[patch_of[b]].bonded) {
       row = {};
-      row.passing = Tensor3::Identity();
+      row.transmitted = Tensor3::Identity();
       row.shared = true;
     }
     if (row.mirrored) {
       const Vec3 n = geometry.face_area[mesh.n_interior + b].normalized();
-      row.known = row.passing = n * n.transpose();
+      row.known = row.transmitted = n * n.transpose();
     }
     result.add(row);
   }

@@ -18,7 +18,7 @@ struct BoundaryRow {
   Tensor3 known = Tensor3::Zero();   ///< P, symmetric: 0 free, I fixed, n n^T for a support normal to a plane
   Tensor3 spring = Tensor3::Zero();  ///< k, symmetric [N/m^3]
   /// R: the cell receives R sigma . n and (I - R) T. R is P, or I if the face is level or shared.
-  Tensor3 passing = Tensor3::Zero();
+  Tensor3 transmitted = Tensor3::Zero();
   bool fixed = false;     ///< P = I: no unknown
   bool held = false;      ///< P is not 0
   bool mirrored = false;  ///< no unknown: the neighbor across the face is the cell's mirror image
@@ -27,7 +27,7 @@ struct BoundaryRow {
   bool operator==(const BoundaryRow&) const = default;
 
   /// Returns true if the force on the face is known completely.
-  bool is_free() const { return !mirrored && passing.isZero(0) && spring.isZero(0); }
+  bool is_free() const { return !mirrored && transmitted.isZero(0) && spring.isZero(0); }
   /// Returns true if the face has a known vector g.
   bool has_value() const { return !mirrored && (held || !spring.isZero(0)); }
 };

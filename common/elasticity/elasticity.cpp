@@ -103,7 +103,7 @@ void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, BlockRo
       continue;
     }
     const BoundaryRow& here = at(f);
-    if (!here.passing.isZero(0)) add_flux(f, out * here.passing, row);
+    if (!here.transmitted.isZero(0)) add_flux(f, out * here.transmitted, row);
     if (here.spring.isZero(0)) continue;
     const Tensor3 held = -out * (Tensor3::Identity() - here.known) * here.spring;
     add_face_node(f, held, row);
@@ -258,7 +258,7 @@ Vec3 ElasticOperator::add_forces(std::span<const double> forces, std::span<doubl
   for (std::size_t i = 0; i < unknown_faces_.size(); ++i) {
     const Index f = unknown_faces_[i];
     Vec3 force = vector_at(forces, f - mesh_->n_interior, dim);
-    force -= (at(f).passing * force).eval();
+    force -= (at(f).transmitted * force).eval();
     total += force;
     for (int a = 0; a < dim; ++a) {
       rhs[std::size_t(mesh_->owner[f]) * dim + a] += force[a];
@@ -280,7 +280,7 @@ void ElasticOperator::add_pressure(std::span<const double> pressure, std::span<d
     if (mesh_->neighbour[f] < n_owned) add(mesh_->neighbour[f], force(f));
   }
   for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f) {
-    if (!at(f).passing.isZero(0)) add(mesh_->owner[f], at(f).passing * -force(f));
+    if (!at(f).transmitted.isZero(0)) add(mesh_->owner[f], at(f).transmitted * -force(f));
   }
   for (std::size_t i = 0; i < unknown_faces_.size(); ++i) {
     const Index f = unknown_faces_[i], row = n_owned + static_cast<Index>(i);
@@ -288,7 +288,7 @@ void ElasticOperator::add_pressure(std::span<const double> pressure, std::span<d
     if (at(f).shared)
       add(row, here + force(mesh_->n_interior + mesh_->twin[f - mesh_->n_interior]));
     else
-      add(row, here - at(f).passing * here);
+      add(row, here - at(f).transmitted * here);
   }
 }
 
@@ -319,7 +319,7 @@ Vec3 ElasticOperator::holding_force(Index face, const Tensor3& stress, std::span
   const Vec3 force = stress * geometry_->face_area[face];
   const BoundaryRow& row = at(face);
   if (row.shared) return Vec3::Zero();
-  const Vec3 held = row.passing * force;
+  const Vec3 held = row.transmitted * force;
   if (row.spring.isZero(0)) return held;
   const Vec3 stretch = vector_at(faces, face - mesh_->n_interior, mesh_->dim) -
                        vector_at(known, known_of_face(face), mesh_->dim);

@@ -8,8 +8,8 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 #include "solid_solver/method/mixed_form.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
 #include "solid_solver/thesis/block_coupled.hpp"
 #include "solid_solver/thesis/segregated.hpp"
 
@@ -92,7 +92,7 @@ std::unique_ptr<SolutionMethod> by_factors(const SolidProblem& problem, MethodPa
     return {};
   if (!factor_cost(problem.mesh, problem.geometry(), heaviness(problem)).fits()) return {};
   parameters.preconditioner = Preconditioner::factors;
-  return std::make_unique<NewtonKrylov>(problem, parameters);
+  return std::make_unique<ConjugateGradients>(problem, parameters);
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
   else if (parameters.preconditioner == Preconditioner::mixed)
     method = std::make_unique<MixedForm>(problem, parameters);
   else
-    method = std::make_unique<NewtonKrylov>(problem, parameters);
+    method = std::make_unique<ConjugateGradients>(problem, parameters);
   const bool is_iteration = parameters.type == MethodType::newton_krylov && !problem.project &&
                             parameters.preconditioner != Preconditioner::factors;
   const bool was_left = asked.preconditioner == Preconditioner::automatic;

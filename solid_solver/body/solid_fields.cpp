@@ -131,7 +131,7 @@ std::vector<SurfaceTraction> SolidFields::known_tractions() const {
     SurfaceTraction& known = result[b];
     const elastic::BoundaryRow& row = elastic_.at(f);
     if (row.is_free() && !body_.boundaries().knows_traction(f)) continue;
-    if (row.spring.isZero(0)) known.projector = Tensor3::Identity() - row.passing;
+    if (row.spring.isZero(0)) known.projector = Tensor3::Identity() - row.transmitted;
     known.symmetry = row.mirrored;
     if (row.mirrored || row.fixed || row.level || row.shared) continue;
     Vec3 force = Vec3::Zero();

@@ -18,7 +18,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/boundary/checks.hpp"
 #include "solid_solver/diagnostics/neglected.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 
 namespace couplet::solid {
 namespace {

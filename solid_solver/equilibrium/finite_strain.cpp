@@ -14,7 +14,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/equilibrium/large_strain.hpp"
 #include "solid_solver/laws/laws.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 #include "solid_solver/method/solution_method.hpp"
 
 namespace couplet::solid {

@@ -16,7 +16,7 @@
 #include "common/modes/pencil.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/equilibrium/finite_strain.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 
 namespace couplet::solid {
 

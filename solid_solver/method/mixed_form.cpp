@@ -11,7 +11,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 
 namespace couplet::solid {
 

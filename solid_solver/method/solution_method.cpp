@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 
 namespace couplet::solid {
 

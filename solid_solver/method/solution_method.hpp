@@ -90,7 +90,7 @@ struct FactorCost {
 };
 
 /// Estimates the cost from the mesh. Nested dissection gives N log2 N entries in 2-D [george1973], and
-/// N (N/l)^(1/3) for a body of aspect ratio l; N: row blocks. `heaviness`: see newton_krylov.hpp. Collective.
+/// N (N/l)^(1/3) for a body of aspect ratio l; N: row blocks. `heaviness`: see conjugate_gradients.hpp. Collective.
 FactorCost factor_cost(const mesh::Mesh& mesh, const mesh::Geometry& geometry, double heaviness);
 
 }  // namespace couplet::solid

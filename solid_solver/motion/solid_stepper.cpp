@@ -12,7 +12,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 #include "solid_solver/thesis/updated_lagrangian.hpp"
 
 namespace couplet::solid {

@@ -11,7 +11,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/body/method_choice.hpp"
 #include "solid_solver/equilibrium/load_path.hpp"
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 
 namespace couplet::solid {

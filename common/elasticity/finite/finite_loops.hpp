@@ -4,7 +4,7 @@
 #include <span>
 
 #include "common/elasticity/finite/finite_places.hpp"
-#include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/face_groups.hpp"
 
 /// Loops of FiniteKernel over faces of one material, four at a time.
 namespace couplet::elastic::finite {

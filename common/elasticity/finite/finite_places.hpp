@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/elasticity/finite/finite_strain.hpp"
-#include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/face_groups.hpp"
 
 /// Plane stress: the stretch l = F_33 normal to the sheet follows from P_33 = dW/dl = 0 at each location.
 /// In-plane forces are those of W(F, l(F)). Their derivative is condensed:

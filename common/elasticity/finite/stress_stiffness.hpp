@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/face_groups.hpp"
 #include "common/elasticity/symmetric/surface_pressure.hpp"
 
 namespace couplet::elastic {

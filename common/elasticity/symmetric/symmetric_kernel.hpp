@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/elasticity/elastic_kernel.hpp"
-#include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/face_groups.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 
 namespace couplet::elastic {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/face_groups.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_space.hpp"
 #include "common/fv/vertex_interpolation.hpp"

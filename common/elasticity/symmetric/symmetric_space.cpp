@@ -217,7 +217,7 @@ void SymmetricSpace::spread_around(Index f, const Vec3& force_on_base) {
 
 /// Adds the differences from an even force at the corners of a face, and the opposite of their sum at its node.
 void SymmetricSpace::spread_within(Index f, std::span<const double> of_corners) {
-  const Tensor3 taken = Tensor3::Identity() - rows_.at(f).passing;
+  const Tensor3 taken = Tensor3::Identity() - rows_.at(f).transmitted;
   const double ring = is_axisymmetric(rows_) ? circumference(geometry_.face_centre[f][0]) : 1;
   const auto points = mesh_.face_points[f];
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -233,7 +233,7 @@ void SymmetricSpace::spread_face_forces(std::span<const double> forces) {
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index b = f - mesh_.n_interior;
     Vec3 here = vector_at(forces, b, mesh_.dim);
-    if (!here.isZero(0)) here -= (rows_.at(f).passing * here).eval();
+    if (!here.isZero(0)) here -= (rows_.at(f).transmitted * here).eval();
     if (rows_.mirrored(f)) continue;
     if (forces.size() > n_whole)
       spread_within(f, forces.subspan(n_whole + std::size_t(b) * n_within, n_within));
@@ -286,7 +286,7 @@ Vec3 SymmetricSpace::acting(std::span<const double> forces) const {
   for (const Index f : rows_.unknown_faces()) {
     const Vec3 here = vector_at(forces, f - mesh_.n_interior, mesh_.dim);
     const double ring = is_axisymmetric(rows_) ? circumference(geometry_.face_centre[f][0]) : 1;
-    total += ring * (here - rows_.at(f).passing * here);
+    total += ring * (here - rows_.at(f).transmitted * here);
   }
   return total;
 }

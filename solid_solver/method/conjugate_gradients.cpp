@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/conjugate_gradients.hpp"
 
 #include <fmt/format.h>
 
@@ -81,7 +81,7 @@ elastic::DeformedBody at_rest(const mesh::Mesh& mesh) {
   return body;
 }
 
-NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
+ConjugateGradients::ConjugateGradients(const SolidProblem& problem, const MethodParameters& parameters)
     : problem_(problem), options_{parameters.relative_tolerance, parameters.max_iterations, true} {
   using Preconditioner = MethodParameters::Preconditioner;
   // In a small step the right-hand side is mostly inertia, rho V u 4/dt^2, and its residual would act as a force. The energy of free
@@ -107,7 +107,7 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
         std::make_unique<linalg::ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
 }
 
-bool NewtonKrylov::invert(std::span<const double> r, std::span<double> z) {
+bool ConjugateGradients::invert(std::span<const double> r, std::span<double> z) {
   if (multigrid_)
     multigrid_->apply(r, z);
   else if (tied_)
@@ -119,7 +119,7 @@ bool NewtonKrylov::invert(std::span<const double> r, std::span<double> z) {
   return !problem_.project;
 }
 
-void NewtonKrylov::choose_multigrid() {
+void ConjugateGradients::choose_multigrid() {
   const mesh::Mesh& mesh = problem_.mesh;
   const std::vector<double> of_nodes = node_inertia(problem_);
   elastic::ElasticPreconditioner::Options options;
@@ -134,7 +134,7 @@ void NewtonKrylov::choose_multigrid() {
 /// Bending of a slender body varies too slowly for component-wise multigrid. A beam 10:1 of 80x8x8 cells
 /// takes 53 iterations instead of 143, one of 160x16x16 89 instead of 169, one 100:1 of 400x4x4 cubes 515
 /// instead of 1945 (to 1e-10). A plate of 4600 cells saves 6 of 46 iterations; 295 000 take 71, not 49.
-void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia) {
+void ConjugateGradients::add_rigid_motions(const std::vector<double>& inertia) {
   const mesh::Mesh& mesh = problem_.mesh;
   const double length = slenderness(mesh, problem_.geometry());
   if (!(length > very_slender || (length > slender && mesh.cells.n_global() > many_cells))) return;
@@ -149,7 +149,7 @@ void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia) {
   modes_->update(at_rest(mesh));
 }
 
-void NewtonKrylov::choose_factors() {
+void ConjugateGradients::choose_factors() {
   std::vector<double> inertia(problem_.inertia.begin(), problem_.inertia.end());  // of a unit of volume
   for (std::size_t c = 0; c < inertia.size(); ++c) inertia[c] /= problem_.geometry().volume[Index(c)];
   if (problem_.mesh.dim == 3 && elastic::TiedMatrix::suits(problem_.mesh)) {
@@ -170,11 +170,11 @@ void NewtonKrylov::choose_factors() {
   name_ = "newton-krylov (conjugate gradients, Cholesky factors)";
 }
 
-void NewtonKrylov::project(std::span<double> unknowns) const {
+void ConjugateGradients::project(std::span<double> unknowns) const {
   if (problem_.project) problem_.project(unknowns);
 }
 
-linalg::SolveStatistics NewtonKrylov::find(std::span<const double> b, std::span<double> u) {
+linalg::SolveStatistics ConjugateGradients::find(std::span<const double> b, std::span<double> u) {
   try {
     std::vector<double> rows;
     if (problem_.project) {

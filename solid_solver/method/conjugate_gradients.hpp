@@ -17,9 +17,9 @@ namespace couplet::solid {
 /// Conjugate gradients on the operator without a matrix; one Newton step, because the problem is linear.
 /// Preconditioned by the compact component-wise operator (ElasticPreconditioner) and rigid motions of
 /// aggregates, or by factors of the matrix where one serves so many steps that they pay.
-class NewtonKrylov final : public SolutionMethod {
+class ConjugateGradients final : public SolutionMethod {
  public:
-  NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
+  ConjugateGradients(const SolidProblem& problem, const MethodParameters& parameters);
 
  private:
   linalg::SolveStatistics find(std::span<const double> b, std::span<double> u) override;
