@@ -166,8 +166,10 @@ void Coupler::finalise(const std::string& problem) {
   enter_(app::Phase::finalise, {});
   Monitor& monitor = record_->monitor();
   log::info("{}", monitor.summary(loop_.halvings()));
-  diagnostics::set_result(
-      {"coupling iterations per step, mean and most", "1", monitor.iterations_per_step()});
+  diagnostics::set_result({.name = "coupling iterations per step, mean and most",
+                           .unit = "1",
+                           .values = monitor.iterations_per_step(),
+                           .watches = true});
   if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
     log::info("{}", waiting);
   for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);
@@ -186,7 +188,7 @@ void Coupler::finalise(const std::string& problem) {
   if (const std::string where = diagnostics::position_sentence(position()); !where.empty())
     log::info("{}", where);
   // The launcher prints the verdict, because the participants still have findings to report.
-  if (problem.empty()) log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, {}));
+  if (problem.empty()) log::info("{}", diagnostics::results_text("coupler", loop_.time(), 2, errors_, {}));
 }
 
 std::vector<diagnostics::Coordinate> Coupler::position() const {

@@ -275,7 +275,10 @@ void Mover::write_monitors(double time) {
 
 std::vector<std::string> Mover::finish() {
   if (least_jacobian_ && parallel::comm_rank(mesh_.comm) == 0)
-    diagnostics::set_result({"least scaled Jacobian of the run", "1", {*least_jacobian_}});
+    diagnostics::set_result({.name = "least scaled Jacobian of the run",
+                             .unit = "1",
+                             .values = {*least_jacobian_},
+                             .watches = true});
   return {};
 }
 

@@ -179,6 +179,7 @@ void closing_words(const Job& job, coupling::Participant& participant, diagnosti
   const bool judges = closing.is_alone && !closing.has_failed;
   log::info("{}",
             diagnostics::results_text(job.name, time, closing.is_alone ? most_results : most_of_participant,
+                                      diagnostics.errors(),
                                       judges ? diagnostics::verdict(errors) : std::vector<std::string>()));
 }
 

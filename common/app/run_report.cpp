@@ -68,10 +68,10 @@ std::string json(const std::vector<diagnostics::Result>& results) {
     for (const double v : r.values)
       values += fmt::format("{}{}", values.empty() ? "" : ", ",
                             std::isfinite(v) ? fmt::format("{:.9g}", v) : "null");
-    out +=
-        fmt::format("{}\n    {{\"name\": {}, \"values\": [{}], \"unit\": {}, \"error\": {}, \"place\": {}}}",
-                    out.empty() ? "" : ",", quoted(r.name), values, quoted(r.unit),
-                    std::isfinite(r.error) ? fmt::format("{:.6g}", r.error) : "null", quoted(r.place));
+    out += fmt::format(
+        "{}\n    {{\"name\": {}, \"values\": [{}], \"unit\": {}, \"error\": {}, \"place\": {}, \"text\": {}}}",
+        out.empty() ? "" : ",", quoted(r.name), values, quoted(r.unit),
+        std::isfinite(r.error) ? fmt::format("{:.6g}", r.error) : "null", quoted(r.place), quoted(r.text));
   }
   return "[" + out + (out.empty() ? "]" : "\n  ]");
 }
@@ -131,7 +131,7 @@ void RunReport::finish(double wall, const std::string& problem, const diagnostic
       "  \"memory-all\": {:.6g},\n  \"results\": {},\n  \"error\": {},\n  \"next\": {},\n  \"errors\": {},\n  \"atlas\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
       quoted(job_.name), quoted(version_text()), parallel::comm_size(job_.comm),
       problem.empty() ? "ended" : "failed", quoted(problem), time_, count_, iterations_, wall, cpu, working,
-      most, all, json(diagnostics::results()), quoted(diagnostics::error_summary(named)),
+      most, all, json(diagnostics::results(errors)), quoted(diagnostics::error_summary(named)),
       quoted(diagnostics::best_change(named)), json(errors), json(position), diagnostics::findings_as_json(),
       phases());
   base::write_file(job_.output_folder / summary_file, text);

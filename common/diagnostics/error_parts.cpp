@@ -125,7 +125,8 @@ std::string ErrorParts::text() const {
   if (!text.empty() && mesh_order != 2) text += fmt::format(" mesh-order {:.6g}", mesh_order);
   if (!text.empty() && step_order != 2) text += fmt::format(" step-order {:.6g}", step_order);
   if (!text.empty() && misses_step) text += " misses-step 1";
-  if (!model_by.empty() || !omittable.empty()) text += fmt::format(" | {} | {}", model_by, omittable);
+  if (!of.empty() || !model_by.empty() || !omittable.empty())
+    text += fmt::format(" | {} | {} | {}", of, model_by, omittable);
   return text;
 }
 
@@ -133,9 +134,10 @@ ErrorParts ErrorParts::of(const std::string& text) {
   ErrorParts parts;
   const std::size_t words_at = text.find(" | ");
   if (words_at != text.npos) {
-    const std::size_t last = text.rfind(" | ");
-    if (last > words_at) parts.model_by = text.substr(words_at + 3, last - words_at - 3);
-    parts.omittable = text.substr(last + 3);
+    const std::size_t second = text.find(" | ", words_at + 3), last = text.rfind(" | ");
+    parts.of = text.substr(words_at + 3, second - words_at - 3);
+    if (last > second) parts.model_by = text.substr(second + 3, last - second - 3);
+    if (second != text.npos) parts.omittable = text.substr(last + 3);
   }
   std::istringstream words(text.substr(0, words_at));
   for (std::string name; words >> name;) {
@@ -188,6 +190,10 @@ double total_error(const std::vector<NamedErrors>& participants) {
 
 namespace {
 
+std::string percent(double share) {
+  return share >= as_large_as_the_solution ? "above 100 %" : fmt::format("{:.2g} %", 100 * share);
+}
+
 /// Largest known contribution that is not of the model and not 0.
 std::optional<ErrorPart> worst_part(const std::vector<NamedErrors>& participants) {
   std::optional<ErrorPart> worst;
@@ -198,14 +204,28 @@ std::optional<ErrorPart> worst_part(const std::vector<NamedErrors>& participants
 
 }  // namespace
 
+double known_error(const ErrorParts& parts) {
+  const std::vector<NamedErrors> alone{{"", parts}};
+  return parts.known() && unknown_part(alone).empty() ? total_error(alone) : ErrorParts::unknown;
+}
+
 std::string error_summary(const std::vector<NamedErrors>& participants) {
-  const auto worst = worst_part(participants);
-  const std::string unknown = unknown_part(participants);
-  if (!worst && unknown.empty()) return "the error is not estimated";
-  const double total = 100 * total_error(participants);
-  if (!unknown.empty())
-    return fmt::format("the error due to {} is unknown, the rest is {:.2g} %", unknown, total);
-  return fmt::format("estimated numerical error {:.2g} %, mostly {}", total, worst->kind->words);
+  std::string list;
+  double most = 0;
+  for (const NamedErrors& n : participants) most = std::max(most, total_error({n}));
+  for (const NamedErrors& n : participants) {
+    const std::string unknown = unknown_part({n});
+    const double total = total_error({n});
+    const auto worst = worst_part({n});
+    if (unknown.empty() && (!worst || total < nothing * most)) continue;
+    list += list.empty() ? "" : "; ";
+    if (!n.parts.of.empty()) list += n.parts.of + (participants.size() > 1 ? " of '" + n.name + "' " : " ");
+    list += unknown.empty() ? fmt::format("{} ({})", percent(total), worst->kind->words)
+            : total >= nothing * most
+                ? fmt::format("{} and that due to {}, which is unknown", percent(total), unknown)
+                : fmt::format("unknown ({})", unknown);
+  }
+  return list.empty() ? "the error is not estimated" : "estimated error: " + list;
 }
 
 std::string best_change(const std::vector<NamedErrors>& participants) {

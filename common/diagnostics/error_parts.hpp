@@ -24,9 +24,13 @@ struct ErrorParts {
   double coupling = unknown;  ///< error of the coupling iteration below its tolerance
   /// Error from neglected effects: the sum of the findings that state a share.
   double model = unknown;
-  std::string model_by{};                 ///< the largest of these and its remedy, in words
-  std::string omittable{};                ///< effects with negligible influence, and their cost, in words
-  int dimension = 0;                      ///< of the mesh, 0 if unknown
+  std::string model_by{};   ///< the largest of these and its remedy, in words
+  std::string omittable{};  ///< effects with negligible influence, and their cost, in words
+  std::string of{};         ///< field that mesh and step speak of, in words: "velocity"
+  std::string unit{};       ///< of this field
+  double size = 0;          ///< its root mean square over the body, the largest of the run [unit]
+  double level = 0;         ///< value from which the field is counted [unit]
+  int dimension = 0;        ///< of the mesh, 0 if unknown
   double mesh_order = 2, step_order = 2;  ///< order of convergence with cell size and step
   bool misses_step = false;               ///< a run in time whose step is not estimated
   bool known() const;
@@ -50,7 +54,9 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
 /// Error budget of a job: the largest of each contribution over the participants.
 ErrorParts largest(const std::vector<NamedErrors>& participants);
 
-/// Sum of mesh, step, solver and coupling errors; 0 if none is known. Neglected effects are excluded, because
+/// Sum of mesh, step, solver and coupling errors of one participant; NaN if the mesh or the step is unknown.
+double known_error(const ErrorParts& parts);
+/// Sum of the largest mesh, step, solver and coupling errors; 0 if none is known. Neglected effects are excluded, because
 /// they have findings of their own.
 double total_error(const std::vector<NamedErrors>& participants);
 /// Finding if the error is as large as the solution. It is `wrong` if one part alone is so large. Parts are

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -28,6 +29,9 @@ constexpr std::array<std::pair<std::string_view, const char*>, 12> tables{{{"pro
                                                                            {"amounts", ""},
                                                                            {"energies", "energy "},
                                                                            {"tank", ""}}};
+
+// Share of the largest value of a unit below which a value is round-off.
+constexpr double round_off = 1e-9;
 
 struct ResultTable {
   std::size_t rank;
@@ -66,19 +70,41 @@ void add(const ResultTable& table, std::vector<Result>& rows) {
   }
 }
 
-std::string text(const Result& r, std::size_t width) {
-  std::string values;
-  for (const double value : r.values) values += fmt::format("{}{:.5g}", values.empty() ? "" : "  ", value);
-  std::string line = fmt::format("  {:<{}}  {}", r.name, width, values);
-  if (r.unit != "1" && r.unit != "-" && !r.unit.empty()) line += " " + r.unit;
-  std::string more;
-  if (std::isfinite(r.error))
-    more += r.values.size() == 1
-                ? fmt::format(" +- {:.2g} ({:.2g} %)", r.error * std::abs(r.values[0]), 100 * r.error)
-                : fmt::format(" +- {:.2g} %", 100 * r.error);
-  if (!r.place.empty()) more += " " + r.place;
-  const bool fits = line.size() + more.size() < 80;
-  return line + (fits || more.empty() ? more : "\n     " + more);
+/// Factor and prefix with which the largest of some values has one to three digits before the point.
+std::pair<double, std::string> prefix_of(const std::string& unit, double largest) {
+  constexpr std::array scaled{"Pa", "N", "J", "W", "Hz", "m", "m/s", "N m"};
+  constexpr std::array prefixes{"n", "u", "m", "", "k", "M", "G", "T"};
+  if (std::ranges::count(scaled, unit) == 0 || !(largest > 0) || !std::isfinite(largest)) return {1, unit};
+  const int most = unit[0] == 'm' ? 0 : 4;  // kilometers are no usual unit of a result
+  const int power = std::clamp(int(std::floor(std::log10(largest) / 3 + 1e-9)), -3, most);
+  return {std::pow(1000.0, -power), prefixes.at(std::size_t(power + 3)) + unit};
+}
+
+double largest_of(const std::vector<double>& values, double level = 0) {
+  double largest = 0;
+  for (const double v : values)
+    if (std::isfinite(v)) largest = std::max(largest, std::abs(v - level));
+  return largest;
+}
+
+/// Values below `nothing` are 0.
+std::string text(const Result& r, double nothing) {
+  const double largest = largest_of(r.values);
+  const auto [factor, unit] = prefix_of(r.unit, largest > nothing ? largest : 0);
+  std::string line;
+  for (const double v : r.values)
+    line += fmt::format("{}{:.5g}", line.empty() ? "" : "  ",
+                        std::abs(v) > nothing || std::isnan(v) ? v * factor : 0);
+  if (unit != "1" && unit != "-" && !unit.empty()) line += " " + unit;
+  if (std::isfinite(r.error)) {
+    const std::string share = r.error < 1 ? fmt::format("{:.2g} %", 100 * r.error) : "useless";
+    line += r.unit == "Hz" || largest <= nothing
+                ? " +- " + share
+                : fmt::format(" +- {:.2g} ({})", r.error * largest * factor, share);
+  } else if (!r.watches) {
+    line += " +- unknown";
+  }
+  return line + (r.place.empty() ? "" : " " + r.place);
 }
 
 }  // namespace
@@ -105,7 +131,9 @@ void set_largest(MPI_Comm comm, const char* name, const char* unit, double value
   MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
   Vec3 at = place;
   MPI_Bcast(at.data(), 3, MPI_DOUBLE, most.rank, comm);
-  if (rank == 0) set_result({.name = name, .unit = unit, .values = {most.value}, .place = place_text(at)});
+  if (rank == 0)
+    set_result(
+        {.name = name, .unit = unit, .values = {most.value}, .place = place_text(at), .watches = true});
 }
 
 std::vector<double>* results_of_table(const std::string& file, const std::vector<std::string>& columns) {
@@ -114,7 +142,7 @@ std::vector<double>* results_of_table(const std::string& file, const std::vector
   return &known_tables().emplace_back(std::size_t(found - tables.begin()), columns).last;
 }
 
-std::vector<Result> results() {
+std::vector<Result> results(const ErrorParts& errors) {
   std::vector<Result> rows = set_rows();
   for (std::size_t rank = 0; rank < tables.size(); ++rank)
     for (const ResultTable& table : known_tables())
@@ -123,17 +151,28 @@ std::vector<Result> results() {
   std::erase_if(rows, [](const Result& r) {
     return std::ranges::none_of(r.values, [](double v) { return std::isfinite(v); });
   });
+  std::ranges::stable_partition(rows, [](const Result& r) { return !r.watches; });
+  std::map<std::string, double> largest;  // of each unit
+  for (const Result& r : rows) largest[r.unit] = std::max(largest[r.unit], largest_of(r.values));
+  const double error = known_error(errors);
+  for (Result& r : rows) {
+    const double mine = largest_of(r.values), nothing = round_off * largest[r.unit];
+    if (std::isnan(r.error) && r.unit == errors.unit && mine > nothing)
+      r.error = error * std::max(largest_of(r.values, errors.level), errors.size) / mine;
+    r.text = text(r, nothing);
+  }
   return rows;
 }
 
 std::string results_text(const std::string& participant, double time, std::size_t most,
-                         const std::vector<std::string>& verdict) {
-  const std::vector<Result> rows = results();
+                         const ErrorParts& errors, const std::vector<std::string>& verdict) {
+  const std::vector<Result> rows = results(errors);
   std::string block = fmt::format("Results of '{}' at t = {:g} s", participant, time);
   std::size_t width = 0;
   for (std::size_t i = 0; i < std::min(most, rows.size()); ++i)
     width = std::max(width, std::min<std::size_t>(rows[i].name.size(), 34));
-  for (std::size_t i = 0; i < std::min(most, rows.size()); ++i) block += "\n" + text(rows[i], width);
+  for (std::size_t i = 0; i < std::min(most, rows.size()); ++i)
+    block += fmt::format("\n  {:<{}}  {}", rows[i].name, width, rows[i].text);
   if (rows.size() > most)
     block += fmt::format("\n  and {} more in its tables and run.json", rows.size() - most);
   for (const std::string& line : verdict) block += "\n" + line;
@@ -161,7 +200,11 @@ std::vector<std::string> verdict(const std::vector<NamedErrors>& participants) {
     if (n < ids.size()) list += fmt::format(" and {} more", ids.size() - n);
     lines.push_back(list + " (docs/findings.md)");
   }
-  if (std::string next = best_change(participants); !next.empty()) {
+  const auto wrong = std::ranges::find_if(findings(), [](const Finding& f) {
+    return f.severity == base::Severity::wrong && f.id != "error-estimate" && !is_accepted(f.id);
+  });
+  if (std::string next = wrong != findings().end() ? wrong->advice : best_change(participants);
+      !next.empty()) {
     if (next.size() > 70) next.resize(std::min(next.size(), next.rfind(", for")));
     if (next.size() <= 70) lines.push_back("  next: " + next);
   }

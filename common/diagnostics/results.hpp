@@ -16,8 +16,11 @@ namespace couplet::diagnostics {
 struct Result {
   std::string name, unit;
   std::vector<double> values;
-  double error = std::numeric_limits<double>::quiet_NaN();  ///< estimated, relative; NaN if unknown
-  std::string place{};                                      ///< "at (1, 0, 0) m"
+  double error =
+      std::numeric_limits<double>::quiet_NaN();  ///< estimated, relative to the largest value; NaN if unknown
+  std::string place{};                           ///< "at (1, 0, 0) m"
+  bool watches = false;  ///< a number that shows how the run went, which no case asks for
+  std::string text{};    ///< values with unit, error and place, as the run prints them; from results()
 };
 std::string place_text(const Vec3& place);
 
@@ -28,13 +31,13 @@ void set_result(Result result);
 /// Storage for the last row of a table whose columns ("tip x [m]") are results, such as probes.csv. nullptr
 /// for any other table. Components of a vector share a row.
 std::vector<double>* results_of_table(const std::string& file, const std::vector<std::string>& columns);
-/// All rows: those that were set, then those of tables.
-std::vector<Result> results();
+/// All rows, those that a case asks for first. Rows of the field that `errors` speak of have its error.
+std::vector<Result> results(const ErrorParts& errors);
 
-/// Block of at most 80 columns and `most` rows: results at `time` [s] of a participant, then `verdict`.
+/// Block of at most `most` rows: results at `time` [s] of a participant, then `verdict`.
 std::string results_text(const std::string& participant, double time, std::size_t most,
-                         const std::vector<std::string>& verdict);
-/// "estimated numerical error 1.3 %, mostly mesh", or that it is unknown. Neglected effects are excluded.
+                         const ErrorParts& errors, const std::vector<std::string>& verdict);
+/// "estimated error: velocity 1.3 % (mesh)", for each participant, or that it is unknown. Neglected effects are excluded.
 std::string error_summary(const std::vector<NamedErrors>& participants);
 /// Cheapest change that lowers the largest contribution, with its gain and price. Empty if there is none.
 std::string best_change(const std::vector<NamedErrors>& participants);

@@ -85,6 +85,7 @@ class VelocityErrors {
   StepErrors::Inputs add(std::span<const double> before, std::span<const double> now, double dt,
                          double dt_old, double size, const Norm& norm, double forgotten = 0);
   double over_size() const { return errors_.over_size(); }
+  double size() const { return errors_.size(); }
   double swings() const { return errors_.swings(); }
   /// State for checkpoints. Empty for a run that collected nothing.
   std::vector<double> state() const;

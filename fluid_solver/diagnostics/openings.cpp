@@ -98,6 +98,7 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
       const auto& [patch, inlet, has_direction, pressure, total] = openings_[i];
       const double* sum = &sums[n_sums * i];
       if (pressure) check_weight(report, *patch, sum[gross]);
+      if (inlet && has_direction) check_way(report, *patch, sum[gross]);
       const double head = sum[energy] / sum[inflow];
       if (total && range > 0 && sum[inflow] > much * largest && head > told_head * range)
         report.findings.push_back(
@@ -143,6 +144,27 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
   }
 
  private:
+  /// Reports a flow that hardly enters a domain at rest, as in a mesh in millimeters that is read in meters. `volume`: as below.
+  void check_way(diagnostics::Report& report, const mesh::Patch& patch, double volume) const {
+    constexpr double least = 0.01;  // of the domain
+    if (view_.has_mover || view_.is_prescribed || view_.has_interface || view_.parameters().mesh_scale != 1)
+      return;
+    double area = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      area += view_.fluid.state().placement->area[f].norm();
+    const double way = volume / parallel::sum(view_.mesh.comm, area);
+    const Vec3 extent = mesh::extent_of(view_.mesh.comm, view_.fluid.points_at_rest()).size();
+    if (!(way > 0) || way > least * extent.maxCoeff()) return;
+    report.findings.push_back(
+        {.id = "questionable-mesh-scale",
+         .number = way / extent.maxCoeff(),
+         .limit = least,
+         .sentence = fmt::format(
+             "inlet '{}': in the whole run the fluid enters by {:.3g} m, into a domain of {:.3g} x {:.3g} x {:.3g} m: questionable",
+             patch.name, way, extent[0], extent[1], extent[2]),
+         .advice =
+             "if the mesh was drawn in millimeters, set 'mesh-scale: 0.001'; else go on until the flow has crossed it"});
+  }
   /// Reports one pressure over the height of an opening if the weight exceeds the dynamic pressure: fluid then leaves below and enters
   /// above. `volume`: that passed it in either direction [m^3].
   void check_weight(diagnostics::Report& report, const mesh::Patch& patch, double volume) const {

@@ -51,7 +51,11 @@ class MeshOfModes final : public diagnostics::Diagnostic {
       gaps_ = mesh_gaps(view.model(), view.n_cells(), view.parameters.placement.normal());
   }
   /// Evaluated only at the end, because the first steps show the short waves of the load's start.
-  void conclude(diagnostics::Report& report) override { report.errors.mesh = mesh_gap(); }
+  void conclude(diagnostics::Report& report) override {
+    const bool is_modal = view_.parameters.analysis == Parameters::Analysis::modal;
+    report.errors.of = is_modal ? "frequencies" : "displacement", report.errors.unit = is_modal ? "Hz" : "m";
+    report.errors.mesh = mesh_gap();
+  }
 
  private:
   /// Error of the stiffness of the modes, weighted by their motion. In motion the whole gap counts, because errors of

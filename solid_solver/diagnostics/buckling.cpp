@@ -84,6 +84,9 @@ double growth_of(const SolidBody& body, const std::vector<double>& u, const std:
 
 }  // namespace
 
+// A load factor that no design has; a unit is wrong.
+constexpr double absurd = 0.05;
+
 std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstimate& found) {
   if (!found.matters()) return {};
   return diagnostics::Finding{
@@ -107,13 +110,20 @@ std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& fou
       .severity = holds ? base::Severity::warning : base::Severity::wrong,
       .number = found.factor,
       .limit = limit,
-      .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, found.factor, limit,
-                              holds ? neglected(found) : "the computed equilibrium is unstable"),
+      .sentence =
+          holds ? fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, found.factor, limit,
+                              neglected(found))
+                : fmt::format(
+                      "buckling: the loads are {}{:.3g} times the buckling load (limit 1): the computed "
+                      "equilibrium is unstable",
+                      *how == '\0' ? "" : "at least ", 1 / found.factor),
       .advice =
           holds ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
-                : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
-                  "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling "
-                  "state"};
+          : found.factor < absurd
+              ? "check the units of 'youngs-modulus', of the loads and of the mesh"
+              : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
+                "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling "
+                "state"};
 }
 
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields,

@@ -125,7 +125,8 @@ Opinion neglected_geometry(const P& p, const Deformation& d,
                            large_strain   ? "; " + large_strain->text()
                            : is_estimated ? "; the buckling shape would grow"
                                           : ""),
-       .advice = !std::isnan(buckling_factor)
+       .advice = d.gradient > 1 ? "check the units of 'youngs-modulus', of the loads and of the mesh"
+                 : !std::isnan(buckling_factor)
                      ? "lateral motion grows as the load nears the buckling load: use "
                        "'kinematics: finite-strain'"
                  : large_strain     ? "use 'kinematics: finite-strain'"

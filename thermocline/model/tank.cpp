@@ -5,6 +5,9 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "common/base/error.hpp"
 #include "common/diagnostics/finding.hpp"
@@ -241,9 +244,19 @@ void Tank::write_monitors(double time) {
 std::vector<std::string> Tank::finish() {
   if (!report_) return {};
   report_->finish();
+  constexpr double nearly_all = 95;  // [%]
   for (const ReportLine& line :
-       parallel::comm_rank(comm_) == 0 ? report_->lines() : std::vector<ReportLine>())
+       parallel::comm_rank(comm_) == 0 ? report_->lines() : std::vector<ReportLine>()) {
     if (*line.meaning) diagnostics::set_result({line.quantity + line.meaning, line.unit, {line.value}});
+    if (std::string_view(line.meaning) == unmet_demand && line.value > nearly_all)
+      diagnostics::finding(
+          0, {.id = "questionable-plant",
+              .number = line.value,
+              .limit = nearly_all,
+              .sentence = fmt::format("the plant misses {:.4g} % of its demand (limit {:g} %): questionable",
+                                      line.value, nearly_all),
+              .advice = "check the units of the field's area and of the demand"});
+  }
   return {};
 }
 

@@ -225,7 +225,7 @@ std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) co
           {"Q_C/Q_excess", "%", share(s[Sums::stored], s[Sums::excess]), ", stored of the excess"},
           {"Q_D/Q_C", "%", share(s[Sums::delivered], s[Sums::stored]), ", regained of the stored"},
           {"B_D", "MWh/day", energy(Sums::exergy)},
-          {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], s[Sums::asked]), ", demand not met"},
+          {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], s[Sums::asked]), unmet_demand},
           {"energy losses", "MWh/day", energy(Sums::losses), " to the surroundings"},
           {"charge time", "h", time(Sums::charging)},
           {"discharge time", "h", time(Sums::discharging)},

@@ -200,6 +200,9 @@ struct ReportLine {
   const char* meaning = "";  ///< shown at the end of a run; empty for the rest
 };
 
+constexpr const char* unmet_demand =
+    ", demand not met";  ///< meaning of the line of the power block's missing heat
+
 /// Daily accounting of tank and plant. Writes
 ///   - days.csv: one line per day, all rows of tables 5.5 and 5.6 for that day;
 ///   - summary.csv: means over the days after the run-in, both factors of safety with place and time;

@@ -12,6 +12,7 @@
 
 #include "common/base/point_tree.hpp"
 #include "common/diagnostics/finding.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/mesh/topology.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -235,18 +236,28 @@ std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
   return faces;
 }
 
-void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places) {
-  constexpr double smallest = 1e-6, largest = 2e3;  // [m]
-  constexpr double corner = 1.0 / 300;              // between sizes in one scene and a confusion of mm and m
+void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places,
+                      double largest) {
+  constexpr double smallest = 1e-6;     // [m]
+  constexpr double corner = 1.0 / 300;  // between sizes in one case and a confusion of mm and m
   const double size = mesh_size(mesh, points);
-  if (size < smallest || size > largest)
-    diagnostics::finding(parallel::comm_rank(mesh.comm),
-                         {.id = "questionable-mesh-scale",
-                          .number = size,
-                          .limit = size < smallest ? smallest : largest,
-                          .sentence = fmt::format("mesh size: {:.3g} m (usual: {:g} to {:g} m): implausible",
-                                                  size, smallest, largest),
-                          .advice = "check 'mesh-scale' (0.001 for a mesh in millimeters)"});
+  const Vec3 extent = mesh::extent_of(mesh.comm, points).size();
+  if (parallel::comm_rank(mesh.comm) == 0)
+    diagnostics::set_result({.name = "size of the mesh",
+                             .unit = "m",
+                             .values = {extent.data(), extent.data() + mesh.dim},
+                             .watches = true});
+  if (size < smallest || extent.maxCoeff() > largest)
+    diagnostics::finding(
+        parallel::comm_rank(mesh.comm),
+        {.id = "questionable-mesh-scale",
+         .number = size,
+         .limit = size < smallest ? smallest : largest,
+         .sentence =
+             fmt::format("mesh size: {:.3g} x {:.3g} x {:.3g} m (usual: {:g} to {:g} m): questionable",
+                         extent[0], extent[1], extent[2], smallest, largest),
+         .advice =
+             "if it was drawn in millimeters, set 'mesh-scale: 0.001'; if it is right, accept this finding"});
   double farthest = 0;
   for (const Vec3& place : places) farthest = std::max(farthest, place.norm());
   if (farthest > 0 && farthest < corner * size)

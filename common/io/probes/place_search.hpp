@@ -62,8 +62,9 @@ class PlaceSearch {
   Balls points_, cells_, faces_;
 };
 
-/// Warns about a mesh in millimeters that is read in meters. It judges the mesh size, or whether all `places`
-/// of the YAML (probes) lie within 1/300 of it. Collective.
-void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places);
+/// Shows the extents of the mesh among the results and warns about one in millimeters that is read in meters: some extent is above
+/// `largest` [m], or all `places` of the YAML (probes) lie within 1/300 of its size. Collective.
+void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places,
+                      double largest = 2e3);
 
 }  // namespace couplet::io
