@@ -125,8 +125,8 @@ std::string ErrorParts::text() const {
   if (!text.empty() && mesh_order != 2) text += fmt::format(" mesh-order {:.6g}", mesh_order);
   if (!text.empty() && step_order != 2) text += fmt::format(" step-order {:.6g}", step_order);
   if (!text.empty() && misses_step) text += " misses-step 1";
-  if (!of.empty() || !model_by.empty() || !omittable.empty())
-    text += fmt::format(" | {} | {} | {}", of, model_by, omittable);
+  if (!field.empty() || !model_by.empty() || !omittable.empty())
+    text += fmt::format(" | {} | {} | {}", field, model_by, omittable);
   return text;
 }
 
@@ -135,7 +135,7 @@ ErrorParts ErrorParts::of(const std::string& text) {
   const std::size_t words_at = text.find(" | ");
   if (words_at != text.npos) {
     const std::size_t second = text.find(" | ", words_at + 3), last = text.rfind(" | ");
-    parts.of = text.substr(words_at + 3, second - words_at - 3);
+    parts.field = text.substr(words_at + 3, second - words_at - 3);
     if (last > second) parts.model_by = text.substr(second + 3, last - second - 3);
     if (second != text.npos) parts.omittable = text.substr(last + 3);
   }
@@ -219,7 +219,7 @@ std::string error_summary(const std::vector<NamedErrors>& participants) {
     const auto worst = worst_part({n});
     if (unknown.empty() && (!worst || total < nothing * most)) continue;
     list += list.empty() ? "" : "; ";
-    if (!n.parts.of.empty()) list += n.parts.of + (participants.size() > 1 ? " of '" + n.name + "' " : " ");
+    if (!n.parts.field.empty()) list += n.parts.field + (participants.size() > 1 ? " of '" + n.name + "' " : " ");
     list += unknown.empty() ? fmt::format("{} ({})", percent(total), worst->kind->words)
             : total >= nothing * most
                 ? fmt::format("{} and that due to {}, which is unknown", percent(total), unknown)

@@ -32,7 +32,7 @@ void set_result(Result result);
 /// for any other table. Components of a vector share a row.
 std::vector<double>* results_of_table(const std::string& file, const std::vector<std::string>& columns);
 /// All rows, those that a case asks for first. Rows of the field that `errors` speak of have its error.
-std::vector<Result> results(const ErrorParts& errors);
+std::vector<Result> results(const ErrorParts& errors = {});
 
 /// Block of at most `most` rows: results at `time` [s] of a participant, then `verdict`.
 std::string results_text(const std::string& participant, double time, std::size_t most,

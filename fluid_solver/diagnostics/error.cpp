@@ -207,7 +207,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
       return parts;
     }
     const double scale = diagnostics::scale_of(size, falls);
-    parts.of = "velocity", parts.unit = "m/s", parts.size = size;
+    parts.field = "velocity", parts.unit = "m/s", parts.size = size;
     parts.mesh = recovered_difference() / scale;
     parts.step = step_part() * steps_.size() / scale;
     parts.misses_step = std::isnan(parts.step);

@@ -158,7 +158,7 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
   diagnostics::ErrorParts& parts = report.errors;
   parts.dimension = body_.mesh().dim;
   if (view_.now().steps == 0) return;
-  parts.of = "displacement", parts.unit = "m";
+  parts.field = "displacement", parts.unit = "m";
   parts.size = std::max(
       steps_.size(), root_mean_square(body_.mesh(), body_.geometry(), body_.mesh().dim, view_.now().cell_u));
   if (!body_.is_dynamic() && !view_.stepper.step().is_last)
@@ -172,7 +172,7 @@ void ErrorEstimate::conclude(diagnostics::Report& report) {
   parts.mesh = body_.parameters().seeks_buckling ? unknown : mesh_error();
   // The frequencies are the answer of a body at rest whose modes were sought. Their error is bounded only.
   if (const double error = stated_error_of_modes(view_.comm()); parts.misses_step && !std::isnan(error))
-    parts = {.mesh = error, .of = "frequencies", .dimension = parts.dimension};
+    parts = {.mesh = error, .field = "frequencies", .dimension = parts.dimension};
 }
 
 void ErrorEstimate::visit(io::Archive& archive) {

@@ -56,7 +56,7 @@ class FrontError final : public TankDiagnostic {
       // Upwind: a front widens with the square root of the cell size.
       report.errors.mesh_order = std::log2(unused / unused_by_spreading(2));
     }
-    report.errors.dimension = 1, report.errors.of = "profile of temperature";
+    report.errors.dimension = 1, report.errors.field = "profile of temperature";
   }
 
  private:
