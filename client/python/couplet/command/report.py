@@ -6,13 +6,14 @@ import pathlib
 import textwrap
 
 from couplet.runs.case import expect
+from couplet.runs.job import RUN_HELP, run_folder
 from couplet.runs.results import Results
 
 MOST_ROWS = 14  # of a run that ends on a terminal of 24 lines
 
 
 def declare(parser):
-    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
+    parser.add_argument("folder", type=pathlib.Path, metavar="RUN", help=RUN_HELP)
 
 
 def row(result, width):
@@ -108,8 +109,10 @@ def details(results, names):
 
 
 def run(arguments):
-    results = Results(arguments.folder)
+    folder = run_folder(arguments.folder)
+    expect(folder.is_dir(), f"{folder}: there is no such folder")
+    results = Results(folder)
     names = [name for name in results.participants() if results.report(name)]
-    expect(names, f"{arguments.folder}: no run has finished here")
+    expect(names, f"{folder}: no run has finished here")
     print(*rows(results, names), *verdict(results, names), *details(results, names), sep="\n")
     return 0

@@ -120,12 +120,9 @@ class Digest(Screen):
 
         self.clear()
         if code not in (0, 3, 4):
-            print(
-                *self.unsaid[-30:] if code == 2 else (),
-                sep="\n",
-                end="\n" if code == 2 and self.unsaid else "",
-                file=sys.stderr,
-            )
+            # Besides errors of the case, the traceback of a participant in Python.
+            told = self.unsaid[-30:] if code == 2 or any(line.startswith("Traceback") for line in self.unsaid) else []
+            print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
             return
         results = Results(self.job.output)
         names = [
