@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures of the first coupled job."""
+import math
 import re
 
 from couplet.command.compare import apart, arrays
