@@ -115,7 +115,7 @@ class Digest(Screen):
 
     def end(self, code):
         """Prints the results, the verdict and the number of further warnings."""
-        from couplet.command.report import MOST_ROWS, rows, verdict
+        from couplet.command.report import ending
         from couplet.runs.results import Results
 
         self.clear()
@@ -130,7 +130,7 @@ class Digest(Screen):
             for name in results.participants()
             if name in ([self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants])
         ]
-        print(*rows(results, names, MOST_ROWS - 2 * len(names)), *verdict(results, names), sep="\n")
+        print(*ending(results, names), sep="\n")
         hidden = len(self.told) - MOST_FINDINGS
         if hidden > 0:
             print(f"{hidden} more warnings in the logs")
