@@ -60,8 +60,8 @@ def grid(series, i):
 
 
 def write(folder, target=None, participant=None):
-    """Writes the series of all participants, or of one, below an output folder to their folders vtk/, or to folders with
-    their names in `target`. Returns the .pvd files."""
+    """Writes the series of all participants, or of one, below an output folder. They go to their folders vtk/, or to
+    folders with their names in `target`. Returns the .pvd files."""
     lists, base = [], pathlib.Path(folder if target is None else target)
     for file in sorted(pathlib.Path(folder).glob("*/*.h5")):
         if participant not in (None, file.parent.name):

@@ -16,6 +16,7 @@ import h5py
 from scene import ROOT, call, call_here, case_in, environment, start
 from checks import COUPLED, check, end, mpmd  # noqa: E402  (scene knows where it is)
 from couplet.runs import Case, Job  # noqa: E402
+from couplet.runs.folder import driver  # noqa: E402
 
 bin_, what = pathlib.Path(sys.argv[1]), sys.argv[2]
 
@@ -112,7 +113,8 @@ def by_hand(folder):
     check("compare refuses runs without results", nothing.returncode not in (0, 1) or "did the runs fail" in nothing.stderr, nothing.stdout + nothing.stderr)
     longer = call(bin_, "run", case, "--set", "participants.solid.material.youngs-modulus=3.9e6", "--set", f"simulation.output.folder={folder / 'other'}", "-q")
     other = call_here(bin_, "compare", folder / "a/out", folder / "other")
-    check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "solid/probes.csv: tip" in other.stdout, other.stdout[-300:])
+    check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "  solid/probes.csv: tip" in other.stdout, other.stdout[-300:])
+    check("in one line for each field, whatever its outputs", len(re.findall(r"^  fluid/fluid.h5: cells/velocity: at most .* outputs differ\)$", other.stdout, re.M)) == 1, other.stdout[-300:])
     for words in (("report",), ("watch", "--once"), ("plot", "--field", "velocity"), ("export", "--to", "vtk", "--participant", "solid", "--folder", folder / "vtk")):
         of_case = call_here(bin_, words[0], folder / "a", *words[1:])
         check(f"{words[0]} takes the case of a run for its output folder", of_case.returncode == 0 and of_case.stdout, of_case.stdout + of_case.stderr)
@@ -157,7 +159,7 @@ def side_by_side(folder):
     check("both end well, with the same results", codes == [0, 0] and same.returncode == 0, same.stdout)
     alone = call(bin_, "run", case, "--participant", "fluid", "--set", f"simulation.output.folder={folder / 'one'}")
     # Iterations and what round-off leaves differ between numbers of ranks; fields do not.
-    fields = re.findall(r"fluid\.h5: \S+: .* ([\d.e+-]+) of the largest", call_here(bin_, "compare", folder / "b", folder / "one").stdout)
+    fields = re.findall(r"^  fluid/fluid\.h5: \w.*: .* ([\d.e+-]+) of the largest", call_here(bin_, "compare", folder / "b", folder / "one").stdout, re.M)
     check("compare knows cells and points by their numbers: one rank is the same as two", alone.returncode == 0 and fields and all(float(v) < 1e-6 for v in fields), fields)
 
 
@@ -205,7 +207,7 @@ def stop(folder):
     check("nor changed", before == {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in (folder / "a/out").rglob("*") if file.is_file()})
     shutil.copytree(folder / "a", folder / "longer")
     longer = call(bin_, "resume", folder / "longer", "-q", "--set", "simulation.end-time=1.25")
-    check("with a later end time it is, quietly", longer.returncode == 0 and "] t=" not in longer.stdout and json.loads((folder / "longer/out/coupler/run.json").read_text())["steps"] == 5, longer.stdout + longer.stderr)
+    check("with a later end time it is, quietly", longer.returncode == 0 and "] t=" not in longer.stdout and json.loads((folder / "longer/out/coupler/run.json").read_text())["time"] == 1.25, longer.stdout + longer.stderr)
     others = call(bin_, "resume", folder / "stopped/out", "-n", "fluid=2,solid=2")
     check("resume goes on on other ranks", others.returncode == 0 and "done in" in others.stdout, others.stdout[-200:] + others.stderr)
     one, other = ([float(word) for word in (run / "solid/probes.csv").read_text().splitlines()[-1].split(",")] for run in (folder / "whole", folder / "stopped/out"))
@@ -235,7 +237,7 @@ def stop(folder):
     check("resume starts no program of a folder from elsewhere", foreign.returncode == 2 and "give its command again: --with solid=" in foreign.stderr, foreign.stderr)
     record = json.loads((folder / "stopped/out/job.json").read_text())
     (folder / "stopped/out/job.json").write_text(json.dumps({**record, "bin": str(folder), "with": {"fluid": ["sh", "-c", touch]}}))
-    foreign = call(bin_, "resume", folder / "stopped/out")
+    foreign = call(bin_, "resume", folder / "stopped/out", "--set", "simulation.end-time=2 s")
     check("nor one that its record names", foreign.returncode == 2 and "--with fluid=" in foreign.stderr, foreign.stderr)
     for program in ("/bin/sh", "../../bin/sh", "sh"):
         hostile.write_text(f'note: "$({touch})"\nsimulation: {{end-time: 1 s, time-step: 1 s}}\nparticipants: {{solid: {{program: {program}}}}}\n')
@@ -244,7 +246,7 @@ def stop(folder):
     check("nothing that a case names was started", not (folder / "EXECUTED").exists())
     again = start(bin_, "run", case, "--set", "simulation.checkpoint.interval=0", "--set", "participants.solid.material.density=2000 kg/m^3")
     check("another run in the same folder steps", until(lambda: "2000 kg" in (folder / "a/out/job.json").read_text() and "density: 2000" in (folder / "a/out/solid/effective.yaml").read_text()))
-    subprocess.run(["pkill", "-9", "-f", f"^{bin_}/coupler {folder / 'a'}"], check=True)
+    os.kill(driver(folder / "a/out"), signal.SIGKILL)
     _, said = again.communicate(timeout=60)
     check("its coupler is killed: named, and nothing to resume", again.returncode not in (0, 3) and "'coupler'" in said and "couplet resume" not in said, f"{again.returncode} {said[-300:]}")
     check("checkpoints of an earlier run stay", list((folder / "a/out/checkpoints").glob("step-*/set.txt")))

@@ -53,8 +53,8 @@ def parser_of(name):
 
 
 def whole(words, parser):
-    """Words in which an option whose value may be left out does not take the next word for it, such as CASE in `--strict
-    CASE`: its value follows an equals sign."""
+    """Words in which an option whose value may be left out has it behind an equals sign, since it would take the next
+    word for it, such as the case in `--strict CASE`."""
     optional = {o for action in parser._actions if action.nargs == "?" for o in action.option_strings}
     return [f"{word}=" if word in optional else word for word in words]
 

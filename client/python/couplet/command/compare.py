@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the differences between two runs: effective values, findings, one line for each table or file of fields with the
-largest difference and its place, and then the columns of tables and the fields at each output. Their cost (seconds,
-iterations, logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within --tolerance, and 1
-otherwise."""
+"""Lists the differences between two runs: effective values, findings, one line for each table or file of fields with
+the largest difference and its place, and then the columns of tables and the fields. Their cost (seconds, iterations,
+logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within --tolerance, and 1 otherwise."""
 import argparse
 import math
 import pathlib
@@ -44,8 +43,9 @@ def flat(node, name=""):
 
 
 def apart(a, b, largest=0.0):
-    """Difference of two arrays: (words, share, index of the largest difference, number of values that cannot be compared).
-    The words are empty if there is no difference. The share is that of `largest`, or of the largest value here."""
+    """Difference of two arrays: (words, share, index of the largest difference, number of values that cannot be
+    compared). The words are empty if there is no difference. The share is that of `largest`, or of the largest value
+    here."""
     import numpy as np
 
     if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
@@ -209,6 +209,23 @@ def summaries(found):
         yield f"{file}: {len(beyond)} of {len(rows)} {'columns' if file.endswith('.csv') else 'fields'} differ, {most}"
 
 
+OUTPUT = re.compile(r"(.*\.h5: )(t = \S+ s)/(.*)")
+
+
+def by_field(found):
+    """One row for each field instead of one for each of its outputs: that with the largest difference."""
+    fields = {}
+    for item in found:
+        output = OUTPUT.fullmatch(item[0])
+        fields.setdefault(output[1] + output[3] if output else item[0], []).append(item)
+    for name, items in fields.items():
+        worst, differ = max(items, key=lambda item: (item[2], item[3])), sum(bool(item[1]) for item in items)
+        output, words = OUTPUT.fullmatch(worst[0]), worst[1]
+        if output and words:
+            words = f"{words} ({output[2]}; {differ} of {len(items)} outputs differ)"
+        yield (name, words, *worst[2:])
+
+
 def run(arguments):
     runs = run_folder(arguments.first), run_folder(arguments.second)
     for folder in runs:
@@ -225,7 +242,7 @@ def run(arguments):
     expect(found, f"{runs[0]} and {runs[1]}: have no tables and fields to compare; did the runs fail?")
     for line in summaries(found):
         print(line)
-    for name, words, far, *_ in found:
+    for name, words, far, *_ in by_field(found):
         if far or arguments.all:
             print(f"  {name}: {words or 'equal'}")
     apart_ones, beyond = sum(bool(words) for _, words, *_ in found), sum(far for _, _, far, *_ in found)

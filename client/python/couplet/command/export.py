@@ -23,7 +23,10 @@ def declare(parser):
     )
     parser.add_argument("--to", required=True, choices=TO, help="the target program")
     parser.add_argument(
-        "--folder", type=pathlib.Path, metavar="FOLDER", help="output folder (default: PROGRAM next to the case; vtk/ of each participant)"
+        "--folder",
+        type=pathlib.Path,
+        metavar="FOLDER",
+        help="output folder (default: PROGRAM next to the case; for vtk the folder vtk/ of each participant)",
     )
     parser.add_argument("--participant", metavar="NAME", help="participant to export, if the case has several")
     parser.add_argument(

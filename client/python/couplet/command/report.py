@@ -65,7 +65,7 @@ def row(result, width, most):
     """One result in at most 80 columns. `most` is largest_by_unit() of its participant."""
     unit, largest = result["unit"], largest_of(result["values"])
     noise = NOISE * max(largest, most.get(unit, 0.0))
-    numbers = [math.nan if v is None else 0.0 if abs(v) < noise else v for v in result["values"]]
+    numbers = [math.nan if v is None else 0.0 if abs(v) <= noise else v for v in result["values"]]
     prefix, factor = prefix_of(largest_of(numbers), unit)
     line = f"  {result['name']:{width}}  {'  '.join(digits(v / factor, 5) for v in numbers)}"
     line += "" if unit in ("", "1", "-") else f" {prefix}{unit}"
@@ -87,8 +87,8 @@ def names_in(file):
 
 
 def by_importance(results, name):
-    """[(rank, result)] of a participant: what the case asks for (0), forces and the like and what has an estimated error
-    (1), and the rest (2)."""
+    """Returns [(rank, result)] of a participant. The rank is 0 for a table that the case asks for, 1 for forces and the
+    like and for values with an estimated error, and 2 for the rest."""
     own, others = (
         {n for table in tables for n in names_in(results.folder / name / f"{table}.csv")} for tables in (OWN, TABLES)
     )

@@ -53,7 +53,7 @@ def raised(text):
 def last_words(text):
     """Last output of a program without MPI's messages."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
-    if guest := next((line for line in lines if line.startswith(CLIENT)), ""):  # an external participant says why it ends
+    if guest := next((line for line in lines if line.startswith(CLIENT)), ""):  # an external participant gives up
         return guest.removeprefix(CLIENT)
     # A line of the watch over the job says why it ends; the error estimate is written at the end of a failed run, too.
     named = [line for line in lines if line.startswith("couplet: ")] or [
