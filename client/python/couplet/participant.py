@@ -17,6 +17,7 @@ import socket
 import struct
 import sys
 import time
+import traceback
 from collections.abc import Iterator, Sequence
 
 import numpy
@@ -124,7 +125,9 @@ class Client:
         """Ends the job if the program ends first (an exception, sys.exit), because MPI_Finalize would wait forever."""
         if not self._over and not MPI.Is_finalized():
             sys.stdout.flush()
-            self._end(f"participant '{self.participant}' ended before the job was over")
+            error = getattr(sys, "last_value", None)  # set by the interpreter with the traceback that it prints
+            why = "".join(traceback.format_exception_only(error)).strip().splitlines()[-1:] if error else []
+            self._end(": ".join([f"participant '{self.participant}' ended before the job was over", *why]))
 
     @staticmethod
     def _all_strings(world, mine):

@@ -18,7 +18,7 @@ import numpy as np
 from couplet import files, places
 from couplet.plots.sources import columns_of
 from couplet.runs.case import Case, Wrong, expect
-from couplet.runs.job import output_of
+from couplet.runs.job import output_of, run_folder
 
 PLACES = ("along [-]", "up [-]", "x [m]", "y [m]", "z [m]")
 MOST_LINES = 12  # with names of their own
@@ -272,7 +272,8 @@ def run(options):
     if options.field or options.mode is not None:
         from couplet import fields
 
-        folder, look = options.files[0], (options.picture, options.at, options.component, options.warp)
+        folder = options.out or run_folder(options.files[0])
+        look = (options.picture, options.at, options.component, options.warp)
         expect(len(options.files) == 1, "--field, --mode: give one folder of a run")
         expect(folder.is_dir(), f"{folder}: there is no such folder; has the case been run?")
         print(

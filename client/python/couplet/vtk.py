@@ -59,10 +59,13 @@ def grid(series, i):
     return text + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
 
 
-def write(folder):
-    """Writes the series of all participants below an output folder to their folders vtk/. Returns the .pvd files."""
-    lists = []
+def write(folder, target=None, participant=None):
+    """Writes the series of all participants, or of one, below an output folder. They go to their folders vtk/, or to
+    folders with their names in `target`. Returns the .pvd files."""
+    lists, base = [], pathlib.Path(folder if target is None else target)
     for file in sorted(pathlib.Path(folder).glob("*/*.h5")):
+        if participant not in (None, file.parent.name):
+            continue
         with h5py.File(file, "r") as content:
             if content.attrs.get("format") not in (
                 "couplet fields",
@@ -71,14 +74,15 @@ def write(folder):
                 b"couplet surface",
             ):
                 continue
-        series, place, entries = FieldSeries(file), file.parent.relative_to(folder) / "vtk", ""
+        series, entries = FieldSeries(file), ""
+        place = pathlib.Path(file.parent.name) / ("vtk" if target is None else "")
         for i, time in enumerate(series.times):
             name = f"{file.stem}-{i:06d}.vtu"
-            files.write(folder, place / name, grid(series, i))
+            files.write(base, place / name, grid(series, i))
             entries += f'<DataSet timestep="{time:.12g}" part="0" file={quoteattr(name)}/>\n'
         lists.append(
             files.write(
-                folder,
+                base,
                 place / f"{file.stem}.pvd",
                 (
                     '<VTKFile type="Collection" version="1.0"'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, any_launcher, side_by_side, stop, wrong, kill, tell, gallery, python"""
+"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, any_launcher, side_by_side, stop, wrong, kill, tell, reported, gallery, python"""
 import json
 import os
 import pathlib
@@ -16,6 +16,7 @@ import h5py
 from scene import ROOT, call, call_here, case_in, environment, start
 from checks import COUPLED, check, end, mpmd  # noqa: E402  (scene knows where it is)
 from couplet.runs import Case, Job  # noqa: E402
+from couplet.runs.folder import driver  # noqa: E402
 
 bin_, what = pathlib.Path(sys.argv[1]), sys.argv[2]
 
@@ -95,6 +96,14 @@ def by_hand(folder):
     check("a column of round-off is compared with the others of its table, and differences within the tolerance are not listed", same.returncode == 0 and "1 differ, 0 by more than 1e-09" in same.stdout and "round-off" not in same.stdout, same.stdout)
     for run in ("by-couplet", "a/out"):
         (folder / run / "solid/round-off.csv").unlink()
+    for run, value in (("by-couplet", ""), ("a/out", "8")):
+        (folder / run / "solid/gaps.csv").write_text(f"time [s],x [N]\n1,{value}\n2,10\n3,{10 + len(value)}\n")
+    same = call_here(bin_, "compare", folder / "by-couplet", folder / "a", "--tolerance", "0.5")
+    check("compare has one line for each table first, with the largest difference and its place; gaps differ and are not infinite", same.returncode == 1
+          and same.stdout.startswith("solid/gaps.csv: 1 of 2 columns differ, by at most 0.091 of the largest (x [N] at t = 3 s)\n  solid/gaps.csv: x [N]: at most 1 apart")
+          and "a gap in only one run: 1 of 3 values" in same.stdout and "inf" not in same.stdout, same.stdout)
+    for run in ("by-couplet", "a/out"):
+        (folder / run / "solid/gaps.csv").unlink()
     for tolerance in ("nan", "inf", "-1"):
         refused = call_here(bin_, "compare", folder / "by-couplet", folder / "a/out", f"--tolerance={tolerance}")
         check(f"compare refuses the tolerance {tolerance}", refused.returncode == 2 and "at least 0" in refused.stderr, refused.stderr)
@@ -104,7 +113,15 @@ def by_hand(folder):
     check("compare refuses runs without results", nothing.returncode not in (0, 1) or "did the runs fail" in nothing.stderr, nothing.stdout + nothing.stderr)
     longer = call(bin_, "run", case, "--set", "participants.solid.material.youngs-modulus=3.9e6", "--set", f"simulation.output.folder={folder / 'other'}", "-q")
     other = call_here(bin_, "compare", folder / "a/out", folder / "other")
-    check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "solid/probes.csv: tip" in other.stdout, other.stdout[-300:])
+    check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "  solid/probes.csv: tip" in other.stdout, other.stdout[-300:])
+    check("in one line for each field, whatever its outputs", len(re.findall(r"^  fluid/fluid.h5: cells/velocity: at most .* outputs differ\)$", other.stdout, re.M)) == 1, other.stdout[-300:])
+    for words in (("report",), ("watch", "--once"), ("plot", "--field", "velocity"), ("export", "--to", "vtk", "--participant", "solid", "--folder", folder / "vtk")):
+        of_case = call_here(bin_, words[0], folder / "a", *words[1:])
+        check(f"{words[0]} takes the case of a run for its output folder", of_case.returncode == 0 and of_case.stdout, of_case.stdout + of_case.stderr)
+    check("export --to vtk honors --folder and --participant", [f.name for f in (folder / "vtk").iterdir()] == ["solid"] and (folder / "vtk/solid/solid.pvd").is_file() and not (folder / "a/out/solid/vtk").exists())
+    for option in ("--strict", "--slurm", "--strict=effects"):
+        before = call_here(bin_, "run", option, case, "--print")
+        check(f"{option} leaves the case behind it alone", before.returncode == 0 and str(case) in before.stdout and option.replace("--slurm", "#SBATCH") in before.stdout, before.stdout + before.stderr)
     two = call(bin_, "run", case, "-n", "fluid=2", "--print").stdout
     check("-n gives ranks", two.startswith("mpirun --oversubscribe -n 5 ") and two.endswith(" -n fluid=2\n"), two)
     for name, seconds in (("fluid", 3), ("solid", 1), ("mover", 0.5)):
@@ -142,7 +159,7 @@ def side_by_side(folder):
     check("both end well, with the same results", codes == [0, 0] and same.returncode == 0, same.stdout)
     alone = call(bin_, "run", case, "--participant", "fluid", "--set", f"simulation.output.folder={folder / 'one'}")
     # Iterations and what round-off leaves differ between numbers of ranks; fields do not.
-    fields = re.findall(r"fluid\.h5: \S+: .* ([\d.e+-]+) of the largest", call_here(bin_, "compare", folder / "b", folder / "one").stdout)
+    fields = re.findall(r"^  fluid/fluid\.h5: \w.*: .* ([\d.e+-]+) of the largest", call_here(bin_, "compare", folder / "b", folder / "one").stdout, re.M)
     check("compare knows cells and points by their numbers: one rank is the same as two", alone.returncode == 0 and fields and all(float(v) < 1e-6 for v in fields), fields)
 
 
@@ -182,6 +199,15 @@ def stop(folder):
     check("resume goes on to the end", resumed.returncode == 0 and "done in" in resumed.stdout, resumed.stdout[-200:] + resumed.stderr)
     same = call_here(bin_, "compare", folder / "whole", folder / "a/out")
     check("to what the undisturbed run leaves, bit for bit", same.returncode == 0 and "equal bit for bit" in same.stdout, same.stdout)
+    before = {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in (folder / "a/out").rglob("*") if file.is_file()}
+    for words in ((folder / "a/out",), (folder / "a", "-q"), (folder / "a/out", "--set", "simulation.end-time=900 ms")):
+        again = call(bin_, "resume", *words)
+        check(f"a finished run is not resumed {words[1:]}", again.returncode == 0 and "this run is finished (t = 1.2 s); to go on: couplet resume " in again.stdout
+              and "--set simulation.end-time='1.8 s'" in again.stdout, again.stdout + again.stderr)
+    check("nor changed", before == {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in (folder / "a/out").rglob("*") if file.is_file()})
+    shutil.copytree(folder / "a", folder / "longer")
+    longer = call(bin_, "resume", folder / "longer", "-q", "--set", "simulation.end-time=1.25")
+    check("with a later end time it is, quietly", longer.returncode == 0 and "] t=" not in longer.stdout and json.loads((folder / "longer/out/coupler/run.json").read_text())["time"] == 1.25, longer.stdout + longer.stderr)
     others = call(bin_, "resume", folder / "stopped/out", "-n", "fluid=2,solid=2")
     check("resume goes on on other ranks", others.returncode == 0 and "done in" in others.stdout, others.stdout[-200:] + others.stderr)
     one, other = ([float(word) for word in (run / "solid/probes.csv").read_text().splitlines()[-1].split(",")] for run in (folder / "whole", folder / "stopped/out"))
@@ -211,7 +237,7 @@ def stop(folder):
     check("resume starts no program of a folder from elsewhere", foreign.returncode == 2 and "give its command again: --with solid=" in foreign.stderr, foreign.stderr)
     record = json.loads((folder / "stopped/out/job.json").read_text())
     (folder / "stopped/out/job.json").write_text(json.dumps({**record, "bin": str(folder), "with": {"fluid": ["sh", "-c", touch]}}))
-    foreign = call(bin_, "resume", folder / "stopped/out")
+    foreign = call(bin_, "resume", folder / "stopped/out", "--set", "simulation.end-time=2 s")
     check("nor one that its record names", foreign.returncode == 2 and "--with fluid=" in foreign.stderr, foreign.stderr)
     for program in ("/bin/sh", "../../bin/sh", "sh"):
         hostile.write_text(f'note: "$({touch})"\nsimulation: {{end-time: 1 s, time-step: 1 s}}\nparticipants: {{solid: {{program: {program}}}}}\n')
@@ -220,7 +246,7 @@ def stop(folder):
     check("nothing that a case names was started", not (folder / "EXECUTED").exists())
     again = start(bin_, "run", case, "--set", "simulation.checkpoint.interval=0", "--set", "participants.solid.material.density=2000 kg/m^3")
     check("another run in the same folder steps", until(lambda: "2000 kg" in (folder / "a/out/job.json").read_text() and "density: 2000" in (folder / "a/out/solid/effective.yaml").read_text()))
-    subprocess.run(["pkill", "-9", "-f", f"^{bin_}/coupler {folder / 'a'}"], check=True)
+    os.kill(driver(folder / "a/out"), signal.SIGKILL)
     _, said = again.communicate(timeout=60)
     check("its coupler is killed: named, and nothing to resume", again.returncode not in (0, 3) and "'coupler'" in said and "couplet resume" not in said, f"{again.returncode} {said[-300:]}")
     check("checkpoints of an earlier run stay", list((folder / "a/out/checkpoints").glob("step-*/set.txt")))
@@ -255,7 +281,8 @@ def wrong(folder):
     for words, said in ((("run", folder / "none.yaml"), "does not exist"), (("run", case, "-n", "fluid=0"), "whole numbers"), (("run", case, "-n", "air=1"), "there is no participant 'air'"),
                         (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "-n", "fluid=100000"), "would hardly advance"), (("run", case, "--print", "-n", "1" + 20 * "0"), "at most 1000000"),
                         (("run", case, "-n", "fluid=2,fluid=3"), "a participant twice"), (("run", case, "-n", "1e3"), "one whole number"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
-                        (("new", folder / "a"), "exists and is not empty"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
+                        (("new", folder / "a"), "exists and is not empty"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap"),
+                        (("new", folder / "b", "--from", "flap"), "near: perpendicular-flap")):
         result = ask(bin_, *words)
         check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
     for name, content, said in (("binary", b"\x85\xff" * 99, "binary.yaml:1:1: the byte 0x85 is not text in UTF-8"), ("three", b"{simulation: 3, participants: {a: {program: fluid_solver}}}", "simulation"), ("nobody", b"{participants: {a: }}", "participants.a: expected a mapping")):
@@ -278,6 +305,14 @@ def wrong(folder):
     (folder / "h.csv").write_bytes(b"\x89HDF\xff")
     result = ask(bin_, "plot", folder / "h.csv")
     check("a file that is no text", result.returncode == 1 and "is not a text file" in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    (folder / "m.yaml").write_text("simulation: {output: {folder: .}}\nparticipants: {a: {program: b}}\nplot: {panels: [{curves: [{monitor: m.csv, y: 'tip x [m]'}]}]}\n")
+    result = ask(bin_, "plot", folder / "m.yaml")
+    check("a column that is not there", result.returncode == 2 and "y: 'tip x [m]' is neither a name nor an expression" in result.stderr and "has: time [s], a." in result.stderr, result.stderr)
+    for end, said in (("import nothere", "'solid' ended with exit code 1: ModuleNotFoundError: No module named 'nothere'"), ("raise SystemExit(3)", "'solid' ended with exit code 3"), ("raise SystemExit(4)", "'solid' ended with exit code 4"),
+                      ("import couplet\ncouplet.Client('solid', 'own')\n1 / 0", "participant 'solid' ended before the job was over: ZeroDivisionError: division by zero")):
+        (folder / "own.py").write_text(end + "\n")
+        result = call(bin_, "run", case, "--with", f"solid={sys.executable} {folder / 'own.py'}", "--set", "participants.solid={program: own}")
+        check(f"a participant of the user fails ({end[-20:]!r}): it is named with its error", result.returncode == 1 and re.search(r"^failed after [\d.]+ s, exit code 1: (.*)$", result.stderr, re.M)[1] == said, f"{result.returncode} {result.stderr}")
     failing = call(bin_, "run", case, "--strict=effects", "--set", "simulation.time-step=0.03", "--set", "coupling.convergence.max-iterations=1")
     check("a run that fails passes its exit code on", failing.returncode == 1 and "failed after" in failing.stderr, f"{failing.returncode} {failing.stderr}")
 
@@ -355,6 +390,28 @@ def tell(folder):
     check("plot", drawn.returncode == 0 and (folder / "a/out/fluid/forces.png").exists(), drawn.stderr)
 
 
+def reported(folder):
+    """What a run ends with: its own probes first, then forces, then the rest, in numbers that can be read."""
+    def value(name, unit, *values, error=None):
+        return {"name": name, "unit": unit, "values": values, "error": error, "place": ""}
+    for name, found, tables in (("solid", [value("largest displacement", "m", 2e-4), value("equivalent stress", "Pa", 2.535e8, error=0.02), value("buckling", "1", 3.0, error=1.6), value("tip", "m", 1.234e-4, 5e-20), value("reaction root", "N", 5600.0, 3e-14)],
+                                 {"probes": "time [s],tip x [m],tip y [m]", "reactions": "time [s],root x [N],root y [N]"}),
+                                ("mover", [value("least scaled Jacobian", "1", 0.5, 1e-3)], {}), ("air", [value("heat wall", "W", 2.5e7)], {"heat": "time [s],wall [W]"})):
+        (folder / "out" / name).mkdir(parents=True)
+        (folder / "out" / name / f"{name}.log").touch()
+        (folder / "out" / name / "run.json").write_text(json.dumps({"time": 1, "results": found, "error": "estimated numerical error 1.6e+02 %, mostly mesh"}))
+        for table, heads in tables.items():
+            (folder / "out" / name / f"{table}.csv").write_text(heads + "\n")
+    told = call_here(bin_, "report", folder / "out").stdout
+    wanted = ["Results of 'solid' at t = 1 s", "tip 0.1234 0 mm", "equivalent stress 253.5 MPa +- 5.1 (2 %)", "buckling 3 +- 4.8 (useless)", "reaction root 5600 0 N", "largest displacement 0.2 mm",
+              "Results of 'air' at t = 1 s", "heat wall 25 MW", "Results of 'mover' at t = 1 s", "least scaled Jacobian 0.5 0.001", "Verdict: no warning; estimated numerical error over 100 % (useless), mostly mesh"]
+    check("report", [" ".join(line.split()) for line in told.splitlines()][:len(wanted)] == wanted, told)
+    from couplet.command.report import rows
+    from couplet.runs import Results
+    few = [line.split()[0] for line in rows(Results(folder / "out"), ["mover", "air", "solid"], 5)]
+    check("where few lines fit, they are the most important", few == ["Results", "tip", "equivalent", "buckling", "and"], few)
+
+
 def gallery(folder):
     """Every case of the gallery, copied into an empty folder, is a valid case."""
     names = [line.split()[0] for line in call(bin_, "gallery").stdout.splitlines()]
@@ -383,5 +440,5 @@ def python(folder):
 
 
 with tempfile.TemporaryDirectory(prefix="couplet-command-") as scratch:
-    {"by_hand": by_hand, "any_launcher": any_launcher, "side_by_side": side_by_side, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "python": python}[what](pathlib.Path(scratch))
+    {"by_hand": by_hand, "any_launcher": any_launcher, "side_by_side": side_by_side, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "reported": reported, "gallery": gallery, "python": python}[what](pathlib.Path(scratch))
 end()

@@ -52,6 +52,13 @@ def parser_of(name):
     return parser
 
 
+def whole(words, parser):
+    """Words in which an option whose value may be left out has it behind an equals sign, since it would take the next
+    word for it, such as the case in `--strict CASE`."""
+    optional = {o for action in parser._actions if action.nargs == "?" for o in action.option_strings}
+    return [f"{word}=" if word in optional else word for word in words]
+
+
 def version():
     from couplet.places import BY_PIP, IN_CHECKOUT, PACKAGE, ROOT
     import re
@@ -74,7 +81,8 @@ def overview():
 def dispatch(name, words):
     prog = f"couplet {name}"
     raw = name == "validate" and words[:1] not in (["-h"], ["--help"])  # its arguments are those of scripts/validate
-    arguments = argparse.Namespace(words=words) if raw else parser_of(name).parse_args(words)
+    parser = None if raw else parser_of(name)
+    arguments = argparse.Namespace(words=words) if raw else parser.parse_args(whole(words, parser))
     from couplet.runs.case import Wrong, yaml
 
     try:

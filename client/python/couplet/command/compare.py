@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the differences between two runs: effective values, columns of tables, fields at each output, and findings.
-Their cost (seconds, iterations, logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within
---tolerance, and 1 otherwise."""
+"""Lists the differences between two runs: effective values, findings, one line for each table or file of fields with
+the largest difference and its place, and then the columns of tables and the fields. Their cost (seconds, iterations,
+logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within --tolerance, and 1 otherwise."""
 import argparse
 import math
 import pathlib
 import re
 
 from couplet.runs.case import Wrong, expect, load
+from couplet.runs.job import RUN_HELP, run_folder
 from couplet.runs.results import Results, read_csv
 
 COST = re.compile(r"seconds|waiting|working|processor|clock|so far|iterations|residual")
@@ -21,8 +22,8 @@ def share(text):
 
 
 def declare(parser):
-    parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
-    parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another run")
+    parser.add_argument("first", type=pathlib.Path, metavar="RUN", help=RUN_HELP)
+    parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="another run")
     parser.add_argument(
         "--tolerance",
         type=share,
@@ -42,21 +43,39 @@ def flat(node, name=""):
 
 
 def apart(a, b, largest=0.0):
-    """Returns (largest difference, relative to `largest` or the largest value here), or None if the shapes differ."""
+    """Difference of two arrays: (words, share, index of the largest difference, number of values that cannot be
+    compared). The words are empty if there is no difference. The share is that of `largest`, or of the largest value
+    here."""
     import numpy as np
 
     if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
-        return None
+        return f"shape {a.shape} | {b.shape}", 0.0, None, max(a.size, b.size)
     if a.dtype.kind not in "fiu":
-        return (0.0, 0.0) if (a == b).all() else (float("inf"), float("inf"))
+        unequal = int((a != b).sum())
+        return (f"{unequal} of {a.size} values differ" if unequal else ""), 0.0, None, unequal
     if a.tobytes() == b.tobytes():
-        return 0.0, 0.0
-    same = (a == b) | (np.isnan(a) & np.isnan(b)) if a.dtype.kind == "f" else a == b
-    if same.all():
-        return 0.0, 0.0
-    gap = np.abs(np.where(same, 0, a.astype(float) - b))
-    gap = float("inf") if np.isnan(gap).any() else float(gap.max())
-    return gap, gap / (max(largest, float(np.nanmax(np.abs([a.astype(float), b])))) or 1.0)
+        return "", 0.0, None, 0
+    a, b = a.astype(float), b.astype(float)
+    missing = np.isnan(a) != np.isnan(b)
+    both = np.isfinite(a) & np.isfinite(b)
+    gap = np.where(both, np.abs(np.where(both, a, 0) - np.where(both, b, 0)), 0)
+    infinite = ~both & ~missing & ~np.isnan(a) & (a != b)
+    most, at = float(gap.max()), np.unravel_index(gap.argmax(), gap.shape)
+    share = most / (max(largest, *(float(np.abs(v[both]).max(initial=0)) for v in (a, b))) or 1.0)
+    words = [f"at most {most:.3g} apart, {share:.2g} of the largest"] if most else []
+    for wrong, what in ((missing, "a gap in only one run"), (infinite, "infinite in one run")):
+        words += [f"{what}: {wrong.sum()} of {a.size} values"] if wrong.any() else []
+    return "; ".join(words), share, at, int(missing.sum() + infinite.sum())
+
+
+def with_gaps(values):
+    """Numbers of a column, with NaN for empty values. A column of texts is returned as it is."""
+    import numpy as np
+
+    try:
+        return np.array([float(v or "nan") for v in values]) if values.dtype.kind == "U" else values
+    except ValueError:
+        return values
 
 
 def arrays(folder):
@@ -69,7 +88,7 @@ def arrays(folder):
         if file.stat().st_size:
             for head, values in read_csv(file).items():
                 if not COST.search(head):
-                    found[f"{file.relative_to(folder)}: {head}"] = values
+                    found[f"{file.relative_to(folder)}: {head}"] = with_gaps(values)
     for file in sorted(folder.glob("*/*.h5")):
         if file.parent.name == "checkpoints":
             continue
@@ -159,24 +178,56 @@ def group_of(name):
 
 
 def differences(first, second, tolerance):
-    """Returns [(name, text, True if beyond the tolerance)] of all arrays."""
+    """Returns [(name, words or "", True if beyond the tolerance, share, place of the largest difference)] of all
+    arrays."""
     a, b = arrays(first), arrays(second)
-    largest = scales(a, b)
+    largest, times = scales(a, b), {}
     for name in [*a, *(n for n in b if n not in a)]:
         if name not in a or name not in b:
-            yield name, f"only in {first if name in a else second}", True
+            yield name, f"only in {first if name in a else second}", True, 0.0, ""
             continue
-        gap = apart(a[name], b[name], largest.get(group_of(name), 0.0))
-        if gap is None:
-            yield name, f"shape {a[name].shape} | {b[name].shape}", True
-        elif gap[0]:
-            yield name, f"at most {gap[0]:.3g} apart, {gap[1]:.2g} of the largest", gap[1] > tolerance
-        else:
-            yield name, "equal", False
+        file, _, head = name.partition(": ")
+        words, share, at, odd = apart(a[name], b[name], largest.get(group_of(name), 0.0))
+        if head.startswith("time "):
+            times[file] = a[name]
+        row = at[0] if at and name.endswith("]") and file in times and len(times[file]) == len(a[name]) else None
+        place = head if row is None else f"{head} at t = {times[file][row]:g} s"
+        yield name, words, odd > 0 or share > tolerance, share, place
+
+
+def summaries(found):
+    """One line for each table or file of fields that differs by more than the tolerance."""
+    files = {}
+    for name, *rest in found:
+        files.setdefault(name.partition(": ")[0], []).append(rest)
+    for file, rows in files.items():
+        beyond = [row for row in rows if row[1]]
+        if not beyond:
+            continue
+        words, _, share, place = max(beyond, key=lambda row: row[2])
+        most = f"by at most {share:.2g} of the largest ({place})" if share else f"such as: {words}"
+        yield f"{file}: {len(beyond)} of {len(rows)} {'columns' if file.endswith('.csv') else 'fields'} differ, {most}"
+
+
+OUTPUT = re.compile(r"(.*\.h5: )(t = \S+ s)/(.*)")
+
+
+def by_field(found):
+    """One row for each field instead of one for each of its outputs: that with the largest difference."""
+    fields = {}
+    for item in found:
+        output = OUTPUT.fullmatch(item[0])
+        fields.setdefault(output[1] + output[3] if output else item[0], []).append(item)
+    for name, items in fields.items():
+        worst, differ = max(items, key=lambda item: (item[2], item[3])), sum(bool(item[1]) for item in items)
+        output, words = OUTPUT.fullmatch(worst[0]), worst[1]
+        if output and words:
+            words = f"{words} ({output[2]}; {differ} of {len(items)} outputs differ)"
+        yield (name, words, *worst[2:])
 
 
 def run(arguments):
-    runs = arguments.first, arguments.second
+    runs = run_folder(arguments.first), run_folder(arguments.second)
     for folder in runs:
         expect(folder.is_dir() and Results(folder).participants(), f"{folder}: is no output folder of a run")
     changed = of_mappings(*map(values_in_force, runs))
@@ -189,14 +240,16 @@ def run(arguments):
     print(*changed, *findings, sep="\n", end="\n" if changed or findings else "")
     found = list(differences(*runs, arguments.tolerance))
     expect(found, f"{runs[0]} and {runs[1]}: have no tables and fields to compare; did the runs fail?")
-    apart_ones = [(name, words) for name, words, _ in found if words != "equal"]
-    for name, words in [(n, w) for n, w, far in found if far or arguments.all]:
-        print(f"{name}: {words}")
-    beyond = sum(far for _, _, far in found)
+    for line in summaries(found):
+        print(line)
+    for name, words, far, *_ in by_field(found):
+        if far or arguments.all:
+            print(f"  {name}: {words or 'equal'}")
+    apart_ones, beyond = sum(bool(words) for _, words, *_ in found), sum(far for _, _, far, *_ in found)
     told = (
         "equal bit for bit"
         if not apart_ones
-        else f"{len(apart_ones)} differ"
+        else f"{apart_ones} differ"
         + (f", {beyond} by more than {arguments.tolerance:g}" if arguments.tolerance else "")
     )
     print(f"{len(found)} columns and fields: {told}")

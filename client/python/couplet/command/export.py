@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the fields of a run for other programs (--to vtk: .vtu files with a .pvd in each participant's folder vtk/, of
-an output folder instead of a case), or a case as input of another program into a folder: CalculiX (static, linear
-elastic solids) or OpenFOAM (incompressible, laminar flow for icoFoam and pimpleFoam; static solids for
-solidDisplacementFoam). A key without a counterpart there is an error that names it. `couplet study --peers` runs both
-and compares them."""
+"""Writes the fields of a run for other programs (--to vtk: .vtu files with a .pvd that lists them, for each
+participant), or a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM
+(incompressible, laminar flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key without a
+counterpart there is an error that names it. `couplet study --peers` runs both and compares them."""
 import pathlib
 import shutil
 import tempfile
 
 from couplet import files
 from couplet.runs.case import Case, expect, with_changes
+from couplet.runs.job import run_folder
 
 TO = ("calculix", "openfoam", "vtk")
 
@@ -19,11 +19,14 @@ def declare(parser):
         "case",
         type=pathlib.Path,
         metavar="CASE",
-        help="a YAML file, or a folder with case.yaml; for vtk the output folder of a run",
+        help="a YAML file, or a folder with case.yaml; for vtk also the output folder of a run",
     )
     parser.add_argument("--to", required=True, choices=TO, help="the target program")
     parser.add_argument(
-        "--folder", type=pathlib.Path, metavar="FOLDER", help="output folder (default: PROGRAM next to the case)"
+        "--folder",
+        type=pathlib.Path,
+        metavar="FOLDER",
+        help="output folder (default: PROGRAM next to the case; for vtk the folder vtk/ of each participant)",
     )
     parser.add_argument("--participant", metavar="NAME", help="participant to export, if the case has several")
     parser.add_argument(
@@ -72,24 +75,30 @@ def made(case, arguments, work):
     return Input(solid, arguments.element or kinds(solid)[-1][0])
 
 
+def new_folder(folder):
+    folder = files.below(folder.parent, folder.name)
+    expect(
+        not folder.exists() or folder.is_dir() and not any(folder.iterdir()),
+        f"--folder {folder}: exists and is not empty; choose a new name",
+    )
+    return folder
+
+
 def run(arguments):
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
     expect(arguments.element is None or arguments.to == "calculix", "--element: is of --to calculix")
     if arguments.to == "vtk":
         from couplet.vtk import write
 
-        expect(arguments.case.is_dir(), f"{arguments.case}: there is no such output folder")
-        lists = write(arguments.case)
-        expect(lists, f"{arguments.case}: there are no field series (*/*.h5) in it")
+        expect(not arguments.set, "--set: changes a case; a run is exported as it is")
+        out = run_folder(arguments.case)
+        expect(out.is_dir(), f"{out}: there is no such output folder; has the case been run?")
+        lists = write(out, arguments.folder and new_folder(arguments.folder), arguments.participant)
+        expect(lists, f"{out}: there are no field series ({arguments.participant or '*'}/*.h5) in it")
         print("written, open in ParaView:", *lists, sep="\n  ")
         return 0
     case = Case(arguments.case)
-    folder = arguments.folder or case.file.parent / arguments.to
-    folder = files.below(folder.parent, folder.name)
-    expect(
-        not folder.exists() or folder.is_dir() and not any(folder.iterdir()),
-        f"--folder {folder}: exists and is not empty; choose a new name",
-    )
+    folder = new_folder(arguments.folder or case.file.parent / arguments.to)
     with tempfile.TemporaryDirectory(prefix="couplet-export-") as work:
         try:
             command = made(case, arguments, pathlib.Path(work)).write(folder)

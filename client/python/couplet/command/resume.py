@@ -7,16 +7,17 @@ import shlex
 import subprocess
 import sys
 
-from couplet.command.run import RANKS_HELP, build_of, declare_guests, pairs, ranks_of, shown_run
+from couplet.command.run import RANKS_HELP, build_of, declare_guests, pairs, ranks_of, shown, shown_run
 from couplet.runs import folder as folders
-from couplet.runs.case import OURS, Case, expect
-from couplet.runs.job import Job, surroundings
+from couplet.runs.case import OURS, Case, Wrong, expect, with_changes
+from couplet.runs.job import RUN_HELP, Job, run_folder, surroundings
+from couplet.runs.results import Results
 
 SHAPE = {"case": str, "ranks": dict, "sets": list, "flags": list, "with": dict}  # of the record
 
 
 def declare(parser):
-    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
+    parser.add_argument("folder", type=pathlib.Path, metavar="RUN", help=RUN_HELP)
     parser.add_argument(
         "-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}"
     )
@@ -47,6 +48,7 @@ def declare(parser):
         "--restart-with-changes", action="store_true", help="continues although keys that change the solution differ"
     )
     parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
+    parser.add_argument("-q", "--quiet", action="store_true", help="prints only warnings and errors")
 
 
 def problem_of(job, checkpoint):
@@ -59,15 +61,31 @@ def problem_of(job, checkpoint):
     return next((line for line in asked.stderr.splitlines() if str(checkpoint) in line), "")
 
 
+def finished_at(folder, case, sets):
+    """Time [s] at which the run in this folder ended, if the case with these --set ends no later. None otherwise."""
+    from couplet.peers.values import number
+
+    results = Results(folder)
+    reports = {name: results.report(name) for name in results.participants()}
+    driver = reports.get("coupler") or next(iter(reports.values()), {})
+    try:
+        simulation = with_changes(case.data, dict(s.split("=", 1) for s in sets))["simulation"]
+        end = number(simulation["end-time"], "simulation.end-time")
+    except (Wrong, KeyError, TypeError):  # the programs say what is wrong with it
+        return None
+    return driver["time"] if driver.get("state") == "ended" and driver["time"] >= end * (1 - 1e-9) else None
+
+
 def run(arguments):
-    folder = arguments.folder.absolute()
-    expect(folder.is_dir(), f"{arguments.folder}: there is no such folder")
+    named = run_folder(arguments.folder)
+    folder = named.absolute()
+    expect(folder.is_dir(), f"{named}: there is no such folder")
     record = folders.read_record(folder)
     expect(
         record,
         (
-            f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE"
-            f" --restart {arguments.folder / 'checkpoints'}"
+            f"{named}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE"
+            f" --restart {named / 'checkpoints'}"
         ),
     )
     expect(
@@ -75,21 +93,21 @@ def run(arguments):
         and all(isinstance(n, int) for n in record["ranks"].values()),
         (
             f"{folder / folders.RECORD}: is damaged. Continue with: couplet run CASE --restart"
-            f" {arguments.folder / 'checkpoints'}"
+            f" {named / 'checkpoints'}"
         ),
     )
     file, found = pathlib.Path(os.path.normpath(folder / record["case"])), folders.checkpoints(folder)
     expect(
         file.is_file(),
         (
-            f"{arguments.folder}: its case is not at {file}. Continue with: couplet run CASE --restart"
-            f" {arguments.folder / 'checkpoints'} --set simulation.output.folder={shlex.quote(str(folder))}"
+            f"{named}: its case is not at {file}. Continue with: couplet run CASE --restart"
+            f" {named / 'checkpoints'} --set simulation.output.folder={shlex.quote(str(folder))}"
         ),
     )
     expect(
         found,
         (
-            f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes"
+            f"{named}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes"
             f" them. Start again: couplet run {shlex.quote(str(file))}"
         ),
     )
@@ -97,6 +115,11 @@ def run(arguments):
     case, played_by = Case(file, build_of(arguments.bin)).changed(sets), {
         name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()
     }
+    end = None if arguments.print else finished_at(folder, Case(file), sets)
+    if end is not None:  # the programs would start, make no step and overwrite the results with nothing
+        line = f"couplet resume {shlex.quote(shown(named))} --set simulation.end-time='{1.5 * end:g} s'"
+        print(f"this run is finished (t = {end:g} s); to go on: {line}")
+        return 0
     for name in (
         [record["alone"]] if record["alone"] else case.participants
     ):  # the folder may be another's: nothing is started that only it names
@@ -110,7 +133,7 @@ def run(arguments):
         )
     expect(
         arguments.allow_commands or "--allow-commands" not in record["flags"],
-        f"{arguments.folder}: its run let the .geo run commands. If you trust the case, give --allow-commands again",
+        f"{named}: its run let the .geo run commands. If you trust the case, give --allow-commands again",
     )
     flags = [
         *record["flags"],
@@ -119,6 +142,7 @@ def run(arguments):
             if arguments.restart_with_changes and "--restart-with-changes" not in record["flags"]
             else []
         ),
+        *(["--quiet"] if arguments.quiet and "--quiet" not in record["flags"] else []),
     ]
 
     def job_from(name):

@@ -220,7 +220,7 @@ def shown_run(job, picture=False, verbose=False):
         if (
             job.case.coupled and not job.alone and code in (0, 4) and "--quiet" not in job.flags
         ):  # a program alone prints its own
-            print(*report.verdict(Results(job.output), ["coupler", *job.case.participants]), sep="\n")
+            print(*report.ending(Results(job.output), ["coupler", *job.case.participants]), sep="\n")
         return finish(job, code, picture)
     digest = Digest(job)
     digest.begin()

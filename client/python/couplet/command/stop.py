@@ -7,10 +7,11 @@ import sys
 
 from couplet.runs import folder as folders
 from couplet.runs.case import expect
+from couplet.runs.job import RUN_HELP, run_folder
 
 
 def declare(parser):
-    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
+    parser.add_argument("folder", type=pathlib.Path, metavar="RUN", help=RUN_HELP)
     parser.add_argument(
         "--within",
         type=float,
@@ -21,22 +22,20 @@ def declare(parser):
 
 
 def run(arguments):
-    expect(arguments.folder.is_dir(), f"{arguments.folder}: there is no such folder")
+    folder = run_folder(arguments.folder)
+    expect(folder.is_dir(), f"{folder}: there is no such folder")
     expect(
-        folders.stop(arguments.folder),
+        folders.stop(folder),
         (
-            f"{arguments.folder}: no running job found for this folder on this machine (for a Slurm job, use scancel"
+            f"{folder}: no running job found for this folder on this machine (for a Slurm job, use scancel"
             " --signal=TERM --full JOB)"
         ),
     )
-    if not folders.wait_for_end(arguments.folder, arguments.within):
+    if not folders.wait_for_end(folder, arguments.within):
         print(
             f"couplet stop: still running after {arguments.within:g} s; it stops after the current step",
             file=sys.stderr,
         )
         return 1
-    print(
-        f"stopped, saved as {folders.checkpoint(arguments.folder)}; continue: couplet resume"
-        f" {shlex.quote(str(arguments.folder))}"
-    )
+    print(f"stopped, saved as {folders.checkpoint(folder)}; continue: couplet resume {shlex.quote(str(folder))}")
     return 0

@@ -8,13 +8,14 @@ import time
 
 from couplet.runs import folder as folders
 from couplet.runs.case import expect
+from couplet.runs.job import RUN_HELP, run_folder
 from couplet.runs.progress import Logs, Progress, by_tables
 from couplet.runs.results import Results
 from couplet.runs.terminal import Screen
 
 
 def declare(parser):
-    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="output folder of the run")
+    parser.add_argument("folder", type=pathlib.Path, metavar="RUN", help=RUN_HELP)
     parser.add_argument("--every", type=float, default=0.5, metavar="SECONDS", help="refresh interval (default: 0.5)")
     parser.add_argument("--once", action="store_true", help="prints the current state and exits")
     parser.add_argument(
@@ -40,7 +41,7 @@ def ending(folder):
 
 
 def run(arguments):
-    folder = arguments.folder
+    folder = run_folder(arguments.folder)
     expect(folder.is_dir(), f"{folder}: there is no such folder")
     if arguments.web:
         from couplet.command import page

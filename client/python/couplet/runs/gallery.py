@@ -109,7 +109,7 @@ def find(name):
     there = sorted(file.parent.name for file in (ROOT / "configs").glob("*/case.yaml"))
     file = ROOT / "configs" / name
     file = file / "case.yaml" if file.is_dir() else file
-    near = difflib.get_close_matches(name, there, 3)
+    near = dict.fromkeys([*(n for n in there if name and name in n), *difflib.get_close_matches(name, there, 3)])
     expect(
         file.is_file() and ".." not in pathlib.PurePath(name).parts,
         (

@@ -22,8 +22,7 @@ from collections.abc import Mapping
 from couplet import places
 from couplet.runs import folder as folders
 from couplet.runs.case import COUPLER, OURS, Case, expect, load, mapping_of
-from couplet.runs.process import Pages, culprit
-from couplet.runs.process import RunFailed, environment, last_words
+from couplet.runs.process import CLIENT, Pages, RunFailed, culprit, environment, last_words, owner, raised
 
 if typing.TYPE_CHECKING:
     from couplet.runs.results import Results
@@ -47,6 +46,15 @@ def output_of(case, sets):
         elif key == "simulation.output.folder":
             name = value
     return case.file.parent / str(name)
+
+
+RUN_HELP = "a run: its output folder, or its case"
+
+
+def run_folder(path):
+    """Output folder of a run that is named by this folder or by its case."""
+    path = pathlib.Path(path)
+    return output_of(Case(path), ()) if path.is_file() or (path / "case.yaml").is_file() else path
 
 
 def surroundings(parts=()):
@@ -250,22 +258,32 @@ class Job:
             # Rejected, for example for a --set: the record of the results that are there remains, and the next resume
             # does not use this one.
             folders.write_record(self.output, former)
+        if self.failed_guest():  # its exit code has a meaning of its own
+            return 1
         return code if code >= 0 else 128 - code
+
+    def sizes(self):
+        names = (self.alone,) if self.alone else (COUPLER, *self.case.participants)
+        return [(name, int(self.ranks.get(name, 1))) for name in names]
+
+    def failed_guest(self):
+        """(name, exit code) of the external participant that was the first to end with an error; None otherwise."""
+        rank, code = self.pages.exited or (None, 0)
+        name = owner(rank, self.sizes())[0] if code else None
+        return (name, code) if name not in (None, COUPLER) and self.case.guest(name, self.played_by) else None
 
     def last_words(self):
         if self.pages.killed and not self.asked:
-            return culprit(
-                self.pages.killed,
-                [
-                    (name, int(self.ranks.get(name, 1)))
-                    for name in ((self.alone,) if self.alone else (COUPLER, *self.case.participants))
-                ],
-            )
+            return culprit(self.pages.killed, self.sizes())
+        said = "\n".join(self.last)
+        if (guest := self.failed_guest()) and CLIENT not in said:
+            error = raised(said)
+            return f"'{guest[0]}' ended with exit code {guest[1]}{f': {error}' if error else ''}"
         if self.process.returncode < 0:
             return (
                 f"mpirun was ended by signal {-self.process.returncode} ({signal.strsignal(-self.process.returncode)})"
             )
-        return last_words("\n".join(self.last))
+        return last_words(said)
 
 
 def run(

@@ -41,9 +41,20 @@ def environment():
     return {"OMPI_MCA_hwloc_base_binding_policy": "none", **os.environ, **ours}
 
 
+CLIENT = "couplet client: "  # begins a line of the library in an external participant
+
+
+def raised(text):
+    """Last line of the last traceback of Python in a text; empty if there is none."""
+    lines = iter(text.rpartition("Traceback (most recent call last):\n")[2].splitlines() if "Traceback" in text else ())
+    return next((line for line in lines if line[:1].strip()), "")
+
+
 def last_words(text):
     """Last output of a program without MPI's messages."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
+    if guest := next((line for line in lines if line.startswith(CLIENT)), ""):  # an external participant gives up
+        return guest.removeprefix(CLIENT)
     # A line of the watch over the job says why it ends; the error estimate is written at the end of a failed run, too.
     named = [line for line in lines if line.startswith("couplet: ")] or [
         line for line in lines if "error:" in line.lower()
@@ -128,6 +139,7 @@ def commit(root):
 
 FRAME = re.compile(rb"-{40,}\s*")
 KILLED = re.compile(r"process rank (\d+) .*exited on signal (\d+)(?: \((.*?)\))?", re.S)
+EXITED = re.compile(r"first process to do so was: Process name: \[\[\d+,\d+\],(\d+)\] Exit code: (\d+)")
 OTHERS = (
     "Primary job terminated normally",
     "mpirun detected that one or more processes exited",
@@ -140,7 +152,7 @@ class Pages:
     """Removes mpirun's messages from a stream of bytes."""
 
     def __init__(self):
-        self.rest, self.page, self.killed = b"", None, None
+        self.rest, self.page, self.killed, self.exited = b"", None, None, None
 
     def feed(self, data, last=False):
         """Returns complete parts that are not mpirun's."""
@@ -168,17 +180,28 @@ class Pages:
         words = " ".join(text.decode(errors="replace").split())
         if found := KILLED.search(words):
             self.killed = self.killed or (int(found[1]), int(found[2]), found[3] or "")
+        if failed := EXITED.search(words):
+            self.exited = self.exited or (int(failed[1]), int(failed[2]))
         return b"" if found or any(other in words for other in OTHERS) else text
 
 
-def culprit(killed, sizes):
-    """Name of the killed program. `sizes` is [(name, ranks)] in the order of the launch line."""
-    rank, number, name = killed
+def owner(rank, sizes):
+    """(name of the program that has this rank, its own number of the rank, its number of ranks). `sizes` is [(name,
+    ranks)] in the order of the launch line."""
     for who, ranks in sizes:
         if rank < ranks:
-            return (
-                f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was ended by signal"
-                f" {number}{f' ({name})' if name else ''}"
-            )
+            return who, rank, ranks
         rank -= ranks
-    return f"a process was ended by signal {number}"
+    return None, rank, 1
+
+
+def culprit(killed, sizes):
+    """Name of the killed program."""
+    rank, number, name = killed
+    who, rank, ranks = owner(rank, sizes)
+    if who is None:
+        return f"a process was ended by signal {number}"
+    return (
+        f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was ended by signal"
+        f" {number}{f' ({name})' if name else ''}"
+    )

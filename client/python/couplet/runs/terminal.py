@@ -115,17 +115,14 @@ class Digest(Screen):
 
     def end(self, code):
         """Prints the results, the verdict and the number of further warnings."""
-        from couplet.command.report import MOST_ROWS, rows, verdict
+        from couplet.command.report import ending
         from couplet.runs.results import Results
 
         self.clear()
         if code not in (0, 3, 4):
-            print(
-                *self.unsaid[-30:] if code == 2 else (),
-                sep="\n",
-                end="\n" if code == 2 and self.unsaid else "",
-                file=sys.stderr,
-            )
+            # Besides errors of the case, the traceback of a participant in Python.
+            told = self.unsaid[-30:] if code == 2 or any(line.startswith("Traceback") for line in self.unsaid) else []
+            print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
             return
         results = Results(self.job.output)
         names = [
@@ -133,7 +130,7 @@ class Digest(Screen):
             for name in results.participants()
             if name in ([self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants])
         ]
-        print(*rows(results, names, MOST_ROWS - 2 * len(names)), *verdict(results, names), sep="\n")
+        print(*ending(results, names), sep="\n")
         hidden = len(self.told) - MOST_FINDINGS
         if hidden > 0:
             print(f"{hidden} more warnings in the logs")

@@ -240,5 +240,7 @@ def evaluate(text, names, functions=()):
 
     try:
         return value(ast.parse(text.strip().replace("^", "**"), mode="eval").body)
-    except (SyntaxError, TypeError, ArithmeticError, RecursionError, MemoryError) as error:
+    except SyntaxError:
+        raise ValueError(f"'{text[:60]}' is neither a name nor an expression") from None
+    except (TypeError, ArithmeticError, RecursionError, MemoryError) as error:
         raise ValueError(f"{type(error).__name__}: {error}") from error
