@@ -232,16 +232,16 @@ class Reader:
         """Family and number of nodes; 0 nodes for elements that are no part of a mesh."""
         if name in BARS or name in POINTS:
             return 'T2D2', BARS.get(name, 0)
-        plain = ('CPS' + name[3:] if name.startswith('CPE') else name).rstrip('RHIMS')
+        kind = name[1:] if name.startswith('DC') else name  # elements of heat
+        plain = ('CPS' + kind[3:] if kind.startswith(('CPE', 'CAX', 'C2D')) else kind).rstrip('RHIMST')
         n = plain[3:] if plain[:3] in ('C3D', 'CPS') else ''
         family = SECOND.get(plain, plain)
         if n.isdigit() and family in KINDS:
             return family, int(n)
-        reason = ('axisymmetric elements are not supported' if name.startswith(('CAX', 'DCAX')) else
-                  'shells and membranes are not supported; mesh the wall as a solid' if name.startswith(('S3', 'S4', 'S6', 'S8', 'STRI', 'SC', 'M3D')) else
-                  'it is not a solid element' if name.startswith(('DC', 'AC', 'F', 'U')) else 'it is unknown')
+        reason = ('shells and membranes are not supported; mesh the wall as a solid' if name.startswith(('S3', 'S4', 'S6', 'S8', 'STRI', 'SC', 'M3D')) else
+                  'it is not a solid element' if name.startswith(('AC', 'F', 'U')) else 'it is unknown')
         self.fail("elements of type '%s' are not supported (%s). Supported: C3D4, C3D5, C3D6, C3D8, C3D10, C3D15, C3D20, CPS3, CPS4, CPS6, CPS8 and their "
-                  'CPE equivalents; second-order ones by their corners.' % (name[:40], reason))
+                  'CPE, CAX and DC equivalents; second-order ones by their corners.' % (name[:40], reason))
     def count(self, n=1):
         self.members += n
         if self.members > MOST_MEMBERS:

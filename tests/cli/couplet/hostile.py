@@ -134,10 +134,12 @@ XML = """<precice-configuration><data:vector name="D"/><mesh name="M" dimensions
 <mapping:nearest-neighbor direction="read" from="M" to="N" constraint="consistent"/></participant><m2n:sockets acceptor="One" connector="Two"/>
 <coupling-scheme:serial-explicit><participants first="One" second="Two"/><max-time-windows value="2"/><time-window-size value="1"/><exchange data="D" mesh="M" from="One" to="Two"/></coupling-scheme:serial-explicit>
 </precice-configuration>"""
+DECK = """*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n*ELEMENT,TYPE=CPS4,ELSET=all\n1,1,2,3,4\n*NSET,NSET=root\n1,4\n*MATERIAL,NAME=m\n*ELASTIC\n1e9,.3
+*SOLID SECTION,ELSET=all,MATERIAL=m\n*BOUNDARY\nroot,1,2\n*STEP\n*STATIC\n*DLOAD\n1,P2,1e3\n*END STEP\n"""
 MOST = 25  # places of links for each command
 WRITERS = (("plot", "case.yaml"), ("plot", "out"), ("plot", "out/solid/probes.csv"), ("plot", "out", "--field", "displacement"), ("plot", "out", "--field", "displacement", "--surface", "top"),
            ("plot", "case.yaml", "--film"), ("export", "out", "--to", "vtk"), ("export", "static.yaml", "--to", "calculix"), ("export", "static.yaml", "--to", "openfoam"),
-           ("export", "flow.yaml", "--to", "openfoam"), ("import", "p.xml"), ("weather", "w.csv"), ("weather", "w.csv", "-o", "x.csv.gz"), ("new", "mine"),
+           ("export", "flow.yaml", "--to", "openfoam"), ("import", "p.xml"), ("import", "d.inp"), ("weather", "w.csv"), ("weather", "w.csv", "-o", "x.csv.gz"), ("new", "mine"),
            ("run", "case.yaml", "-q", "--picture"), ("resume", "out", "--set", "simulation.end-time=6 ms"), ("study", "study.yaml"), ("mesh", "cut", "case.yaml"))
 
 
@@ -162,7 +164,7 @@ class Scene:
         self.sound.mkdir()
         shutil.copy(MESH, self.sound)
         hours = "\n".join(f"{h},500,20,3,50,100000" for h in range(8760))
-        for name, text in {"case.yaml": MOVING + PLOT, "static.yaml": CASE, "flow.yaml": FLOW, "study.yaml": MOVING + STUDY, "p.xml": XML, "w.csv": f"hour,dni,t2m,ws10m,rh,sp [Pa]\n{hours}\n"}.items():
+        for name, text in {"case.yaml": MOVING + PLOT, "static.yaml": CASE, "flow.yaml": FLOW, "study.yaml": MOVING + STUDY, "p.xml": XML, "d.inp": DECK, "w.csv": f"hour,dni,t2m,ws10m,rh,sp [Pa]\n{hours}\n"}.items():
             (self.sound / name).write_text(text)
         done = couplet(self.sound, "run", "case.yaml", "-q")
         assert done.returncode == 0, done.stderr
@@ -266,7 +268,8 @@ class Scene:
 
     def faults(self):
         for words, name, target in ((("plot", "case.yaml"), "out/case.png", "victim.txt"), (("export", "out", "--to", "vtk"), "out/solid/vtk", "folder"),
-                                    (("export", "static.yaml", "--to", "calculix"), "calculix", "folder"), (("import", "p.xml"), "p.yaml", ".bash_login")):
+                                    (("export", "static.yaml", "--to", "calculix"), "calculix", "folder"), (("import", "p.xml"), "p.yaml", ".bash_login"),
+                                    (("import", "d.inp"), "d.yaml", ".bash_login"), (("import", "d.inp"), "d-mesh.msh", "victim.txt")):
             bad = self.linked(words, name, target)
             check(f"{' '.join(words)} does not follow a link", not bad and (self.scratch / "case" / name).is_symlink(), bad)
         folder = self.fresh()

@@ -18,7 +18,10 @@ SUBCOMMANDS = {
     "check": ("command.check", "reports all errors of a case without running it"),
     "explain": ("command.explain", "lists what a case computes and neglects, and its expected cost"),
     "new": ("command.new", "creates a case of your own from an example"),
-    "import": ("command.import_precice", "creates a case from a configuration of preCICE"),
+    "import": (
+        "command.import_case",
+        "creates a case from a deck of CalculiX or Abaqus, or a configuration of preCICE",
+    ),
     "gallery": ("command.gallery", "lists the example cases"),
     "docs": ("command.docs", "shows the documentation with search and a gallery of all cases"),
     "plot": ("plot", "plots the results of a run"),

@@ -16,23 +16,6 @@ from couplet.runs.case import CONTROL, COUPLER, Wrong, expect
 from couplet.runs.job import surroundings
 
 
-def declare(parser):
-    parser.add_argument(
-        "configuration", type=pathlib.Path, metavar="XML", help="configuration file, such as precice-config.xml"
-    )
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=pathlib.Path,
-        metavar="YAML",
-        help="case to write (default: beside the XML, with its name and .yaml)",
-    )
-    parser.add_argument(
-        "--check", action="store_true", help="lists differences and unsupported elements without writing a case"
-    )
-    parser.add_argument("--force", action="store_true", help="overwrites an existing case")
-
-
 def text_of(found, file, output):
     case = {
         "simulation": {

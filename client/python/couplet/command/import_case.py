@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Creates a case from a deck of CalculiX or Abaqus, or from a configuration of preCICE. A deck (.inp) gives the mesh,
+materials, supports, loads and the first step of the case; all that is left out is listed with its line
+(docs/how-to/calculix-deck.md). A configuration (.xml) gives a job of programs that use preCICE's interface
+(docs/precice.md). The programs still read the XML themselves. Differences are listed. If an element is not supported,
+it is named with its line, and no case is written (exit code 2)."""
+import pathlib
+
+from couplet.runs.case import expect
+
+
+def declare(parser):
+    parser.add_argument(
+        "configuration",
+        type=pathlib.Path,
+        metavar="FILE",
+        help="a deck, .inp, or a configuration of preCICE, such as precice-config.xml",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=pathlib.Path,
+        metavar="YAML",
+        help="case to write (default: beside the file, with its name and .yaml)",
+    )
+    parser.add_argument(
+        "--units", choices=("si", "mm"), help="units of a deck: SI, or mm, N, tonne, s and MPa (default: si)"
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="lists differences and unsupported elements without writing a case"
+    )
+    parser.add_argument("--force", action="store_true", help="overwrites an existing case")
+
+
+def run(arguments):
+    if arguments.configuration.suffix.lower() == ".inp":
+        from couplet.command import import_deck as chosen
+    else:
+        from couplet.command import import_precice as chosen
+
+        expect(arguments.units is None, "--units: is of decks, .inp")
+    return chosen.run(arguments)
