@@ -169,7 +169,7 @@ void Coupler::finalise(const std::string& problem) {
   diagnostics::set_result({.name = "coupling iterations per step, mean and most",
                            .unit = "1",
                            .values = monitor.iterations_per_step(),
-                           .watches = true});
+                           .rank = 2});
   if (const std::string waiting = monitor.waiting(pass_.partners(), pass_.schedule()); !waiting.empty())
     log::info("{}", waiting);
   for (const std::string& line : diagnostics_.conclude(!problem.empty())) log::info("{}", line);

@@ -275,10 +275,8 @@ void Mover::write_monitors(double time) {
 
 std::vector<std::string> Mover::finish() {
   if (least_jacobian_ && parallel::comm_rank(mesh_.comm) == 0)
-    diagnostics::set_result({.name = "least scaled Jacobian of the run",
-                             .unit = "1",
-                             .values = {*least_jacobian_},
-                             .watches = true});
+    diagnostics::set_result(
+        {.name = "least scaled Jacobian of the run", .unit = "1", .values = {*least_jacobian_}, .rank = 2});
   return {};
 }
 

@@ -69,9 +69,10 @@ std::string json(const std::vector<diagnostics::Result>& results) {
       values += fmt::format("{}{}", values.empty() ? "" : ", ",
                             std::isfinite(v) ? fmt::format("{:.9g}", v) : "null");
     out += fmt::format(
-        "{}\n    {{\"name\": {}, \"values\": [{}], \"unit\": {}, \"error\": {}, \"place\": {}, \"text\": {}}}",
+        "{}\n    {{\"name\": {}, \"values\": [{}], \"unit\": {}, \"error\": {}, \"place\": {}, \"rank\": {}, \"text\": {}}}",
         out.empty() ? "" : ",", quoted(r.name), values, quoted(r.unit),
-        std::isfinite(r.error) ? fmt::format("{:.6g}", r.error) : "null", quoted(r.place), quoted(r.text));
+        std::isfinite(r.error) ? fmt::format("{:.6g}", r.error) : "null", quoted(r.place), r.rank,
+        quoted(r.text));
   }
   return "[" + out + (out.empty() ? "]" : "\n  ]");
 }

@@ -219,7 +219,8 @@ std::string error_summary(const std::vector<NamedErrors>& participants) {
     const auto worst = worst_part({n});
     if (unknown.empty() && (!worst || total < nothing * most)) continue;
     list += list.empty() ? "" : "; ";
-    if (!n.parts.field.empty()) list += n.parts.field + (participants.size() > 1 ? " of '" + n.name + "' " : " ");
+    if (!n.parts.field.empty())
+      list += n.parts.field + (participants.size() > 1 ? " of '" + n.name + "' " : " ");
     list += unknown.empty() ? fmt::format("{} ({})", percent(total), worst->kind->words)
             : total >= nothing * most
                 ? fmt::format("{} and that due to {}, which is unknown", percent(total), unknown)

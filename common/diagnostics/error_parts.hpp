@@ -26,7 +26,7 @@ struct ErrorParts {
   double model = unknown;
   std::string model_by{};   ///< the largest of these and its remedy, in words
   std::string omittable{};  ///< effects with negligible influence, and their cost, in words
-  std::string field{};         ///< field that mesh and step speak of, in words: "velocity"
+  std::string field{};      ///< field that mesh and step speak of, in words: "velocity"
   std::string unit{};       ///< of this field
   double size = 0;          ///< its root mean square over the body, the largest of the run [unit]
   double level = 0;         ///< value from which the field is counted [unit]

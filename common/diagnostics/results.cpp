@@ -30,6 +30,8 @@ constexpr std::array<std::pair<std::string_view, const char*>, 12> tables{{{"pro
                                                                            {"energies", "energy "},
                                                                            {"tank", ""}}};
 
+constexpr std::size_t tables_of_choice = 2;  // probes and coefficients
+
 // Share of the largest value of a unit below which a value is round-off.
 constexpr double round_off = 1e-9;
 
@@ -66,7 +68,10 @@ void add(const ResultTable& table, std::vector<Result>& rows) {
     if (continues)
       rows.back().values.push_back(table.last[i]);
     else
-      rows.push_back({tables[table.rank].second + name, unit, {table.last[i]}});
+      rows.push_back({.name = tables[table.rank].second + name,
+                      .unit = unit,
+                      .values = {table.last[i]},
+                      .rank = table.rank < tables_of_choice ? 0 : 1});
   }
 }
 
@@ -101,7 +106,7 @@ std::string text(const Result& r, double nothing) {
     line += r.unit == "Hz" || largest <= nothing
                 ? " +- " + share
                 : fmt::format(" +- {:.2g} ({})", r.error * largest * factor, share);
-  } else if (!r.watches) {
+  } else if (r.rank < 2) {
     line += " +- unknown";
   }
   return line + (r.place.empty() ? "" : " " + r.place);
@@ -132,8 +137,7 @@ void set_largest(MPI_Comm comm, const char* name, const char* unit, double value
   Vec3 at = place;
   MPI_Bcast(at.data(), 3, MPI_DOUBLE, most.rank, comm);
   if (rank == 0)
-    set_result(
-        {.name = name, .unit = unit, .values = {most.value}, .place = place_text(at), .watches = true});
+    set_result({.name = name, .unit = unit, .values = {most.value}, .place = place_text(at), .rank = 2});
 }
 
 std::vector<double>* results_of_table(const std::string& file, const std::vector<std::string>& columns) {
@@ -151,7 +155,7 @@ std::vector<Result> results(const ErrorParts& errors) {
   std::erase_if(rows, [](const Result& r) {
     return std::ranges::none_of(r.values, [](double v) { return std::isfinite(v); });
   });
-  std::ranges::stable_partition(rows, [](const Result& r) { return !r.watches; });
+  std::ranges::stable_sort(rows, {}, &Result::rank);
   std::map<std::string, double> largest;  // of each unit
   for (const Result& r : rows) largest[r.unit] = std::max(largest[r.unit], largest_of(r.values));
   const double error = known_error(errors);

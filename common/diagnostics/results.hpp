@@ -19,8 +19,8 @@ struct Result {
   double error =
       std::numeric_limits<double>::quiet_NaN();  ///< estimated, relative to the largest value; NaN if unknown
   std::string place{};                           ///< "at (1, 0, 0) m"
-  bool watches = false;  ///< a number that shows how the run went, which no case asks for
-  std::string text{};    ///< values with unit, error and place, as the run prints them; from results()
+  int rank = 0;  ///< 0: the case asks for it, 1: follows from what it asks for, 2: shows how the run went
+  std::string text{};  ///< values with unit, error and place, as the run prints them; from results()
 };
 std::string place_text(const Vec3& place);
 

@@ -34,8 +34,8 @@ void check_names(const mesh::Mesh& mesh, const SolidParameters& parameters) {
   const std::vector<std::string> patches = patch_names(mesh);
   for (const auto& [name, boundary] : parameters.boundaries)
     if (std::ranges::find(patches, name) == patches.end())
-      throw Error("boundaries.{}: mesh '{}' has no patch with this name. {} The patches are {}.", name,
-                  parameters.mesh, base::did_you_mean(name, patches, "patches"), base::join(patches));
+      throw Error("boundaries.{}: mesh '{}' has no patch with this name. {}", name, parameters.mesh,
+                  base::did_you_mean(name, patches, "patches"));
   if (parameters.analysis == SolidParameters::Analysis::thermal) return;
   for (const std::string& name : patches)
     if (!parameters.boundaries.contains(name))

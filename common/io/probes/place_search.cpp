@@ -246,7 +246,7 @@ void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std:
     diagnostics::set_result({.name = "size of the mesh",
                              .unit = "m",
                              .values = {extent.data(), extent.data() + mesh.dim},
-                             .watches = true});
+                             .rank = 2});
   if (size < smallest || extent.maxCoeff() > largest)
     diagnostics::finding(
         parallel::comm_rank(mesh.comm),

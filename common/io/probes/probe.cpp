@@ -156,8 +156,9 @@ Probe::Probe(const mesh::Mesh& mesh, std::span<const Vec3> places, const std::st
   if (chosen.outside && chosen.key > tolerance.value_or(on_boundary * size))
     throw Error(
         "The probe '{}' at ({}, {}, {}) is outside the mesh: the nearest point of the mesh is ({:.6g}, "
-        "{:.6g}, {:.6g}), {:.3g} m away. Move the probe there or into the mesh.",
-        name, place[0], place[1], place[2], place_[0], place_[1], place_[2], chosen.key);
+        "{:.6g}, {:.6g}), {:.3g} m away. Move the probe there or into the mesh{}.",
+        name, place[0], place[1], place[2], place_[0], place_[1], place_[2], chosen.key,
+        chosen.key > 10 * size ? "; a number without a unit is in meters" : "");
 }
 
 std::optional<Probe> Probe::in(const PlaceSearch& search, const Vec3& place) {

@@ -106,18 +106,38 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
   EXPECT_EQ(without.size(), 1u) << "nothing dominates";
   // A verdict must not pass the tolerance of a solver for the error.
   const NamedErrors rounding{"sphere", {.linear = 9.4e-17}};
-  EXPECT_EQ(error_summary({rounding}), "the error due to the mesh is unknown, the rest is 9.4e-15 %");
+  EXPECT_EQ(error_summary({rounding}), "estimated error: unknown (the mesh)");
   EXPECT_NE(best_change({rounding}).find("half the cell size"), std::string::npos);
   EXPECT_EQ(error_summary({{"fluid", {.mesh = 1e-2, .step = 1e-3}}, rounding}),
-            "the error due to the mesh of 'sphere' is unknown, the rest is 1.1 %");
+            "estimated error: 1.1 % (mesh); unknown (the mesh)");
   const NamedErrors short_run{"solid", {.mesh = 1e-2, .misses_step = true}};
-  EXPECT_EQ(error_summary({short_run}), "the error due to the step is unknown, the rest is 1 %");
+  EXPECT_EQ(error_summary({short_run}), "estimated error: 1 % and that due to the step, which is unknown");
   EXPECT_NE(best_change({short_run}).find("half the time step"), std::string::npos);
-  EXPECT_EQ(error_summary({short_run, {"fluid", {.mesh = 1e-2, .step = 2e-2}}}).find("step is unknown"),
-            std::string::npos)
-      << "the fluid knows";
+  const ErrorParts flow{.mesh = 0.3, .step = 2e-2, .field = "velocity"},
+      motion{.mesh = 2.5, .field = "displacement"};
+  EXPECT_EQ(
+      error_summary({short_run, {"fluid", flow}, {"flap", motion}}),
+      "estimated error: unknown (the step); velocity of 'fluid' 32 % (mesh); displacement of 'flap' above 100 % (mesh)")
+      << "a number that no estimator knows is not covered by one that knows another";
+  EXPECT_EQ(ErrorParts::of(flow.text()).field, "velocity");
   EXPECT_TRUE(ErrorParts::of(short_run.parts.text()).misses_step);
   EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
+}
+
+TEST(ErrorPartsTest, results_have_the_error_of_their_field_and_of_no_other) {
+  set_result({.name = "largest displacement", .unit = "m", .values = {2e-4}, .rank = 2});
+  set_result({.name = "equivalent stress", .unit = "Pa", .values = {2.535e8}, .error = 0.02, .rank = 0});
+  *results_of_table("probes", {"time [s]", "tip x [m]", "tip y [m]"}) = {1, 1.234e-4, 5e-20};
+  *results_of_table("reactions", {"time [s]", "root x [N]", "root y [N]"}) = {1, 5600, 3e-14};
+  std::string text;
+  for (const Result& r : results({.mesh = 0.01, .field = "displacement", .unit = "m", .size = 3e-4}))
+    text += r.name + ": " + r.text + "\n";
+  EXPECT_EQ(text,
+            "equivalent stress: 253.5 MPa +- 5.1 (2 %)\n"
+            "tip: 0.1234  0 mm +- 0.003 (2.4 %)\n"
+            "reaction root: 5.6  0 kN +- unknown\n"
+            "largest displacement: 0.2 mm +- 0.003 (1.5 %)\n")
+      << "the error of a motion counts at its largest size";
 }
 
 }  // namespace couplet::error_parts_test
