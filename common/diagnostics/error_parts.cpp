@@ -64,20 +64,6 @@ std::string cure(const ErrorPart& part) {
   return part.of->parts.model_by;
 }
 
-/// Describes changes without benefit: "halving the step", ...
-std::string idle_words(const std::vector<ErrorPart>& parts, double most) {
-  std::string words;
-  for (const ErrorPart& p : parts) {
-    if (!(p.value < nothing * most)) continue;
-    if (p.is(&ErrorParts::model)) continue;
-    words += words.empty() ? "" : " or ";
-    words += p.is(&ErrorParts::step)   ? "halving the step"
-             : p.is(&ErrorParts::mesh) ? "refining the mesh"
-                                       : fmt::format("tightening the {}", p.kind->words);
-  }
-  return words;
-}
-
 /// Largest contribution of each kind over the participants.
 std::vector<ErrorPart> largest_parts(const std::vector<NamedErrors>& participants) {
   std::vector<ErrorPart> parts;
@@ -272,15 +258,6 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
             : fmt::format(
                   "estimated error: the part due to {} is unknown; the rest is {:.2g} of the solution: {}.",
                   unknown, total, list));
-  }
-  // Nothing dominates an estimate without the mesh, which often has the largest contribution.
-  if (parts.size() > 1 && parts.front().value > 0 &&
-      (unknown.empty() || parts.front().value >= questionable_error)) {
-    const ErrorPart& worst = parts.front();
-    const std::string idle = idle_words(parts, worst.value);
-    sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,
-                                    several ? " (" + worst.of->name + ")" : "", cure(worst),
-                                    idle.empty() ? "" : "; " + idle + " would not help"));
   }
   for (const NamedErrors& n : participants)
     if (!n.parts.omittable.empty())

@@ -46,8 +46,7 @@ struct NamedErrors {
   ErrorParts parts;
 };
 
-/// Sentences such as "estimated error 0.013: mesh 0.013, step 4.9e-05". They name the dominating part, the
-/// cheapest change that lowers it with its gain and cost, and effects that could be omitted. For several
+/// Sentences such as "estimated error 0.013 of the solution: mesh 0.013, step 4.9e-05", and effects that could be omitted. For several
 /// participants the largest of each kind counts and is named. Empty if nothing is known.
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants);
 

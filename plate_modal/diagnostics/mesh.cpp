@@ -53,7 +53,8 @@ class MeshOfModes final : public diagnostics::Diagnostic {
   /// Evaluated only at the end, because the first steps show the short waves of the load's start.
   void conclude(diagnostics::Report& report) override {
     const bool is_modal = view_.parameters.analysis == Parameters::Analysis::modal;
-    report.errors.field = is_modal ? "frequencies" : "displacement", report.errors.unit = is_modal ? "Hz" : "m";
+    report.errors.field = is_modal ? "frequencies" : "displacement",
+    report.errors.unit = is_modal ? "Hz" : "m";
     report.errors.mesh = mesh_gap();
   }
 
