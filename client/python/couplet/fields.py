@@ -202,9 +202,12 @@ def view(points, still, faces, values, label, dpi):
 
 def when(series, i):
     """Time of an output; a static run has a single state."""
-    made = pathlib.Path(series.file.filename).with_name("effective.yaml")
-    keys = load(made.read_text(), made) if made.is_file() else {}
-    if len(series.times) <= 2 and isinstance(keys, dict) and keys.get("analysis") in ("static", "buckling"):
+    try:
+        made = pathlib.Path(series.file.filename).with_name("effective.yaml")
+        analysis = load(made.read_text(), made).get("analysis")
+    except (OSError, ValueError, AttributeError, Wrong):
+        analysis = None  # a program of someone else
+    if len(series.times) <= 2 and analysis in ("static", "buckling"):
         return "static"
     return f"t = {series.times[i]:.4g} s"
 
@@ -233,8 +236,8 @@ def bodies_beside(series):
     for place in sorted(p for p in home.parent.iterdir() if p.is_dir() and p != home):
         try:
             other = find_series(place)
-        except (FileNotFoundError, OSError):
-            continue
+        except (OSError, KeyError):
+            continue  # without fields, or a run that writes them now
         if other.steps and "displacement" in other.names(-1) and other.is_at_points(-1, "displacement"):
             if other.is_flat() == series.is_flat() or not series.is_flat():
                 found[place.name] = other
@@ -289,20 +292,28 @@ def draw(
     )
 
 
+def shapes_of(series, file):
+    """First shapes of a file as ((output, field), frequency or factor, number of the shape), and how many rigid motions
+    precede them."""
+    table, word = SHAPE_TABLES[file.name]
+    numbers = list(read_csv(file.with_name(table)).values())[1]
+    names = [n for n in series.names(0) if n.rpartition("-")[0] in ("mode", "buckling")]
+    # The shapes of a plate are outputs, those of a solid fields.
+    fields = [(0, n) for n in sorted(names, key=lambda n: int(n.rpartition("-")[2]))] or [
+        (i, "mode") for i in range(len(series.steps))
+    ]
+    shapes = list(zip(fields, numbers, range(1, len(fields) + 1)))
+    rigid = sum(s[1] < RIGID * numbers.max() for s in shapes) if word == "frequency" else 0
+    rigid = 0 if rigid == len(shapes) else rigid
+    return shapes[rigid:][:MOST_SHAPES], rigid
+
+
 def draw_shapes(file: str | pathlib.Path, dpi: int = 110) -> pathlib.Path:
     """Draws the first shapes of vibration or buckling (mode-shapes.h5, modes-shapes.h5, buckling.h5), without rigid
     motions. Returns the picture's path."""
     file = pathlib.Path(file)
-    series, (table, word) = FieldSeries(file), SHAPE_TABLES[file.name]
-    numbers = list(read_csv(file.with_name(table)).values())[1]
-    names = [n for n in series.names(0) if n.rpartition("-")[0] in ("mode", "buckling")]
-    # The shapes of a plate are outputs, those of a solid fields.
-    shapes = [(0, n) for n in sorted(names, key=lambda n: int(n.rpartition("-")[2]))] or [
-        (i, "mode") for i in range(len(series.steps))
-    ]
-    shapes = list(zip(shapes, numbers, range(1, len(shapes) + 1)))
-    rigid = [s for s in shapes if word == "frequency" and s[1] < RIGID * numbers.max()]
-    shapes = shapes[len(rigid) :][:MOST_SHAPES] or shapes[:MOST_SHAPES]
+    series, word = FieldSeries(file), SHAPE_TABLES[file.name][1]
+    shapes, rigid = shapes_of(series, file)
     points = np.array(series.reference(), float)
     flat = series.is_flat() and all(not np.any(series.field(i, n)[:, 2:]) for (i, n), _, _ in shapes)
     corners = points if flat else points @ space.sight(points).T
@@ -330,7 +341,7 @@ def draw_shapes(file: str | pathlib.Path, dpi: int = 110) -> pathlib.Path:
         axes.set_title(
             f"{count}: {number:.4g} Hz" if word == "frequency" else f"{count}: {number:.4g} times the load", fontsize=9
         )
-    left = f"; {len(rigid)} rigid motions are not drawn" if rigid else ""
+    left = f"; {rigid} rigid motions are not drawn" if rigid else ""
     what = "shapes of vibration" if word == "frequency" else "shapes of buckling"
     figure.suptitle(
         f"{file.parent.name}: {what}{left}\n{space.extent_of(points)}; color: displacement, from none to the largest",

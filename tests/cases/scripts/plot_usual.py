@@ -84,8 +84,10 @@ with tempfile.TemporaryDirectory() as name:
     still = write(out / "still/still.h5", SQUARE, QUADS, FLAT, [0, 1], {"equivalent-stress": [0, 0]}, {"displacement": 0 * move})
     heat = write(out / "heat/heat.h5", SQUARE, QUADS, FLAT, [0, 1], None, {"temperature": range(6)})
     shape = np.column_stack([FLAT[:, :2] * 0, FLAT[:, 0]])
-    write(out / "plate/mode-shapes.h5", SQUARE, QUADS, FLAT, [1], None, {f"mode-{k}": shape for k in range(1, 10)})
+    plate = write(out / "plate/mode-shapes.h5", SQUARE, QUADS, FLAT, [1], None, {f"mode-{k}": shape for k in range(1, 10)})
     (out / "plate/modes.csv").write_text("number,frequency [Hz]\n" + "".join(f"{k},{0 if k < 7 else 10 * k}\n" for k in range(1, 10)))
+    shapes, rigid = fields.shapes_of(plate, out / "plate/mode-shapes.h5")
+    check("shapes without rigid motions, with their frequencies", rigid == 6 and shapes == [((0, f"mode-{k}"), 10 * k, k) for k in (7, 8, 9)], shapes)
     flow = FieldSeries(out / "fluid/fluid.h5")
     check("fields that have a picture", [usual.names_of(s) for s in (flow, solid, still, heat)] == [["velocity"], ["equivalent-stress"], [], ["temperature"]], [usual.names_of(s) for s in (flow, solid, still, heat)])
     check("the bodies in a flow", list(fields.bodies_beside(flow)) == ["solid", "still"] and not fields.bodies_beside(solid), fields.bodies_beside(flow))
@@ -105,6 +107,17 @@ with tempfile.TemporaryDirectory() as name:
     (folder / "tetrahedra.h5").rename(folder / "inside/tetrahedra.h5")
     done = couplet("plot", folder / "inside", "--field", "p", "--plane", "y = 0.3", "--picture", folder / "cut.png")
     check("--plane in tetrahedra", done.returncode == 0 and (folder / "cut.png").exists(), done.stderr)
+
+    content = (out / "heat/heat.h5").read_bytes()
+    (out / "torn").mkdir()
+    (out / "torn/torn.h5").write_bytes(content[: len(content) // 2])
+    done = couplet("plot", out)
+    check("a damaged file is named, the rest is drawn", done.returncode == 0 and "torn: fields cannot be drawn" in done.stderr and "velocity.png" in done.stdout, done)
+    plate.file.close()
+    with h5py.File(out / "plate/mode-shapes.h5", "a") as file:
+        file["mesh/cells"][0, 0] = 99
+    done = couplet("plot", out / "plate")
+    check("so is one with a wrong number", done.returncode == 1 and "plate: fields cannot be drawn" in done.stderr and "Traceback" not in done.stderr, done)
 
     # mesh lines hide the colors of a fine mesh
     import matplotlib.pyplot as plt

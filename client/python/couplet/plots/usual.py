@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of a run whose case declares none: the flow, the deformed body, temperatures and shapes."""
 import functools
+import pathlib
 
 import numpy as np
 
 from couplet import fields
+from couplet.runs.case import Wrong
 from couplet.series import find_series
 
 
@@ -33,26 +35,22 @@ def middle_of(series):
 
 def tasks(folder, options):
     """Functions that draw and name the pictures of a run in this folder, or of its participant."""
-    found = []
-    for place in fields.places_below(folder):
-        shapes = [place / name for name in fields.SHAPE_TABLES if (place / name).is_file()]
-        found += [functools.partial(told, fields.draw_shapes, file) for file in shapes]
-        try:
-            series = find_series(place)
-        except (FileNotFoundError, OSError):
-            continue
-        if not series.steps or series.file.filename in map(str, shapes):
-            continue
+    return [functools.partial(draw, p, options) for p in fields.places_below(folder) if any(p.glob("*.h5"))]
+
+
+def draw(place, options):
+    """Draws shapes and fields in a participant's folder. A file that is damaged, or in use by the run, is reported."""
+    try:
+        for file in filter(pathlib.Path.is_file, (place / name for name in fields.SHAPE_TABLES)):
+            print(fields.draw_shapes(file))
+        series = find_series(place)
+        if not series.steps or pathlib.Path(series.file.filename).name in fields.SHAPE_TABLES:
+            return
         for name in names_of(series):
             plane = None if series.is_flat() else options.plane or middle_of(series)
             component = options.component if np.ndim(series.field(-1, name)) > 1 else None
-            found.append(
-                functools.partial(
-                    told, fields.draw, place, name, at=options.at, component=component, warp=options.warp, plane=plane
-                )
-            )
-    return found
-
-
-def told(function, *arguments, **named):
-    print(function(*arguments, **named))
+            print(fields.draw(place, name, at=options.at, component=component, warp=options.warp, plane=plane))
+    except FileNotFoundError:
+        return  # other files
+    except (OSError, LookupError, ValueError) as problem:
+        raise Wrong(f"{place}: fields cannot be drawn: {problem}") from None
