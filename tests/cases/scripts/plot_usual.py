@@ -82,7 +82,7 @@ with tempfile.TemporaryDirectory() as name:
     move = np.column_stack([0 * FLAT[:, 0], 1e-4 * FLAT[:, 0], 0 * FLAT[:, 0]])
     solid = write(out / "solid/solid.h5", SQUARE, QUADS, FLAT - [0, 1, 0], [0, 1], {"equivalent-stress": [1e6, 3e6]}, {"displacement": move, "temperature": [5] * 6})
     still = write(out / "still/still.h5", SQUARE, QUADS, FLAT, [0, 1], {"equivalent-stress": [0, 0]}, {"displacement": 0 * move})
-    heat = write(out / "heat/heat.h5", SQUARE, QUADS, FLAT, [0, 1], None, {"temperature": range(6)})
+    heat = write(out / "heat/heat.h5", SQUARE, QUADS, FLAT, [0, 1], {"cell-temperature": [1, 2]}, {"temperature": range(6)})
     shape = np.column_stack([FLAT[:, :2] * 0, FLAT[:, 0]])
     plate = write(out / "plate/mode-shapes.h5", SQUARE, QUADS, FLAT, [1], None, {f"mode-{k}": shape for k in range(1, 10)})
     (out / "plate/modes.csv").write_text("number,frequency [Hz]\n" + "".join(f"{k},{0 if k < 7 else 10 * k}\n" for k in range(1, 10)))

@@ -17,7 +17,8 @@ def names_of(series):
     if "displacement" in names:
         first = next((n for n in ("equivalent-stress", "displacement") if n in varies), None)
     else:
-        first = next((n for n in ("velocity", *names) if n in varies and n != "temperature"), None)
+        others = () if "temperature" in names else names
+        first = next((n for n in ("velocity", *others) if n in varies), None)
     return [n for n in (first, "temperature") if n in varies]
 
 
