@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what a run wrote: monitors, lines and planes, residuals, fields, or the picture that a case declares in its
-section `plot`. Columns of the same unit share a diagram. A line is drawn over its length, a plane as a map of each
-column, and residuals over all coupling iterations. The name of each picture is printed."""
+"""Draws what a run wrote: its fields, shapes and monitors, or the picture that a case declares in its section `plot`.
+Of the folder of a run it draws the flow (in 3-D a cut), the deformed bodies colored by stress, temperatures, shapes of
+vibration and buckling, and the monitors that have several instants, but no run of a study in it. Columns of the same
+unit share a diagram. A line is drawn over its length, a plane as a map of each column, and residuals of the coupling
+as the last one of each step, above the number of iterations. The name of each picture is printed."""
+import functools
 import os
 import pathlib
 import shlex
@@ -13,6 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 matplotlib.rcParams["text.usetex"] = False  # a matplotlibrc in this folder could start LaTeX
 import matplotlib.pyplot as plt
+import matplotlib.ticker
 import numpy as np
 
 from couplet import files, places
@@ -22,6 +26,7 @@ from couplet.runs.job import output_of, run_folder
 
 PLACES = ("along [-]", "up [-]", "x [m]", "y [m]", "z [m]")
 MOST_LINES = 12  # with names of their own
+ITERATIONS = "coupling iterations [1]"
 
 
 def read(file):
@@ -37,7 +42,27 @@ def read(file):
 def is_monitor(file):
     """Returns true if the first line names a time, unlike the tables written at the end of a run."""
     with open(file, "rb") as lines:
-        return lines.readline().lstrip(b'# "').startswith(b"time")
+        return lines.readline().lstrip(b'# "').startswith(b"time [")
+
+
+def monitors_of(folder):
+    """Monitors of a run and of its participants. Runs that lie deeper, such as those of a study, are left alone."""
+    return [f for f in sorted((*folder.glob("*.csv"), *folder.glob("*/*.csv"))) if is_monitor(f)]
+
+
+def has_one_instant(file):
+    """Returns true if a chart over time would show a single dot."""
+    columns = columns_of(file)
+    return len(np.unique(next(iter(columns.values())))) < 2 and not {"along [-]", "z [m]", "depth [m]"} & set(columns)
+
+
+def per_step(columns):
+    """Residuals after the last iteration of each step, and the number of iterations."""
+    time = next(iter(columns.values()))
+    last = np.flatnonzero(np.append(np.diff(time) != 0, True))
+    count = np.diff(np.append(-1, last)).astype(float)
+    names = [n for n in columns if "residual" in n]
+    return {next(iter(columns)): time[last], **{n: columns[n][last] for n in names}, ITERATIONS: count}
 
 
 def chosen(columns, options):
@@ -56,7 +81,7 @@ def by_unit(names):
 
 
 def curves(x, label, columns, names, log, title):
-    units = by_unit(names)
+    units = by_unit([n for n in names if np.isfinite(columns[n]).any()] or names)
     made, axes = plt.subplots(
         len(units),
         1,
@@ -67,13 +92,20 @@ def curves(x, label, columns, names, log, title):
         constrained_layout=True,
     )
     for ax, (unit, some) in zip(axes[:, 0], units.items()):
+        is_log = log and some != [ITERATIONS]
         for name in some:
-            y = np.abs(columns[name]) if log else columns[name]
+            y = np.abs(columns[name]) if is_log else columns[name]
             if np.isfinite(y).any():
                 ax.plot(x, y, lw=1, marker="." if len(x) < 30 else None, label=name.partition(" [")[0])
-        if log and any((np.asarray(line.get_ydata()) > 0).any() for line in ax.get_lines()):
+        if is_log and any((np.asarray(line.get_ydata()) > 0).any() for line in ax.get_lines()):
             ax.set_yscale("log")
-        ax.set_ylabel(f"[{unit}]")
+            for which in (ax.yaxis.set_major_formatter, ax.yaxis.set_minor_formatter):
+                which(matplotlib.ticker.LogFormatter())  # without formulas, which names must not be taken for
+        elif some == [ITERATIONS]:
+            ax.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
+            ax.set_ylim(bottom=0)
+        short = some[0].partition(" [")[0]
+        ax.set_ylabel(f"{short} [{unit}]" if len(some) == 1 and len(short) < 26 else f"[{unit}]")
         ax.grid(alpha=0.3)
         if len(some) <= MOST_LINES and ax.get_legend_handles_labels()[0]:
             ax.legend(fontsize=7)
@@ -146,8 +178,15 @@ def draw(folder, file, options):
     elif is_sample:
         made = curves(columns["along [-]"], "along the line [-]", columns, names, options.log, title)
     elif file.name == "residuals.csv":
-        names = [n for n in names if "residual" in n] or names
-        made = curves(np.arange(rows.sum()), "coupling iterations", columns, names, True, title)
+        columns = per_step(columns)
+        made = curves(
+            next(iter(columns.values())),
+            "time [s]",
+            columns,
+            chosen(columns, options),
+            True,
+            f"{file}: after the last iteration of each step",
+        )
     else:
         made = curves(time[rows], "time [s]", columns, names, options.log, title)
     picture = options.picture or file.with_suffix(".png")
@@ -230,6 +269,11 @@ def declare(parser):
         ),
     )
     parser.add_argument(
+        "--plane",
+        metavar="'y = 0'",
+        help="cuts the fields of a 3-D run by this plane [m] (default of a flow: the middle)",
+    )
+    parser.add_argument(
         "--surface",
         metavar="PATCH",
         help="draws --field on this patch (output.surfaces of the case), in two dimensions over the arc length",
@@ -241,9 +285,10 @@ def declare(parser):
     parser.add_argument(
         "--warp",
         type=float,
-        default=1.0,
         metavar="F",
-        help="draws --field on the body displaced by F times its displacement (default: 1)",
+        help=(
+            "draws bodies displaced by F times their displacement (default: 1 with --field, else what makes it visible)"
+        ),
     )
     parser.add_argument(
         "--film",
@@ -273,7 +318,9 @@ def run(options):
         from couplet import fields
 
         folder = options.out or run_folder(options.files[0])
-        look = (options.picture, options.at, options.component, options.warp)
+        warp = 1.0 if options.warp is None else options.warp
+        look = (options.picture, options.at, options.component, warp)
+        expect(not options.plane or not options.surface, "--plane: cuts the whole mesh: leave --surface out")
         expect(len(options.files) == 1, "--field, --mode: give one folder of a run")
         expect(folder.is_dir(), f"{folder}: there is no such folder; has the case been run?")
         print(
@@ -282,7 +329,7 @@ def run(options):
             else (
                 fields.draw_surface(folder, options.field, options.surface, *look)
                 if options.surface
-                else fields.draw(folder, options.field, *look)
+                else fields.draw(folder, options.field, *look, plane=options.plane)
             )
         )
         return 0
@@ -296,21 +343,26 @@ def run(options):
             options.out is None and not options.film,
             "--out, --film: belong to CASE.yaml; of a run give its folder alone",
         )
-    monitors, folders = [], 0
+    monitors, folders = [], [name for name in options.files if name.is_dir()]
     for name in options.files:
-        folders += name.is_dir()
-        monitors += (
-            [(name, f) for f in sorted(name.rglob("*.csv")) if is_monitor(f)]
-            if name.is_dir()
-            else [(name.parent, name)]
-        )
+        monitors += [(name, f) for f in monitors_of(name)] if name.is_dir() else [(name.parent, name)]
+    single = [file for folder, file in monitors if folder in folders and has_one_instant(file)]
+    monitors = [pair for pair in monitors if pair[1] not in single]
     expect(not options.picture or not folders and len(monitors) == 1, "--picture names one picture: give one file.")
-    expect(monitors, "There is no monitor (.csv) in these folders. Run the case first.")
+    tasks = [functools.partial(draw, folder, file, options) for folder, file in monitors]
+    if not options.only:
+        from couplet.plots import usual
+
+        tasks += [task for folder in folders for task in usual.tasks(folder, options)]
+    expect(tasks or single, "There is no monitor (.csv) and no field (.h5) in these folders. Run the case first.")
     failed = 0
-    for folder, file in monitors:
+    for task in tasks:
         try:
-            draw(folder, file, options)
+            task()
         except Wrong as problem:
             print(problem, file=sys.stderr)
             failed += 1
-    return 1 if failed == len(monitors) or (failed and not folders) else 0
+    if single:
+        names = ", ".join(file.name for file in single)
+        print(f"no chart of a single instant: {names} (numbers: couplet report)")
+    return 1 if tasks and failed == len(tasks) or (failed and not folders) else 0

@@ -158,20 +158,6 @@ with tempfile.TemporaryDirectory(prefix="a case with blanks ") as name:
     for warp in (0, 1, 3):
         check(f"places with {warp} times the displacement", np.allclose(fields.places_of(series, 1, warp, "stress"), STILL + warp * MOVE))
 
-    # a plane inside a mesh: two layers of two cubes; the faces in it, of the cells above it, else of those below
-    from couplet.plots.draw import polygons_of
-    cubes = np.array([[x, y, z] for z in (0, 1, 2) for y in (0, 1) for x in (0, 1, 2)], float)
-    bricks = [[a, a + 1, a + 4, a + 3, a + 6, a + 7, a + 10, a + 9] for layer in (0, 6) for a in (layer, layer + 1)]
-    block = argparse.Namespace(reference=lambda: cubes, cells=bricks, is_flat=lambda: False)
-    for plane, wanted in (("z = 1", [2, 3]), ("z = 2", [2, 3]), ("y=0", [0, 1, 2, 3]), ("x = 1", [1, 3])):
-        corners, cells, ways = polygons_of(block, cubes, plane, "")
-        area = [0.5 * abs(np.dot(c[:, 0], np.roll(c[:, 1], 1)) - np.dot(c[:, 1], np.roll(c[:, 0], 1))) for c in corners]
-        check(f"faces in {plane}", list(cells) == wanted and np.allclose(area, 1) and plane[0] not in ways, (cells, area, ways))
-    try:
-        polygons_of(block, cubes, "z = 0.5", "")
-    except Wrong as problem:
-        check("a plane through cells", "no face of a cell lies in z = 0.5" in str(problem), problem)
-
     # names of curves, with and without a unit
     from couplet.plot import curves
     axes = curves(t, "t", {"relative residual": t, "tip x [m]": t}, ["relative residual", "tip x [m]"], False, "").axes

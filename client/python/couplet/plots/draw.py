@@ -8,11 +8,11 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import LineCollection, PolyCollection
 
 from couplet import fields, files
+from couplet.plots import space
 from couplet.plots.section import check, seconds
-from couplet.plots.sources import columns_of, number, points_of, series_in
+from couplet.plots.sources import columns_of, points_of, series_in
 from couplet.runs.case import Wrong, expect
 from couplet.runs.results import Results
 from couplet.series import extrema
@@ -85,96 +85,37 @@ def time_of(panel, out, where):
     return next((t for t, _, kind in extrema(time, values) if kind == "max"), time[-1])
 
 
-def polygons_of(series, points, plane, where):
-    """Returns (corners, cells) of 2-D cells, or of cells above a plane such as y = 0 with a face in it (below it if
-    there are none), in its two other axes."""
-    if series.is_flat():
-        return [points[cell][:, :2] for cell in series.cells], np.arange(len(series.cells)), "xy"
-    axis, _, level = plane.replace(" ", "").partition("=")
-    expect(
-        axis in ("x", "y", "z") and np.isfinite(number(level or "x")),
-        f"{where}.plane: '{plane}'; expected such as y = 0.",
-    )
-    k, still, size = "xyz".index(axis), series.reference(), np.ptp(series.reference(), axis=0).max()
-    others, sides = [i for i in range(3) if i != k], {1: [], -1: []}
-    for number_, cell in enumerate(series.cells):
-        height = still[cell][:, k] - float(level)
-        on = np.abs(height) < 1e-6 * size
-        if np.count_nonzero(on) > 2:
-            face = np.asarray(cell)[on]
-            way = still[face][:, others] - still[face][:, others].mean(axis=0)
-            sides[1 if height.mean() > 0 else -1].append((face[np.argsort(np.arctan2(way[:, 1], way[:, 0]))], number_))
-    faces = sides[1] or sides[-1]
-    expect(faces, f"{where}.plane: no face of a cell lies in {plane}.")
-    return (
-        [points[face][:, others] for face, _ in faces],
-        np.array([cell for _, cell in faces]),
-        "xyz".replace(axis, ""),
-    )
-
-
-def draw_bodies(axes, panel, out, series, i, ways):
-    """Draws outlines of a 2-D mesh and of bodies in it."""
-    ways = ["xyz".index(w) for w in ways]
-    if series.is_flat():
-        edges = np.array(series.coordinates(i))[series.edges_on_boundary()][:, :, :2]
-        axes.add_collection(LineCollection(edges, colors="black", linewidths=0.8))
-    for name in panel["bodies"]:
-        body = series_in(out, name)
+def draw_bodies(axes, panel, out, series, i, ways, plane):
+    """Draws the outline of a 2-D flow and the bodies in it: those that are named, or all that are displaced."""
+    if "bodies" in panel:
+        bodies = {name: series_in(out, name) for name in panel["bodies"]}
+    else:
+        bodies = fields.bodies_beside(series)
+    if bodies and series.is_flat():
+        space.outline_on(axes, series, np.array(series.coordinates(i)))
+    for body in bodies.values():
         corners = fields.places_of(body, body.nearest(series.times[i]), panel.get("warp", 1), "")
-        faces = (
-            [face for face, _ in fields.outer_faces(body)] if max(map(len, body.cells)) > 4 else body.cells
-        )  # plates consist only of their surface
-        axes.add_collection(
-            PolyCollection([corners[face][:, ways] for face in faces], facecolors="tab:red", edgecolors="none")
-        )
-
-
-def draw_map(axes, panel, polygons, values):
-    finite = values[np.isfinite(values)]
-    least, most = (finite.min(), finite.max()) if finite.size else (0, 0)
-    is_signed = min(-least, most) > 0.1 * max(-least, most)  # colors that diverge from zero
-    drawn = PolyCollection(
-        polygons,
-        array=values,
-        cmap=panel.get("colours", "RdBu_r" if is_signed else "viridis"),
-        edgecolors="none",
-        antialiaseds=False,
-    )  # smoothed edges would leave white lines
-    if is_signed:
-        drawn.set_clim(-max(-least, most), max(-least, most))
-    axes.add_collection(drawn)
-    if "mesh" in panel:
-        axes.add_collection(
-            PolyCollection(polygons, facecolors="none", edgecolors=panel["mesh"], linewidths=0.07, alpha=0.4)
-        )
-    axes.autoscale()
-    axes.set_aspect("equal")
-    return drawn
+        space.body_on(axes, body, corners, plane, ways, "tab:red" if "bodies" in panel else space.BODY)
 
 
 def draw_field(figure, axes, panel, case, out, where):
-    """Draws a map of 2-D cells or of an outer plane, else the outer faces in 3-D. Returns its axes."""
+    """Draws a map of 2-D cells or of a plane through a body, else the outer faces in 3-D."""
     participant = panel.get("participant", next(iter(case.participants)))
     series, at = series_in(out, participant), time_of(panel, out, f"{where}.at")
     i = len(series.times) - 1 if at is None else series.nearest(at)
     values = panel.get("factor", 1) * fields.values_of(series, i, panel["field"], panel.get("component"))
     points = fields.places_of(series, i, panel.get("warp", 1), panel["field"])
     if series.is_flat() or "plane" in panel:
-        polygons, cells, ways = polygons_of(series, points, panel.get("plane"), where)
-        drawn = draw_map(axes, panel, polygons, values[cells])
+        polygons, cells, ways = space.polygons_of(series, points, panel.get("plane"), where)
+        drawn = space.flat_map(axes, polygons, values[cells], panel.get("colours"), panel.get("mesh"))
         axes.set(xlabel=f"{ways[0]} [m]", ylabel=f"{ways[1]} [m]")
-        if "bodies" in panel:
-            draw_bodies(axes, panel, out, series, i, ways)
+        draw_bodies(axes, panel, out, series, i, ways, None if series.is_flat() else space.plane_of(panel["plane"], ""))
+        if "range" in panel:
+            drawn.set_clim(*panel["range"])
     else:
-        place = axes.get_subplotspec()
-        axes.remove()
-        drawn = fields.in_space(
-            figure, points, series, np.clip(values, *panel.get("range", (None, None))), place=(place,)
+        drawn = space.in_space(
+            axes, points, space.outer_faces(series), values, panel.get("range"), panel.get("colours")
         )
-        axes = figure.axes[-1]
-    if "range" in panel:
-        drawn.set_clim(*panel["range"])
     axes.set_title(f"{panel['field']} at t = {series.times[i]:.4g} s")
     if not panel.get("axes", True):
         axes.set_axis_off()
@@ -184,7 +125,6 @@ def draw_field(figure, axes, panel, case, out, where):
         label=panel.get("label", fields.label_of(series, i, panel["field"], panel.get("component"))),
         shrink=0.85,
     )
-    return axes
 
 
 def usual_labels(axes, panel):
@@ -265,7 +205,7 @@ def draw(case, out, picture=None, section=None):
         for k, (axes, panel) in enumerate(zip(grid.flat, panels)):
             where = f"{case.file}: plot.panels[{k}]"
             if "field" in panel:
-                axes = draw_field(figure, axes, panel, case, out, where)
+                draw_field(figure, axes, panel, case, out, where)
             else:
                 draw_curves(axes, panel, case, out, where)
             if not section.get("share-x"):
