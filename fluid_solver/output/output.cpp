@@ -289,7 +289,7 @@ std::vector<double> FluidSurfaces<D>::pressure_coefficient(const mesh::Patch& pa
 template <int D>
 void FluidSurfaces<D>::write(double time, const FluidContext& context) {
   const auto pressure = fluid_.pressure();
-  if (!pressure || fluid_.pressure_force().empty()) return;
+  if (!pressure || !parallel::any(fluid_.mesh().comm, !fluid_.pressure_force().empty())) return;
   if (!is_open_) series_.open(context.output_folder, fluid_.moving(), context.restart_time);
   is_open_ = true;
   const Faces all = faces();

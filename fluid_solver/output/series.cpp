@@ -92,7 +92,8 @@ std::vector<PatchFlux<D>> patch_fluxes(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
   const State<D>& s = fluid.state();
   const auto pressure = fluid.pressure();
-  if (!pressure || fluid.pressure_force().empty()) return {};
+  // A rank may have no face at the boundary.
+  if (!pressure || !parallel::any(mesh.comm, !fluid.pressure_force().empty())) return {};
   constexpr int width = 3 + D;
   std::vector<std::array<double, width>> sums(mesh.patches.size());  // area, volume, p S, momentum
   for (std::size_t p = 0; p < sums.size(); ++p) {

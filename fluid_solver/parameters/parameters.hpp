@@ -202,7 +202,7 @@ struct FlowAreaParameters {
 
 /// Fields and series beyond velocity, pressure, forces and balance.
 struct FluidOutputParameters {
-  std::map<std::string, bool> gradient_fields;  // by their names, see gradient_fields.hpp
+  std::map<std::string, bool> gradient_fields;  // by their names, see output/derived.hpp
   bool energy_budget = false, walls = false, fluxes = false;
   std::vector<std::string> surfaces;  // patches, or "all"
   std::map<std::string, CoefficientParameters> coefficients;

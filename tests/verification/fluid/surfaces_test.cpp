@@ -22,7 +22,7 @@ FluidParameters channel() {
   return p;
 }
 
-/// u = y between a wall at rest and one that moves, at a uniform pressure: exact on any mesh.
+/// u = y between a wall at rest and one that moves, at a uniform pressure: exact on squares.
 FluidParameters couette() {
   FluidParameters p = channel();
   p.initial_velocity = {{"y"}, {"0"}};
@@ -200,6 +200,18 @@ TEST(Fluxes, of_a_plane_channel_balance_and_its_walls_carry_the_pressure_drop) {
     if (x < 0.5 || x > 1.6) continue;         // the scheme's parabola is not that of the inlet
     EXPECT_NEAR(shear[c].x(), 4, 0.06) << x;  // mu dU/dy
   }
+}
+
+TEST(Fluxes, between_walls_are_known_to_ranks_without_boundary_faces) {
+  FluidParameters p = couette();
+  p.initial_velocity = {{"y/3"}, {"0"}};
+  for (const char* end : {"xmin", "xmax"}) p.boundaries[end] = boundary(BoundaryType::periodic);
+  p.output.surfaces = {"ymin"};
+  p.output.coefficients.clear();
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 36, 1}, Vec3::Zero(), Vec3(0.25, 3, 1));
+  raw.periodic = {{"xmin", "xmax"}};
+  const Columns fluxes = Written(p, "couette-of-strips", 2, raw).csv("fluxes.csv");
+  EXPECT_NEAR(fluxes.at("ymin momentum x [N]").back(), mu * 0.25 / 3, 1e-9);
 }
 
 TEST(Fluxes, areas_between_patches_that_do_not_exist_are_refused) {
