@@ -166,6 +166,12 @@ def duration(seconds):
             return f"{max(1, round(seconds / size))} {unit}"
 
 
+def first_sentence(text):
+    """Text up to the first full stop outside parentheses; "(Int. J. Numer. Meth.)" has none."""
+    ends = (m.end() for m in re.finditer(r"[.!?](?= |$)", text))
+    return next((text[:n] for n in ends if text.count("(", 0, n) == text.count(")", 0, n)), text)
+
+
 def card(entry, there, needed):
     readme = pathlib.Path("configs") / entry.name / "README.md"
     picture = target_of(readme, entry.picture, there)[1] if entry.picture else None
@@ -174,7 +180,7 @@ def card(entry, there, needed):
         needed.add(picture)
         shown = f"[![{entry.title}]({picture})]({readme})\n\n"
     title = f"[{entry.title}]({readme})" if readme in there else entry.title
-    first = re.split(r"(?<=[.!?]) ", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", entry.about))[0]
+    first = first_sentence(re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", entry.about))
     programs = ", ".join(f"`{p}`" for p in dict.fromkeys(entry.programs))
     cells = f"; {entry.cells} cells" if entry.cells else ""
     time = f"; about {duration(float(entry.seconds))} of one core" if entry.seconds else ""
