@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs every command of a page of docs/ in order, in an empty folder with an empty HOME. Each must succeed, and a tutorial must draw pictures.
+"""Runs every command of a page of docs/ in order, in an empty folder with an empty HOME, or in a copy of the shipped cases if the page runs these. Each
+must succeed, a sample of output (a block ```text after it) must be what comes, numbers within 2 %, and a tutorial must draw pictures.
 Usage: tutorials.py BIN PAGE [PLACE], such as tutorials/first-solid or how-to/modes. PAGE newcomer: README, quick start and all tutorials, without the
 lines that build and install, which chroot.py runs. PLACE is that of the command: the checkout, a prefix (where the quick start installs), or the
 unpacked deb."""
@@ -20,6 +21,7 @@ bin_, asked, place = pathlib.Path(sys.argv[1]), sys.argv[2], (sys.argv[3:] or ["
 PAGES = ["../README", "quickstart", *sorted(f"tutorials/{file.stem}" for file in (ROOT / "docs/tutorials").glob("*.md"))] if asked == "newcomer" else [asked]
 BUILDS = re.compile(r"^(sudo|cmake|cd build|scripts/|export PATH).*\n", flags=re.M)
 SITE = re.compile(r"^couplet docs .*\n", flags=re.M)  # would serve until it is interrupted; command_site builds it
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 PICTURES = {"tutorials/accuracy": 2}
 NUMBERS = {  # page: (file, column, row, value that the page tells)
     "how-to/modes": ("part/out/part/modes.csv", "frequency [Hz]", 0, 304.4),
@@ -43,9 +45,31 @@ def set_up(home):
     return f"export PATH={home}/root/usr/bin:$PATH PYTHONPATH={home}/root/usr/lib/python3/dist-packages; "  # where the system looks if it is installed
 
 
+def cases_into(home):
+    """Copies the shipped cases, two of them shortened, and links what the commands of a page take from the root of the checkout."""
+    shutil.copytree(ROOT / "configs", home / "configs", ignore=shutil.ignore_patterns("out", "out-*", "*.cache.msh", "__pycache__"))
+    for name, time in (("perpendicular-flap", "0.03 s"), ("cavity", "0.5 s")):
+        case = home / "configs" / name / "case.yaml"
+        case.write_text(re.sub(r"end-time: .*", f"end-time: {time}", case.read_text(), count=1))
+    (home / "build").mkdir()
+    for link, target in (("scripts", ROOT / "scripts"), ("build/bin", bin_.absolute())):
+        (home / link).symlink_to(target)
+
+
+def is_said(line, said):
+    """True if a line of a sample is in the output, with numbers within 2 %; "..." stands for anything."""
+    wanted = [float(n) for n in NUMBER.findall(line)]
+    pattern = ".*".join(f"({NUMBER.pattern})".join(map(re.escape, NUMBER.split(part))) for part in line.strip().split("..."))
+    return any(all(math.isclose(float(a), b, rel_tol=0.02) for a, b in zip(m.groups(), wanted)) for m in re.finditer(pattern, said))
+
+
 def follow(page, home, begin, env):
     text, start = (ROOT / f"docs/{page}.md").read_text(), time.monotonic()
-    blocks = re.findall(r"^```sh\n(.*?)^```", text, flags=re.M | re.S)
+    fenced = re.findall(r"^```(\w*)\n(.*?)^```", text, flags=re.M | re.S)
+    blocks = [block for language, block in fenced if language == "sh"]
+    samples = {block: sample for (_, block), (language, sample) in zip(fenced, fenced[1:]) if language == "text"}
+    if any("configs/" in block for block in blocks) and page.startswith(("how-to/", "tutorial")):
+        cases_into(home)
     if not page.startswith(("tutorials/", "how-to/")):
         blocks = [left for block in blocks if (left := SITE.sub("", BUILDS.sub("", block)).strip())]
     fewest = (2, 1) if page.startswith("tutorials/") else (1, 0)  # blocks of commands, pictures
@@ -53,6 +77,8 @@ def follow(page, home, begin, env):
         said = subprocess.run(["bash", "-ec", begin + block], capture_output=True, text=True, env=env, cwd=home, timeout=600)
         first = block.strip().splitlines()[0]
         check(first, said.returncode == 0 and "Traceback" not in said.stderr, (said.stdout[-1500:] + said.stderr[-1500:]) if said.returncode else "")
+        for line in samples.get(block, "").splitlines():
+            check(f"the sample is what comes: {line}", is_said(line, said.stdout + said.stderr), [s for s in (said.stdout + said.stderr).splitlines() if s[:15] == line[:15]])
     if page == "tutorials/own-mesh":  # what is drawn is the hook: 10 mm of 100 mm and of half a ring
         area = couplet.Results(home / "hook/out").fields("solid").volumes().sum()
         check("the hook is a strip", abs(area / (1e-3 + 0.5 * math.pi * (0.05**2 - 0.04**2)) - 1) < 0.02, area)
@@ -60,7 +86,7 @@ def follow(page, home, begin, env):
         file, column, row, told = NUMBERS[page]
         found = couplet.read_csv(home / file)[column][row]
         check(f"{column} is what the page tells", abs(found / told - 1) < 1e-3, (found, told))
-    pictures = [p for p in home.rglob("*.png") if p.stat().st_size > 3000 and "share" not in p.parts]
+    pictures = [p for p in home.rglob("*.png") if p.stat().st_size > 3000 and "share" not in p.parts and p.name != "picture.png"]
     check(f"{page}: {len(blocks)} blocks in {time.monotonic() - start:.0f} s, {len(pictures)} pictures", len(blocks) >= fewest[0] and len(pictures) >= PICTURES.get(page, fewest[1]), pictures)
 
 
@@ -76,5 +102,5 @@ with tempfile.TemporaryDirectory(prefix="couplet-tutorial-") as scratch:
         follow(page, home, begin, env)
         for left in home.iterdir():  # each page begins in an empty folder
             if left.name not in (".local", "deb", "root", ".cache", ".config"):
-                shutil.rmtree(left) if left.is_dir() else left.unlink()
+                shutil.rmtree(left) if left.is_dir() and not left.is_symlink() else left.unlink()
 end()
