@@ -3,6 +3,7 @@
 Material theme. The sidebar sorts pages by kind. The search leaves out pages for developers. The site loads nothing from
 other servers."""
 import functools
+import html
 import json
 import math
 import os
@@ -160,6 +161,15 @@ def with_links(page, text, there, needed):
     )
 
 
+def with_breaks(text):
+    """Text whose tables may break long code, such as names of tests, after punctuation."""
+
+    def broken(code):
+        return "<code>" + re.sub(r"([._:/,])(?=.)", r"\1<wbr>", html.escape(code[1], quote=False)) + "</code>"
+
+    return re.sub(r"^\|.*", lambda row: re.sub(r"`([^`|]{32,})`", broken, row[0]), text, flags=re.M)
+
+
 def duration(seconds):
     for unit, size, below in (("s", 1, 90), ("min", 60, 5400), ("h", 3600, math.inf)):
         if seconds < below:
@@ -294,7 +304,7 @@ def stage(folder, with_plots):
     there, needed = pages(), set()
     known = set(there)
     for page in there:
-        text = with_links(page, with_formulas(page, text_of(page)), known, needed)
+        text = with_breaks(with_links(page, with_formulas(page, text_of(page)), known, needed))
         text = plots.added(page, text, folder) if with_plots else text
         files.write(
             folder,
