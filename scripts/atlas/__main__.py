@@ -47,7 +47,7 @@ def page(maps, folder):
             text += tables(m, squares)
         if squares and m.given.get("without-halving"):
             text += (
-                "\n*These runs did not halve failed steps, as the default settings do. Squares that stopped may be"
+                "\n*These runs did not halve failed steps, as the default settings do. Points that stopped may be"
                 " stable now.*\n"
             )
     if lost := atlas.missing_tests():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The committed table of a validation: docs/validation/NAME.md. Rows carry the commit that was measured; what no longer
-counts is reported: a row whose commit is not in the history of the one at hand, or whose bar reads differently now, is
+counts is reported: a row whose commit is not in the history of the one at hand, or whose criterion reads differently now, is
 'stale'."""
 import dataclasses
 import datetime
@@ -103,10 +103,10 @@ def renewed(bar, row, history):
 
 
 def counts(verdicts):
-    """'41 of 42 bars met, 3 reported': what is only reported is no bar."""
+    """'41 of 42 criteria met, 3 reported': what is only reported is no criterion."""
     verdicts = list(verdicts)
     reported = sum(v in ("reported", "stale (reported)") for v in verdicts)
-    text = f"{verdicts.count('met')} of {len(verdicts) - reported} bars met"
+    text = f"{verdicts.count('met')} of {len(verdicts) - reported} criteria met"
     text += f", {reported} rows only report" if reported else ""
     for word, found in (
         ("stale", sum(v.startswith("stale") for v in verdicts)),
@@ -161,7 +161,7 @@ def stale(name, bars, rows, folders, history):
         elif row.verdict.startswith("stale"):
             reworded = commit and (history.has(commit) or history.landed(commit))
             yield bar.quantity, row.commit, (
-                "the bar reads differently now" if reworded else "its commit is not in this history"
+                "the criterion reads differently now" if reworded else "its commit is not in this history"
             )
         elif changed := history.changed(commit, bar.sources or folders):
             yield bar.quantity, row.commit, f"changed since: {', '.join(changed)}"

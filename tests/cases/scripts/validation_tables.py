@@ -29,7 +29,7 @@ def commit(folder, file, text):
 for wanted, met, verdict in (("<= 1", True, "met"), ("<= 1", False, "not met"), ("reported", True, "reported"),
                              ("<= 1", None, "reported"), ("reported", False, "not met")):
     assert table.verdict_of(wanted, met) == verdict, (wanted, met)
-assert table.counts(["met", "not met", "reported", "stale (met)", "stale (reported)"]) == "1 of 3 bars met, 2 rows only report, 2 stale"
+assert table.counts(["met", "not met", "reported", "stale (met)", "stale (reported)"]) == "1 of 3 criteria met, 2 rows only report, 2 stale"
 
 assert table.without_paths("saved in /home/me/a-b/run.1, 3 m/s, see https://a.org/b/c and docs/x.md") == "saved in ..., 3 m/s, see https://a.org/b/c and docs/x.md"
 
@@ -62,7 +62,7 @@ with tempfile.TemporaryDirectory() as name:
     assert all(table.renewed(b, now[b.quantity], history).verdict == now[b.quantity].verdict for b in bars)
     why = {q: w for q, _, w in table.stale("x", bars, rows, ("solid", "fluid"), history)}
     assert why == {"old": "changed since: solid, fluid", "rebased": "changed since: fluid", "lost": "its commit is not in this history",
-                   "reworded": "the bar reads differently now", "new": "not measured", "other mesh": "changed since: fluid",
+                   "reworded": "the criterion reads differently now", "new": "not measured", "other mesh": "changed since: fluid",
                    "shown": "changed since: fluid"}, why
     assert history.changed(first, ("fluid", "!fluid/b")) == [] and history.changed(first, ("fluid",)) == ["fluid"]
     assert table.age("x", bars, rows, ("solid", "fluid"), history).endswith(f"0 of 7 rows were measured on the present sources, 6 on older ones (since {history.date(first)}); 1 were not measured.")

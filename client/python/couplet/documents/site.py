@@ -3,6 +3,7 @@
 Material theme. The sidebar sorts pages by kind. The search leaves out pages for developers. The site loads nothing from
 other servers."""
 import functools
+import html
 import json
 import math
 import os
@@ -160,10 +161,25 @@ def with_links(page, text, there, needed):
     )
 
 
+def with_breaks(text):
+    """Text whose tables may break long code, such as names of tests, after punctuation."""
+
+    def broken(code):
+        return "<code>" + re.sub(r"([._:/,])(?=.)", r"\1<wbr>", html.escape(code[1], quote=False)) + "</code>"
+
+    return re.sub(r"^\|.*", lambda row: re.sub(r"`([^`|]{32,})`", broken, row[0]), text, flags=re.M)
+
+
 def duration(seconds):
     for unit, size, below in (("s", 1, 90), ("min", 60, 5400), ("h", 3600, math.inf)):
         if seconds < below:
             return f"{max(1, round(seconds / size))} {unit}"
+
+
+def first_sentence(text):
+    """Text up to the first full stop outside parentheses; "(Int. J. Numer. Meth.)" has none."""
+    ends = (m.end() for m in re.finditer(r"[.!?](?= |$)", text))
+    return next((text[:n] for n in ends if text.count("(", 0, n) == text.count(")", 0, n)), text)
 
 
 def card(entry, there, needed):
@@ -174,7 +190,7 @@ def card(entry, there, needed):
         needed.add(picture)
         shown = f"[![{entry.title}]({picture})]({readme})\n\n"
     title = f"[{entry.title}]({readme})" if readme in there else entry.title
-    first = re.split(r"(?<=[.!?]) ", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", entry.about))[0]
+    first = first_sentence(re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", entry.about))
     programs = ", ".join(f"`{p}`" for p in dict.fromkeys(entry.programs))
     cells = f"; {entry.cells} cells" if entry.cells else ""
     time = f"; about {duration(float(entry.seconds))} of one core" if entry.seconds else ""
@@ -288,7 +304,7 @@ def stage(folder, with_plots):
     there, needed = pages(), set()
     known = set(there)
     for page in there:
-        text = with_links(page, with_formulas(page, text_of(page)), known, needed)
+        text = with_breaks(with_links(page, with_formulas(page, text_of(page)), known, needed))
         text = plots.added(page, text, folder) if with_plots else text
         files.write(
             folder,

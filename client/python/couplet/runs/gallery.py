@@ -36,7 +36,7 @@ class Entry:
 def entry(folder):
     readme = (folder / "README.md").read_text() if (folder / "README.md").exists() else ""
     title = re.search(r"^# (.*)", readme, flags=re.M)
-    about = re.search(r"^(?![#!|`])\S.*(?:\n(?![#!|`\n]).+)*", readme, flags=re.M)
+    about = re.search(r"^(?![#!|]|```)\S.*(?:\n(?![#!|\n]|```).+)*", readme, flags=re.M)
     picture = re.search(r"!\[[^]]*\]\(([^)\s]+)", readme)
     case = Case(folder)
     programs = [str((p or {}).get("program", "?")) for p in case.participants.values()]
