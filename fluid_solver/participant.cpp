@@ -428,9 +428,9 @@ void FluidParticipant<D>::log_sub_steps() {
   if (parallel::comm_rank(mesh_.comm) == 0)
     log::info(
         "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m limits them to "
-        "{:.3g} s, of which {:.0f} % are used",
+        "{:.3g} s times the safety factor {:g}",
         end, now, step_.dt / now, limiter.cause(), limiter.cell, limiter.place.x(), limiter.place.y(),
-        limiter.place.z(), limiter.limit, 100 * fluid_->parameters().safety_factor);
+        limiter.place.z(), limiter.limit, fluid_->parameters().safety_factor);
 }
 
 template class FluidParticipant<2>;

@@ -44,22 +44,22 @@ struct ErrorPart {
 std::string cure(const ErrorPart& part) {
   if (part.is(&ErrorParts::mesh)) {
     constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
-    return fmt::format("half the cell size would leave about {:.2g}, for {} the cells",
+    return fmt::format("half the cell size would leave about {:.2g}, with {} the cells",
                        part.value / std::exp2(part.of->parts.mesh_order),
                        cells.at(std::size_t(std::clamp(part.of->parts.dimension, 0, 3))));
   }
   // The order of convergence holds for small errors only.
   if (part.is(&ErrorParts::step) && part.value >= questionable_error)
-    return "halve the time step, for twice the steps; so large an error does not tell what that leaves";
+    return "halve the time step (twice the steps); the error is too large to predict what remains";
   if (part.is(&ErrorParts::step))
-    return fmt::format("half the time step would leave about {:.2g}, for twice the steps",
+    return fmt::format("half the time step would leave about {:.2g}, with twice the steps",
                        part.value / std::exp2(part.of->parts.step_order));
   if (part.is(&ErrorParts::linear))
-    return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, for a few more iterations",
+    return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, with a few more iterations",
                        part.value / 10);
   if (part.is(&ErrorParts::coupling))
     return fmt::format(
-        "a tenth of 'convergence' of the coupling would leave about {:.2g}, for a pass or two more per step",
+        "a tenth of 'convergence' of the coupling would leave about {:.2g}, with one or two more iterations per step",
         part.value / 10);
   return part.of->parts.model_by;
 }

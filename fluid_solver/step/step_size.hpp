@@ -25,7 +25,7 @@ struct StepLimiter {
   Vec3 place = Vec3::Zero();  ///< [m]
   bool friction = false;      ///< true if friction has the larger share in its rate, else convection
   bool frame = false;         ///< true if the Coriolis force limits the step in all cells
-  const char* cause() const { return frame ? "the Coriolis force" : friction ? "friction" : "convection"; }
+  const char* cause() const { return frame ? "the Coriolis force" : friction ? "viscosity" : "convection"; }
 };
 /// For example: "In cell 3 at (0.75, 0.75, 0) m, convection limits them to this size."
 std::string in_words(const StepLimiter& limiter);

@@ -65,7 +65,7 @@ class OverSocket:
             raise ValueError(f"COUPLET_JOIN: '{file}' was not written by a relay of this version.")
         if name != f"participant {participant}":
             raise ValueError(
-                f"'{file}' is of the relay of '{name.removeprefix('participant ')}'; this program is '{participant}'."
+                f"'{file}' belongs to the relay of '{name.removeprefix('participant ')}'; this program is '{participant}'."
             )
         if comm.size != len(places):
             raise ValueError(
