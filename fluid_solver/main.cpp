@@ -36,18 +36,14 @@ int main(int argc, char** argv) {
       .diagnose = [](const coupling::Participant& participant,
                      diagnostics::Diagnostics& all) { fluid::add_diagnostics(participant, all); },
       .environment = linalg::petsc_environment,
-      .choose =
-          [&](const diagnostics::CaseScene& scene) {
-            return fluid::choose_effects(parameters,
-                                         io::facts_of_file(scene.folder / parameters.mesh,
-                                                           parameters.mesh_parameters, parameters.mesh_scale),
-                                         scene);
+      .mesh =
+          [&](const std::filesystem::path& folder) {
+            return io::facts_of_file(folder / parameters.mesh, parameters.mesh_parameters,
+                                     parameters.mesh_scale);
           },
-      .expected =
-          [&](const diagnostics::CaseScene& scene) {
-            return fluid::expected_cost(
-                parameters, io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                              parameters.mesh_scale));
+      .choose =
+          [&](const mesh::MeshFacts& mesh, const diagnostics::CaseScene& scene) {
+            return fluid::choose_effects(parameters, mesh, scene);
           },
       .problems_of_files =
           [&](const diagnostics::CaseScene& scene) { return fluid::problems_of_files(parameters, scene); }};

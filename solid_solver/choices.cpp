@@ -98,16 +98,4 @@ std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& p, 
   return choices;
 }
 
-diagnostics::ExpectedCost expected_cost(const SolidParameters& p, const mesh::MeshFacts& mesh) {
-  // Measured in 3-D: 83 MB with 640 cells (factors, which grow as cells^(4/3)), 61 and 143 MB with 5120 and
-  // 40960 (multigrid); in 2-D 54 and 156 MB with 1024 and 16384.
-  const double cells = double(mesh.cells);
-  const double flat = 6650 * cells,
-               volume = cells <= 1500 ? 35e6 * std::pow(cells / 640, 4.0 / 3) : 2290 * cells;
-  const double bytes = 48e6 + (mesh.dim == 3 ? volume : flat);
-  const bool dynamic = p.analysis == SolidParameters::Analysis::dynamic;
-  const double seconds = mesh.dim == 3 ? (dynamic ? 10e-6 : 40e-6) : (dynamic ? 0.5e-6 : 30e-6);
-  return {mesh.cells, bytes, seconds * cells};
-}
-
 }  // namespace couplet::solid

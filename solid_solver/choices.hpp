@@ -17,6 +17,5 @@ std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& par
                                                       const diagnostics::CaseScene& scene);
 
 /// Estimates the cost from configs/cantilever and cook on one rank.
-diagnostics::ExpectedCost expected_cost(const SolidParameters& parameters, const mesh::MeshFacts& mesh);
 
 }  // namespace couplet::solid

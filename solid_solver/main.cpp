@@ -52,19 +52,14 @@ int main(int argc, char** argv) {
               add_diagnostics(static_cast<couplet::solid::Solid&>(participant).view(), all);
           },
       .environment = couplet::linalg::petsc_environment,
-      .choose =
-          [&](const couplet::diagnostics::CaseScene& scene) {
-            return couplet::solid::choose_effects(
-                parameters,
-                couplet::io::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
-                                           parameters.mesh_scale),
-                scene);
+      .mesh =
+          [&](const std::filesystem::path& folder) {
+            return couplet::io::facts_of_file(folder / parameters.mesh, parameters.mesh_parameters,
+                                              parameters.mesh_scale);
           },
-      .expected =
-          [&](const couplet::diagnostics::CaseScene& scene) {
-            return couplet::solid::expected_cost(
-                parameters, couplet::io::facts_of_file(scene.folder / parameters.mesh,
-                                                       parameters.mesh_parameters, parameters.mesh_scale));
+      .choose =
+          [&](const couplet::mesh::MeshFacts& mesh, const couplet::diagnostics::CaseScene& scene) {
+            return couplet::solid::choose_effects(parameters, mesh, scene);
           }};
   return couplet::app::run_program(argc, argv, program);
 }

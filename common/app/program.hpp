@@ -15,6 +15,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/diagnostics/choices.hpp"
 #include "common/diagnostics/diagnostics.hpp"
+#include "common/mesh/distributed/mesh_block.hpp"
 
 namespace couplet::app {
 
@@ -52,10 +53,11 @@ struct Program {
   /// Holds libraries while the participant exists (petsc_environment()), or is empty. Programs without it do
   /// not link PETSc, which takes 60 ms to load.
   std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};
+  /// Facts of the mesh that the parameters name in this folder. Empty if the program has no mesh.
+  std::function<mesh::MeshFacts(const std::filesystem::path&)> mesh = {};
   /// Makes the decisions of `simulation.effects: auto` that the YAML leaves open. Empty if there are none.
-  std::function<std::vector<diagnostics::EffectChoice>(const diagnostics::CaseScene&)> choose = {};
-  /// Estimates memory and time per step for --explain. Empty if not available.
-  std::function<diagnostics::ExpectedCost(const diagnostics::CaseScene&)> expected = {};
+  std::function<std::vector<diagnostics::EffectChoice>(const mesh::MeshFacts&, const diagnostics::CaseScene&)>
+      choose = {};
   /// Finds problems of the files that the parameters name, for --check. If empty, only the general checks are
   /// done.
   std::function<std::vector<ProblemOfKey>(const diagnostics::CaseScene&)> problems_of_files = {};

@@ -29,14 +29,4 @@ struct EffectChoice {
 /// Text "auto: analysis: static (nothing changes in time)", or that the key was given.
 std::string text(const EffectChoice& choice);
 
-/// Expected cost of a participant on one rank, extrapolated from measured runs of small cases.
-struct ExpectedCost {
-  std::size_t cells = 0;
-  double bytes = 0;           ///< peak, to about a fifth
-  double seconds_a_step = 0;  ///< of the solver, to a factor of three, depending on the machine and the flow
-};
-
-/// Text "4096 cells: about 54 MB, 20 ms a step on one rank (time to a factor of three)".
-std::string text(const ExpectedCost& cost);
-
 }  // namespace couplet::diagnostics

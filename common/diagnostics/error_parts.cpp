@@ -40,27 +40,18 @@ struct ErrorPart {
   bool is(double ErrorParts::*which) const { return kind->value == which; }
 };
 
-/// Cheapest change that lowers a contribution, the remaining contribution, and its price.
+/// Cheapest change that lowers a contribution, and its price. What half the cell size or step leaves follows from the
+/// order of convergence, which one run does not know.
 std::string cure(const ErrorPart& part) {
   if (part.is(&ErrorParts::mesh)) {
     constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
-    return fmt::format("half the cell size would leave about {:.2g}, with {} the cells",
-                       part.value / std::exp2(part.of->parts.mesh_order),
+    return fmt::format("half the cell size (with {} the cells)",
                        cells.at(std::size_t(std::clamp(part.of->parts.dimension, 0, 3))));
   }
-  // The order of convergence holds for small errors only.
-  if (part.is(&ErrorParts::step) && part.value >= questionable_error)
-    return "halve the time step (twice the steps); the error is too large to predict what remains";
-  if (part.is(&ErrorParts::step))
-    return fmt::format("half the time step would leave about {:.2g}, with twice the steps",
-                       part.value / std::exp2(part.of->parts.step_order));
-  if (part.is(&ErrorParts::linear))
-    return fmt::format("a tenth of the solver tolerance would leave about {:.2g}, with a few more iterations",
-                       part.value / 10);
+  if (part.is(&ErrorParts::step)) return "half the time step (with twice the steps)";
+  if (part.is(&ErrorParts::linear)) return "a tenth of the solver tolerance (with a few more iterations)";
   if (part.is(&ErrorParts::coupling))
-    return fmt::format(
-        "a tenth of 'convergence' of the coupling would leave about {:.2g}, with one or two more iterations per step",
-        part.value / 10);
+    return "a tenth of 'convergence' of the coupling (with one or two more iterations per step)";
   return part.of->parts.model_by;
 }
 
@@ -108,8 +99,6 @@ std::string ErrorParts::text() const {
     if (!std::isnan(this->*k.value))
       text += fmt::format("{}{} {:.6g}", text.empty() ? "" : " ", k.name, this->*k.value);
   if (!text.empty() && dimension > 0) text += fmt::format(" dimension {}", dimension);
-  if (!text.empty() && mesh_order != 2) text += fmt::format(" mesh-order {:.6g}", mesh_order);
-  if (!text.empty() && step_order != 2) text += fmt::format(" step-order {:.6g}", step_order);
   if (!text.empty() && misses_step) text += " misses-step 1";
   if (!field.empty() || !model_by.empty() || !omittable.empty())
     text += fmt::format(" | {} | {} | {}", field, model_by, omittable);
@@ -129,8 +118,7 @@ ErrorParts ErrorParts::of(const std::string& text) {
   for (std::string name; words >> name;) {
     const auto kind = std::ranges::find_if(kinds, [&](const ErrorKind& k) { return k.name == name; });
     double value = 0;
-    const bool is_about =
-        name == "dimension" || name == "mesh-order" || name == "step-order" || name == "misses-step";
+    const bool is_about = name == "dimension" || name == "misses-step";
     if ((kind == kinds.end() && !is_about) || !(words >> value))
       throw Error(
           "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling, model), "
@@ -140,8 +128,6 @@ ErrorParts ErrorParts::of(const std::string& text) {
       parts.dimension = int(std::clamp(value, 0.0, 3.0));
     else if (name == "misses-step")
       parts.misses_step = value != 0;
-    else if (is_about)
-      (name == "mesh-order" ? parts.mesh_order : parts.step_order) = value;
     else
       parts.*(kind->value) = value;
   }
@@ -153,10 +139,7 @@ ErrorParts largest(const std::vector<NamedErrors>& participants) {
   for (const ErrorPart& p : largest_parts(participants)) {
     parts.*(p.kind->value) = p.value;
     if (p.is(&ErrorParts::model)) parts.model_by = p.of->parts.model_by;
-    if (p.is(&ErrorParts::step)) parts.step_order = p.of->parts.step_order;
-    if (!p.is(&ErrorParts::mesh)) continue;
-    parts.dimension = p.of->parts.dimension;
-    parts.mesh_order = p.of->parts.mesh_order;
+    if (p.is(&ErrorParts::mesh)) parts.dimension = p.of->parts.dimension;
   }
   for (const NamedErrors& n : participants)
     parts.misses_step |= std::isnan(parts.step) && n.parts.misses_step;

@@ -182,10 +182,4 @@ std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& p, 
           mesh_motion(p, scene)};
 }
 
-diagnostics::ExpectedCost expected_cost(const FluidParameters& p, const mesh::MeshFacts& mesh) {
-  // Measured: 56 MB with 4096 cells in 2-D, including 21 MB for PETSc and its libraries.
-  const double cells = double(mesh.cells), eddies = p.turbulence ? 8 : 0;
-  return {mesh.cells, 49e6 + (1800 + eddies) * cells, 2e-6 * cells};
-}
-
 }  // namespace couplet::fluid

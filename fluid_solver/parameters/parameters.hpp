@@ -294,7 +294,4 @@ std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& par
                                                       const mesh::MeshFacts& mesh,
                                                       const diagnostics::CaseScene& scene);
 
-/// Estimates the cost from configs/cavity and taylor-green-3d on one rank.
-diagnostics::ExpectedCost expected_cost(const FluidParameters& parameters, const mesh::MeshFacts& mesh);
-
 }  // namespace couplet::fluid

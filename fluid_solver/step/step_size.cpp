@@ -9,6 +9,7 @@
 #include <complex>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -216,17 +217,17 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
 template <int D>
 StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
   add_rates(s, implicit);
+  const auto limit_of = [&](Index c, double convection, double diffusion) {
+    const double size = std::hypot(convection, diffusion), angle = std::atan2(convection, diffusion);
+    if (!implicit)
+      return std::pair(size > 0 ? explicit_limit(angle) / size : base::infinity, diffusion > convection);
+    const double friction = friction_limit(c, angle, size);
+    const double limit = convection > 0 ? convective_limit(c) / convection : base::infinity;
+    return std::pair(std::min(limit, friction), friction < limit);
+  };
   StepLimiter found{base::infinity};
   for_rates(s, [&](Index c, double convection, double diffusion) {
-    const double size = std::hypot(convection, diffusion), angle = std::atan2(convection, diffusion);
-    double limit = size > 0 ? explicit_limit(angle) / size : base::infinity;
-    bool friction = diffusion > convection;
-    if (implicit) {
-      const double own = friction_limit(c, angle, size);
-      limit = convection > 0 ? convective_limit(c) / convection : base::infinity;
-      friction = own < limit;
-      limit = std::min(limit, own);
-    }
+    const auto [limit, friction] = limit_of(c, convection, diffusion);
     if (limit >= found.limit) return;
     found = {limit, mesh_.cell_id[c], Vec3::Zero(), friction};
     found.place.template head<D>() = s.placement->centre[c];
@@ -235,7 +236,16 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
   found = *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
     return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;
   });
-  if (frame_limit() < found.limit) found.limit = frame_limit(), found.friction = false, found.frame = true;
+  if (frame_limit() < found.limit) {
+    found.limit = frame_limit(), found.friction = false, found.frame = true;
+    return found;
+  }
+  double near = 0, cells = 0;
+  for_rates(s, [&](Index c, double convection, double diffusion) {
+    near += limit_of(c, convection, diffusion).first < 2 * found.limit;
+    ++cells;
+  });
+  found.share = parallel::sum(mesh_.comm, near) / parallel::sum(mesh_.comm, cells);
   return found;
 }
 

@@ -51,11 +51,8 @@ class FrontError final : public TankDiagnostic {
   using TankDiagnostic::TankDiagnostic;
   void conclude(diagnostics::Report& report) override {
     report.errors = spread_profile();
-    if (const double unused = unused_by_spreading(1); unused > 0 && !(report.errors.mesh > unused)) {
+    if (const double unused = unused_by_spreading(); unused > 0 && !(report.errors.mesh > unused))
       report.errors.mesh = unused;
-      // Upwind: a front widens with the square root of the cell size.
-      report.errors.mesh_order = std::log2(unused / unused_by_spreading(2));
-    }
     report.errors.dimension = 1, report.errors.field = "profile of temperature";
   }
 
@@ -78,19 +75,17 @@ class FrontError final : public TankDiagnostic {
       return change_by_spreading(t, std::min(std::sqrt(variance), double(n))) / size;
     };
     diagnostics::ErrorParts parts{.mesh = by(scheme() == Advection::tvd ? 1 : std::max(1., way))};
-    if (scheme() != Advection::tvd) parts.mesh_order = 1;
-    parts.step_order = 1;
     if (scheme() == Advection::implicit) parts.step = by(seen_->advance / crossing_mass() * double(n) * way);
     return parts;
   }
 
   /// A plant ends charging or discharging when the outlet deviates by the cut-off, while the front's middle
   /// is still some deviations inside. That part of the bed stays unused at both ends. Returns the
-  /// contribution of the scheme with `finer` times the cells, besides that of film and grains.
-  double unused_by_spreading(double finer) const {
+  /// contribution of the scheme, besides that of film and grains.
+  double unused_by_spreading() const {
     const FlowParameters& flow = view_.parameters().flow;
     if (flow.type != FlowParameters::Type::plant || !(seen_->flow > 0)) return 0;
-    const double n = finer * double(bed().grid().size()), way = n * crossed();
+    const double n = double(bed().grid().size()), way = n * crossed();
     double variance = 1;  // in cells
     if (scheme() != Advection::tvd)
       variance = way * (1 + (scheme() == Advection::implicit ? seen_->advance / crossing_mass() * n : 0));

@@ -117,7 +117,8 @@ std::string problem_of_expression(const config::ExpressionText& text) {
 
 /// Applies `effects: auto`: sets keys that the case leaves open in the document. Existing keys are kept.
 void choose(const CommandLine& command_line, const Program& program, CaseFile& result) {
-  result.choices = program.choose(scene_of(command_line, result));
+  const diagnostics::CaseScene scene = scene_of(command_line, result);
+  result.choices = program.choose(program.mesh(scene.folder), scene);
   const std::string section = "participants." + result.participant;
   const std::vector<std::string> there = config::keys_of(*result.document, section);
   for (diagnostics::EffectChoice& choice : result.choices) {

@@ -2,10 +2,12 @@
 #include "common/app/case/case_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <sstream>
 
 #include "common/app/case/roll_call.hpp"
@@ -199,12 +201,14 @@ int check(const CommandLine& command_line, const Program& program, bool print) {
 
 namespace {
 
-/// Prints the expected cost, which requires the mesh. A run reports problems of the mesh.
-void print_expected(const diagnostics::CaseScene& scene, const Program& program) {
+/// Prints number of cells and size of the mesh. A run reports problems of the mesh.
+void print_mesh(const diagnostics::CaseScene& scene, const Program& program) {
   try {
-    fmt::print("expected:         {}\n", diagnostics::text(program.expected(scene)));
+    const mesh::MeshFacts facts = program.mesh(scene.folder);
+    const std::span<const double> sides(facts.size.data(), std::size_t(facts.dim));
+    fmt::print("mesh:             {} cells, {:.4g} m\n", facts.cells, fmt::join(sides, " x "));
   } catch (const Error& error) {
-    fmt::print("expected:         unknown: {}\n", error.what());
+    fmt::print("mesh:             unknown: {}\n", error.what());
   }
 }
 
@@ -251,7 +255,7 @@ int explain(const CommandLine& command_line, const Program& program) {
   for (const diagnostics::EffectChoice& choice : file.choices)
     fmt::print("  {}\n", diagnostics::text(choice));
   print_effects(file, program);
-  if (program.expected) print_expected(scene, program);
+  if (program.mesh) print_mesh(scene, program);
   fmt::print("{} {}\n", file.coupled ? "whole case:       couplet run" : "launch:           " + program.name,
              command_line.case_file.string());
   return 0;

@@ -32,14 +32,8 @@ assert re.search(rf"^whole case: +couplet run {re.escape(str(flap))}$", text, re
 text = ask("solid_solver", cantilever, "--explain")
 assert "couplet run" not in text and "mesh_mover" not in text, text
 
-# What it expects of memory is near what a run then takes (which sanitizers double and triple).
-sanitized = os.environ.get("COUPLET_SLOWER", "1") != "1"
-for program, case, sets in (("solid_solver", cantilever, ()), ("fluid_solver", root / "configs/cavity/case.yaml", ("--set", "simulation.end-time=0.04"))):
-    shown = ask(program, case, "--explain", *sets)
-    expected = float(re.search(r"expected: +\d+ cells: about (\d+) MB, \S+ m?s per step", shown).group(1))
-    with tempfile.TemporaryDirectory() as folder:
-        taken = float(re.search(r"peak memory of .*: (\d+) MB on the rank", ask(program, case, *sets, "--set", f"simulation.output.folder={folder}")).group(1))
-    assert abs(expected / taken - 1) < 0.2 or sanitized, (program, expected, taken)
+# The mesh's cells and size.
+assert re.search(r"^mesh: +4096 cells, 1 x 1 m$", ask("fluid_solver", root / "configs/cavity/case.yaml", "--explain"), re.M)
 
 # A key of the command line switches an effect on in what is explained.
 assert not effects(ask("solid_solver", cantilever, "--explain"))["gravity"]

@@ -1,18 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists what a case computes (with --all, also what it neglects), its cells, expected memory and time, and the launch
-line. Runs nothing."""
+"""Lists what a case computes (with --all, also what it neglects), its cells, the launch line, and the memory and time of
+the whole run, measured over its first seconds in a temporary folder."""
 import shlex
 
 from couplet.command import check
-from couplet.command.run import build_of, declare_guests, pairs
-from couplet.runs.case import Case
+from couplet.command.run import build_of, declare_guests, pairs, span
+from couplet.runs.case import OURS, Case
 from couplet.runs.job import Job
+from couplet.runs.probe import LIMIT, probe
 
 
 def declare(parser):
     check.declare(parser)
     declare_guests(parser, "command of an external participant in the launch line")
     parser.add_argument("--all", action="store_true", help="also lists neglected effects and the keys that enable them")
+
+
+def price(case, sets):
+    """Lines on the whole run: time, memory, and what limits its steps."""
+    if guests := [name for name in case.participants if case.program(name).name not in OURS]:
+        return f"whole run:       not measured, since it takes the external participant '{guests[0]}'"
+    found = probe(case, [word for s in sets for word in ("--set", s)])
+    if found.ended:
+        took = f"{span(found.wall)}, measured"
+    elif found.wall > 0:
+        took = f"about {span(found.wall)} on one rank for each program, judged by its first steps"
+    else:
+        return f"whole run:       not measured: {found.problem or f'no step within {LIMIT:g} s'}"
+    return "\n".join(
+        [f"whole run:       {took}; {found.memory:.0f} MB", *(f"steps:           {line}" for line in found.said)]
+    )
 
 
 def run(arguments):
@@ -29,6 +46,7 @@ def run(arguments):
             ):
                 print(line)
     played_by = {name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}
+    print(price(Case(arguments.case, build_of(arguments.bin)).changed(arguments.set), arguments.set))
     print("limitations:     docs/limitations.md lists what no case can compute (couplet docs shows it)")
     print(
         "launch line:     "

@@ -14,7 +14,7 @@ from couplet.runs import folder as folders
 from couplet.runs.case import CONTROL, Case, expect, mapping_of
 from couplet.runs.job import Job, output_of
 
-RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divided by measured or expected work"
+RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divided by measured work, or else by cells"
 FLAGS = {"strict": "fails if the run warns about its own result; --strict=effects: also about neglected effects"}
 
 
@@ -236,7 +236,10 @@ def shown(path):
 
 
 def span(seconds):
-    return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s" if seconds < 600 else f"{seconds / 60:.0f} min"
+    for unit, size, below in (("s", 1, 600), ("min", 60, 7200)):
+        if seconds < below:
+            return f"{seconds / size:.{int(seconds < 10)}f} {unit}"
+    return f"{seconds / 3600:.1f} h"
 
 
 def line_of_picture(job, out):

@@ -5,14 +5,13 @@ import dataclasses
 import pathlib
 import re
 import subprocess
-import tempfile
-import threading
 
 import yaml
 
 from couplet import files
 from couplet.places import ROOT
 from couplet.runs.case import Case, expect
+from couplet.runs.probe import probe
 
 
 CELLS = "cells.csv"
@@ -58,35 +57,8 @@ def entries():
     return found
 
 
-def seconds_of(case, build, limit):
-    """Processor seconds of a whole run: measured, or extrapolated from its progress within `limit` seconds; "" if it
-    made no step."""
-    from couplet.places import command
-    from couplet.runs import folder
-    from couplet.runs.results import Results
-
-    with tempfile.TemporaryDirectory(prefix="couplet-gallery-") as scratch:
-        out = pathlib.Path(scratch) / "out"
-        job = subprocess.Popen(
-            [command(), "run", case, "--bin", build / "bin", "--set", f"simulation.output.folder={out}"],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-            cwd=scratch,
-        )
-        timer = threading.Timer(limit, lambda: folder.stop(out) or job.terminate())
-        timer.start()
-        said = job.communicate()[0]
-        timer.cancel()
-        ways = re.findall(r"\] t ?= ?([\d.e+-]+)/([\d.e+-]+) s", said)
-        results = Results(out)
-        reports = [results.report(name) for name in results.participants()] if out.is_dir() else []
-        worked = sum(r.get("processor-working" if len(reports) > 1 else "processor", 0) for r in reports)
-    return f"{float(f'{worked * float(ways[-1][1]) / float(ways[-1][0]):.1g}'):g}" if ways and worked > 0 else ""
-
-
 def cells_of_all(build, limit=0):
-    """Text of cells.csv: the largest expected cell count of each case, and the processor seconds of a run (kept if
+    """Text of cells.csv: the largest cell count of each case, and the processor seconds of a run (kept if
     `limit` is 0)."""
     text, before = "case,cells,seconds\n", {e.name: e.seconds for e in entries()}
     for file in sorted((ROOT / "configs").glob("*/case.yaml")):
@@ -96,8 +68,11 @@ def cells_of_all(build, limit=0):
                 said = subprocess.run(
                     [case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True
                 ).stdout
-                most = max([most, *map(int, re.findall(r"^expected: +(\d+) cells", said, flags=re.M))])
-        seconds = seconds_of(file, build, limit) if limit else before[case.file.parent.name]
+                most = max([most, *map(int, re.findall(r"^mesh: +(\d+) cells", said, flags=re.M))])
+        seconds = before[case.file.parent.name]
+        if limit:
+            processor = probe(case, (), limit, limit).processor
+            seconds = f"{float(f'{processor:.1g}'):g}" if processor > 0 else ""
         text += f"{case.file.parent.name},{most or ''},{seconds}\n"
     return text
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Division of a number of ranks among the participants, by the work measured in an earlier run or expected by the
-programs."""
+"""Division of a number of ranks among the participants, by the work measured in an earlier run, or by cells."""
 import os
 import re
 import subprocess
@@ -25,9 +24,9 @@ def measured(case, folder):
     return found if len(found) == len(case.participants) else {}
 
 
-def expected(case):
-    """Returns {participant: ms per step on one rank}, from --explain of the programs. An external program counts as
-    zero."""
+def cells(case):
+    """Returns {participant: cells of its mesh}, from --explain of the programs. A program without a mesh of its own
+    counts as zero."""
     found = {}
     for name in case.participants:
         if case.program(name).name not in OURS:
@@ -35,8 +34,8 @@ def expected(case):
         said = subprocess.run(
             [case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True
         ).stdout
-        number = re.search(r"^expected: .*?([\d.e+-]+) (ms|s) per step", said, flags=re.M)
-        found[name] = float(number[1]) * (1 if number[2] == "ms" else 1000) if number else 0.0
+        number = re.search(r"^mesh: +(\d+) cells", said, flags=re.M)
+        found[name] = float(number[1]) if number else 0.0
     return found
 
 
@@ -89,5 +88,5 @@ def divide(case, total):
         f"-n {total}: '{case.file}' needs at least {total - free + len(names)} ranks"
         + (f", one of them for the {COUPLER}" if case.coupled else ""),
     )
-    work = measured(case, output_of(case, ())) or expected(case)
+    work = measured(case, output_of(case, ())) or cells(case)
     return shares({name: work.get(name, 0.0) for name in names}, free, side_by_side(case))
