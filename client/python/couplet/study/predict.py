@@ -126,9 +126,10 @@ class Search:
         there = next((r for r in series.rows if r.point.size >= best.size and series.meets(r, self.target)), None)
         if there:
             return self.settle(series, best, there)
+        amount = amounts(self.quantity)
         self.say(
-            f"{series.name}: size {best.size:g} should leave an error of {best.error:.2g} (at most {best.bound:.2g})"
-            f" and take {best.seconds:.3g} s"
+            f"{series.name}: size {best.size:g} should leave an error of {amount(best.error)} (at most"
+            f" {amount(best.bound)}) and take {best.seconds:.3g} s"
         )
         size = self.next_size(series, best)
         row = self.run(series, size)
@@ -259,6 +260,11 @@ def seen_from_others(search, chosen, row):
     return least, who
 
 
+def amounts(quantity):
+    """Returns a function that writes an error of a quantity: absolute, or in per cent."""
+    return (lambda error: f"{error:.3g}") if quantity.given.get("absolute") else (lambda error: f"{100 * error:.3g} %")
+
+
 def said(search, series, row, predicted):
     """Result as numbers and as lines."""
     target, quantity = search.target, search.quantity
@@ -273,7 +279,7 @@ def said(search, series, row, predicted):
             "before": search.spent(),
             "lines": [
                 (
-                    f"No setting was found for an error of {target:.3g}, after"
+                    f"No setting was found for an error of {amounts(quantity)(target)}, after"
                     f" {sum(len(s.rows) for s in search.every)} runs:"
                 ),
                 *lines,
@@ -289,13 +295,14 @@ def said(search, series, row, predicted):
     reached = true if true is not None else max(error, elsewhere)
     seconds, spent = series.cost(row), search.spent()
     settings = ", ".join(f"{k}={v}" for k, v in row.point.changes.items())
-    how = "against the reference" if true is not None else f"by extrapolation, at most {max(bound, elsewhere):.3g}"
+    amount = amounts(quantity)
+    how = "against the reference" if true is not None else f"by extrapolation, at most {amount(max(bound, elsewhere))}"
     first = [
         (
-            f"Cheapest run for an error of {target:.3g} of {quantity.name}: {series.name}, size"
+            f"Cheapest run for an error of {amount(target)} of {quantity.name}: {series.name}, size"
             f" {row.point.size:g} ({settings})"
         ),
-        f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})"
+        f"error: {amount(reached)} {how} (predicted {amount(predicted.error)})"
         + (f" (compared with {who})" if elsewhere > error else ""),
         *([f"not confirmed: {search.doubt}"] if search.doubt else []),
         f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); all runs together took {spent:.3g} s",
