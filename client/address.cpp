@@ -137,7 +137,7 @@ Stream connect_to(const std::string& place) {
     size = numeric_address(where, port, at);
   }
   if (size == 0) {
-    refuse("'" + place + "' is not a place; expected 'unix PATH' or 'tcp ADDRESS PORT'.");
+    refuse("'" + place + "' is not an address; expected 'unix PATH' or 'tcp ADDRESS PORT'.");
   }
   Stream stream(::socket(at.ss_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
   widen(stream.descriptor());

@@ -102,7 +102,8 @@ double seconds_to_wait() {
   char* end = nullptr;
   const double seconds = std::strtod(text, &end);
   if (end == text || *end != 0 || !(seconds > 0))
-    throw std::runtime_error(std::string("COUPLET_JOIN_WAIT=") + text + ": expected seconds above 0.");
+    throw std::runtime_error(std::string("COUPLET_JOIN_WAIT=") + text +
+                             ": expected a number of seconds above 0.");
   return seconds;
 }
 
@@ -126,12 +127,12 @@ std::unique_ptr<Link> link_by_socket(const std::string& file, const std::string&
   MPI_Comm_size(comm, &greeting.size);
   const Address address = await_address(file);
   if (address.participant != participant)
-    throw std::runtime_error("'" + file + "' is of the relay of '" + address.participant +
+    throw std::runtime_error("'" + file + "' belongs to the relay of '" + address.participant +
                              "'; this program is '" + participant + "'.");
   if (std::size_t(greeting.size) != address.places.size())
     throw std::runtime_error("'" + participant + "' has " + std::to_string(greeting.size) +
-                             " processes, its relay " + std::to_string(address.places.size()) +
-                             ": start as many of both.");
+                             " processes, but its relay has " + std::to_string(address.places.size()) +
+                             ": start the same number of both.");
   greeting.token = address.token;
   greeting.participant = participant;
   Stream stream = connect_to(address.places[std::size_t(greeting.rank)]);

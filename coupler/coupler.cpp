@@ -194,7 +194,7 @@ void Coupler::finalise(const std::string& problem) {
 std::vector<diagnostics::Coordinate> Coupler::position() const {
   if (!pass_.schedule().iterates) return diagnostics_.position();
   if (!(steps() > 0)) return {};
-  return {{"passes per step", double(iterations()) / double(steps()),
+  return {{"coupling iterations per step", double(iterations()) / double(steps()),
            double(parameters_.convergence.max_iterations), "strong-robin"}};
 }
 

@@ -23,10 +23,10 @@ class LeastJacobian final : public diagnostics::Diagnostic {
           {.id = "distorted-mesh",
            .number = *least,
            .limit = 0,
-           .sentence =
-               fmt::format("the least scaled Jacobian of the moved mesh was {:.2g} (limit 0): a cell is "
-                           "folded at a corner, and gradients there are wrong",
-                           *least),
+           .sentence = fmt::format(
+               "a cell of the moved mesh is folded at a corner, and gradients there are wrong: least "
+               "scaled Jacobian {:.2g} (limit 0)",
+               *least),
            .advice =
                "use 'method: barrier' or a finer mesh near the moving walls; quality.csv names the cell"});
   }

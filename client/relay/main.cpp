@@ -62,7 +62,7 @@ extern "C" void stopped(int signal) {
       "Stands in a job for a participant that is launched separately with COUPLET_JOIN=FILE in its environment.\n"
       "  --listen   how it is reached: a socket on this machine (unix, the default), or on one network interface (IPv4, IPv6)\n"
       "  --address  the file with its place and the token; default: PARTICIPANT.relay\n"
-      "  --wait     seconds until the participant must have come; default: 600\n");
+      "  --wait     seconds to wait for the participant; default: 600\n");
   std::exit(problem.empty() ? 0 : 2);
 }
 
@@ -83,7 +83,7 @@ Options options_of(int argc, char** argv) {
       char* end = nullptr;
       const std::string text = value();
       o.wait = std::strtod(text.c_str(), &end);
-      if (*end != 0 || !(o.wait > 0)) usage("--wait " + text + ": expected seconds above 0.");
+      if (*end != 0 || !(o.wait > 0)) usage("--wait " + text + ": expected a number of seconds above 0.");
     } else if (word.rfind("--", 0) == 0)
       usage("unknown option '" + word + "'.");
     else if (o.participant.empty())

@@ -110,7 +110,7 @@ class UseOfCase final : public diagnostics::Diagnostic {
         if (use.largest() == 0)
           find("given-without-effect", 0, 0,
                fmt::format(
-                   "{}: {} never acted, at no place and no time: check its place, its times and its units",
+                   "{}: {} never acted, anywhere or at any time: check its position, its times and its units",
                    name, use.given));
         else if (use.unseen > least_unseen * use.largest() &&
                  !name.starts_with("motion."))  // also used at trial times
@@ -129,7 +129,7 @@ class UseOfCase final : public diagnostics::Diagnostic {
                   name, use.from, use.to, use.lowest, use.highest));
         else if (is_left)
           report.sentences.push_back(fmt::format(
-              "{}: it covers {:g} to {:g} and was read from {:g} to {:g}; beyond its ends its end values held.",
+              "{}: it covers {:g} to {:g} and was read from {:g} to {:g}; beyond its ends its end values were used.",
               name, use.from, use.to, use.lowest, use.highest));
         break;
       case Use::Kind::property:

@@ -230,7 +230,7 @@ std::string Loader::problem_of(const KeyFacts& facts, const Slot& slot) const {
   const auto around =
       std::find_if(frames_.rbegin(), frames_.rend(), [](const Frame& f) { return bool(f.dimension); });
   if (around != frames_.rend() && !facts.size && std::ssize(**texts) != *around->dimension)
-    return fmt::format("{} components are given, but the {}-dimensional scene needs {}.", (**texts).size(),
+    return fmt::format("{} components are given, but the {}-dimensional case needs {}.", (**texts).size(),
                        *around->dimension, *around->dimension);
   for (std::size_t i = 0; i < (**texts).size(); ++i)
     if (const std::string problem = check_expression_((**texts)[i]); !problem.empty())

@@ -102,6 +102,7 @@ struct Removed {
 
 constexpr Removed removed[] = {
     {coupling, "error-estimate", "set 'diagnostics: without-errors' for 'error-estimate: false'"},
+    {coupling, "neglected-share", "set 'neglected-limit', its new name"},
     {coupling, "both min-iterations", "leave it out: a step has converged when either limit is met"},
     {coupling, "maximum-columns", "leave it out, or set 'reused-steps'"},
     {coupling, "waveform", "leave it out: sub-steps take input that is linear in time"},

@@ -49,11 +49,11 @@ std::optional<Finding> atmosphere_on_one_side(MPI_Comm comm, int dim, std::span<
       .number = pressure,
       .limit = atmosphere,
       .sentence = fmt::format(
-          "load of the interface: an even pressure of {:.5g} Pa, about that of the atmosphere, and none on the "
+          "load of the interface: a uniform pressure of {:.5g} Pa, about that of the atmosphere, and none on the "
           "other side of the structure: questionable",
           pressure),
       .advice =
-          "if the fluid's pressures include the atmosphere, take it off ('pressure: 0' at its outlets), or give the other "
+          "if the fluid's pressures include the atmosphere, subtract it ('pressure: 0' at its outlets), or give the other "
           "side of the structure this pressure, too"};
 }
 

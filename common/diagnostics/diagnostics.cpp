@@ -116,11 +116,13 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
     f.severity = f.number < f.limit                    ? Severity::note
                  : f.number > as_large_as_the_solution ? Severity::wrong
                                                        : Severity::warning;
-    f.sentence = fmt::format("{}: {}; share of the result {:.2g} (limit {:.2g}): {}", f.effect, e.what,
-                             f.number, f.limit,
-                             f.severity == Severity::note      ? "justified"
-                             : f.severity == Severity::warning ? "matters"
-                                                               : "not reliable");
+    f.sentence = fmt::format(
+        "{}: {}; this changes the result by {} (limit {:.2g} %): {}", f.effect, e.what,
+        f.number > as_large_as_the_solution ? "more than 100 %" : fmt::format("{:.2g} %", 100 * f.number),
+        100 * f.limit,
+        f.severity == Severity::note      ? "justified"
+        : f.severity == Severity::warning ? "matters"
+                                          : "not reliable");
     return f;
   }
   if (e.limit == no_verdict) {
@@ -135,7 +137,7 @@ std::optional<Finding> finding_of(const EffectFinding& e) {
     f.sentence = fmt::format("{} ({}; limit {:.2g})", e.effect, e.what, e.limit);
     return f;
   }
-  const char* word = e.left_out                      ? "its share of the result is unknown"
+  const char* word = e.left_out                      ? "its effect on the result is unknown"
                      : e.is_spare                    ? (e.number <= e.limit ? "could be left out" : "needed")
                      : is_sound                      ? "adequate"
                      : f.severity == Severity::wrong ? "wrong"
@@ -158,13 +160,11 @@ std::string position_sentence(const std::vector<Coordinate>& position) {
   if (position.empty()) return {};
   std::string list;
   for (const Coordinate& c : position)
-    list += fmt::format("{}{} {:.3g} of {}{:.3g}", list.empty() ? "" : ", ", c.quantity, c.value,
-                        c.floor ? "at least " : "", c.limit);
+    list += fmt::format("{}{} {:.3g} ({} {:.3g})", list.empty() ? "" : ", ", c.quantity, c.value,
+                        c.floor ? "at least" : "limit", c.limit);
   const Coordinate& nearest = *std::ranges::max_element(position, {}, &Coordinate::used);
-  const double used = nearest.used();
-  return fmt::format("on the map: {}; {}: {} (docs/stability.md, map {}).", list,
-                     used > 1 ? "beyond the limit" : "nearest limit",
-                     fmt::format("{}, {:.0f} % of the way", nearest.quantity, 100 * used), nearest.map);
+  return fmt::format("stability: {}: {} (docs/stability.md, {}).", list,
+                     nearest.used() > 1 ? "beyond the tested range" : "within the tested range", nearest.map);
 }
 
 }  // namespace couplet::diagnostics

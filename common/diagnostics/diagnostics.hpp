@@ -37,7 +37,7 @@ struct Coordinate {
 
 /// Keeps, for each quantity, the coordinate that is closer to its limit.
 void keep_nearest(std::vector<Coordinate>& kept, const std::vector<Coordinate>& seen);
-/// Text "on the map: Courant number 0.8 of 1, ...; nearest limit: ...". Empty without coordinates.
+/// Text "stability: Courant number 0.8 (limit 1), ...: within the tested range (...)". Empty without coordinates.
 std::string position_sentence(const std::vector<Coordinate>& position);
 
 /// Results of diagnostics.

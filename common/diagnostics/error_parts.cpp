@@ -45,13 +45,13 @@ struct ErrorPart {
 std::string cure(const ErrorPart& part) {
   if (part.is(&ErrorParts::mesh)) {
     constexpr std::array cells{"4 to 8 times", "twice", "4 times", "8 times"};
-    return fmt::format("half the cell size, for {} the cells",
+    return fmt::format("half the cell size (with {} the cells)",
                        cells.at(std::size_t(std::clamp(part.of->parts.dimension, 0, 3))));
   }
-  if (part.is(&ErrorParts::step)) return "half the time step, for twice the steps";
-  if (part.is(&ErrorParts::linear)) return "a tenth of the solver tolerance, for a few more iterations";
+  if (part.is(&ErrorParts::step)) return "half the time step (with twice the steps)";
+  if (part.is(&ErrorParts::linear)) return "a tenth of the solver tolerance (with a few more iterations)";
   if (part.is(&ErrorParts::coupling))
-    return "a tenth of 'convergence' of the coupling, for one or two more iterations per step";
+    return "a tenth of 'convergence' of the coupling (with one or two more iterations per step)";
   return part.of->parts.model_by;
 }
 

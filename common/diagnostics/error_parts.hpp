@@ -24,14 +24,14 @@ struct ErrorParts {
   double coupling = unknown;  ///< error of the coupling iteration below its tolerance
   /// Error from neglected effects: the sum of the findings that state a share.
   double model = unknown;
-  std::string model_by{};   ///< the largest of these and its remedy, in words
-  std::string omittable{};  ///< effects with negligible influence, and their cost, in words
-  std::string field{};      ///< field that mesh and step speak of, in words: "velocity"
-  std::string unit{};       ///< of this field
-  double size = 0;          ///< its root mean square over the body, the largest of the run [unit]
-  double level = 0;         ///< value from which the field is counted [unit]
-  int dimension = 0;        ///< of the mesh, 0 if unknown
-  bool misses_step = false;               ///< a run in time whose step is not estimated
+  std::string model_by{};    ///< the largest of these and its remedy, in words
+  std::string omittable{};   ///< effects with negligible influence, and their cost, in words
+  std::string field{};       ///< field that mesh and step speak of, in words: "velocity"
+  std::string unit{};        ///< of this field
+  double size = 0;           ///< its root mean square over the body, the largest of the run [unit]
+  double level = 0;          ///< value from which the field is counted [unit]
+  int dimension = 0;         ///< of the mesh, 0 if unknown
+  bool misses_step = false;  ///< a run in time whose step is not estimated
   bool known() const;
   /// Text "mesh 0.0013 step 2e-05 model 0.1 | thermal strain neglected: ... | ". Empty if nothing is known.
   std::string text() const;

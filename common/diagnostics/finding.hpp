@@ -46,7 +46,7 @@ void resume_findings(int rank, const std::vector<Finding>& earlier);
 void accept(std::span<const std::string> ids);
 bool is_accepted(const std::string& id);
 
-/// Share of the result from which a neglected effect matters [1]; `simulation.neglected-share`.
+/// Relative change of the result from which a neglected effect matters [1]; `simulation.neglected-limit`.
 double& share_limit();
 
 /// Number of findings about the result that are not accepted and have at least this severity.

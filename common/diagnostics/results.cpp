@@ -177,8 +177,7 @@ std::string results_text(const std::string& participant, double time, std::size_
     width = std::max(width, std::min<std::size_t>(rows[i].name.size(), 34));
   for (std::size_t i = 0; i < std::min(most, rows.size()); ++i)
     block += fmt::format("\n  {:<{}}  {}", rows[i].name, width, rows[i].text);
-  if (rows.size() > most)
-    block += fmt::format("\n  and {} more in its tables and run.json", rows.size() - most);
+  if (rows.size() > most) block += fmt::format("\n  and {} more: couplet report", rows.size() - most);
   for (const std::string& line : verdict) block += "\n" + line;
   return block;
 }

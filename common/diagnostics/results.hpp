@@ -16,9 +16,9 @@ namespace couplet::diagnostics {
 struct Result {
   std::string name, unit;
   std::vector<double> values;
-  double error =
-      std::numeric_limits<double>::quiet_NaN();  ///< estimated, relative to the largest value; NaN if unknown
-  std::string place{};                           ///< "at (1, 0, 0) m"
+  /// Estimated, relative to the largest value. NaN if unknown, infinity if it has none.
+  double error = std::numeric_limits<double>::quiet_NaN();
+  std::string place{};  ///< "at (1, 0, 0) m"
   int rank = 0;  ///< 0: the case asks for it, 1: follows from what it asks for, 2: shows how the run went
   std::string text{};  ///< values with unit, error and place, as the run prints them; from results()
 };

@@ -245,7 +245,7 @@ bool Expression::is_zero() const { return !uses_time() && !uses_space() && state
 std::vector<Expression> make_expressions(const std::vector<config::ExpressionText>& texts, int dim,
                                          const std::string& where) {
   if (std::ssize(texts) != dim)
-    throw Error("{}: {} components are given, but the {}-dimensional scene needs {}.", where, texts.size(),
+    throw Error("{}: {} components are given, but the {}-dimensional case needs {}.", where, texts.size(),
                 dim, dim);
   std::vector<Expression> expressions;
   for (int c = 0; c < dim; ++c) expressions.emplace_back(texts[c], fmt::format("{}[{}]", where, c));

@@ -29,7 +29,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   s.value("centre", m.centre)
       .unit("m", 1e-9, 1e4)
       .doc("center of the rotation and of the radii, in the reference configuration");
-  s.value("axis", m.axis).size(3).doc("axis of the rotation, 3-D; a 2-D scene rotates about z");
+  s.value("axis", m.axis).size(3).doc("axis of the rotation, 3-D; a 2-D case rotates about z");
   s.value("displacement", m.displacement)
       .unit("m", 1e-9, 1e4)
       .doc(
@@ -68,7 +68,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
 void check_axis(const Vec3& axis, int dim, const std::string& key) {
   if (dim == 2 && (axis[0] != 0 || axis[1] != 0 || !(axis[2] > 0)))
     throw Error(
-        "{}: a 2-D scene rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or "
+        "{}: a 2-D case rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or "
         "speed.",
         key);
 }

@@ -200,7 +200,7 @@ void check_and_report(const Mesh& mesh, const Geometry& geometry) {
     return value > least ? fmt::format("{:.3g}{} at {}", value, unit, text(at)) : fmt::format("0{}", unit);
   };
   log::info(
-      "mesh: {} cells in a box of {:.4g} x {:.4g}{} m; smallest volume {:.3g} m^3 at {}, largest angle {}, skewness {}, aspect ratio {:.3g} at {}",
+      "mesh: {} cells in a box of {:.4g} x {:.4g}{} m; smallest volume {:.3g} m^3 at {}, largest non-orthogonality {}, skewness {}, aspect ratio {:.3g} at {}",
       mesh.cells.n_global(), size.x(), size.y(), mesh.dim == 2 ? "" : fmt::format(" x {:.4g}", size.z()),
       q.min_volume, text(q.volume_at), number_at(q.max_non_orthogonality, 1e-3, " degrees", q.angle_at),
       number_at(q.max_skewness, 1e-9, "", q.skewness_at), q.max_aspect_ratio, text(q.aspect_at));

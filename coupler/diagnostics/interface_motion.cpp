@@ -218,16 +218,16 @@ WorkBalance::WorkResult WorkBalance::result(bool by_nearest, bool lagging) const
   v.sound = v.part < sound_part;
   v.useless = !lagging && apart / exchanged_ >= useless_part && steps_ >= judged_steps;
   v.text = fmt::format(
-      "interface work of {} steps: fluid gave {:.6g} J, structure took {:.6g} J, {:.2g} % of the {} apart: {}",
+      "energy at the interface: in {} steps the fluid gave {:.6g} J and the structure took {:.6g} J, which differ by {:.2g} % of the {}: {}",
       steps_, fluid_, structure_, 100 * v.part, net >= energy ? "net work" : "structure's largest energy",
-      v.sound ? "closed."
+      v.sound ? "balanced."
       : lagging
-          ? "NOT CLOSED: in explicit coupling load and motion belong to different times, and loads alternate from step to "
-            "step; 'scheme: semi-implicit' closes it."
+          ? "NOT BALANCED: in explicit coupling load and motion belong to different times, and loads alternate from step to "
+            "step; 'scheme: semi-implicit' avoids this."
       : by_nearest
-          ? "NOT CLOSED: the steps are not converged, or `mapping.type: nearest` transfers motion and load by maps that are "
+          ? "NOT BALANCED: the steps are not converged, or `mapping.type: nearest` transfers motion and load by maps that are "
             "not transposes of each other; tighten `convergence`, or use `projection`, which conserves the work on any meshes."
-          : "NOT CLOSED: the wall seen by the fluid moved differently from the structure; use smaller steps "
+          : "NOT BALANCED: the wall seen by the fluid moved differently from the structure; use smaller steps "
             "or an iterating scheme.");
   return v;
 }

@@ -15,10 +15,10 @@ namespace {
 std::string too_much_added_mass(double factor, int passes, double omega) {
   const double r = (factor + 1) / omega - 1;
   return fmt::format(
-      "the coupling diverges: the residual grew by {:.3g} per pass over {}. With constant relaxation "
+      "the coupling diverges: the residual grew {:.3g}-fold per iteration over {}. With constant relaxation "
       "{:g} this implies an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} "
       "converge, at any step. Use `acceleration.type: aitken` or `iqn-ils`, which adapt it.",
-      factor, passes == 1 ? "a pass" : fmt::format("{} passes", passes), omega, r, 2 / (1 + r));
+      factor, passes == 1 ? "one iteration" : fmt::format("{} iterations", passes), omega, r, 2 / (1 + r));
 }
 
 /// Stops a diverging iteration within a few passes (see ResidualGrowth).
@@ -196,8 +196,8 @@ class AddedMass final : public CouplingDiagnostic {
             {.effect = "iteration of pressure and structure",
              .number = returned_,
              .limit = limit_ / 2,
-             .what = fmt::format("added-mass ratio: {:.3g} of a change of the motion returns through the "
-                                 "load in the next pass; one pass per step diverges from {:.2g}",
+             .what = fmt::format("added mass / mass of the structure = {:.3g}; explicit coupling diverges "
+                                 "from {:.2g}, with any time step",
                                  returned_, limit_),
              .advice = "iterate the added mass: 'scheme: semi-implicit'",
              .left_out = false,
@@ -214,9 +214,9 @@ class AddedMass final : public CouplingDiagnostic {
     if (!(r > limit_)) return {};
     return app::StepFailure(
         fmt::format(
-            "the added-mass instability of explicit coupling: {:.3g} of a change of the motion returns "
-            "through the load in the next pass, and one pass per step diverges from {:.2g}, whatever "
-            "the step. Use `scheme: semi-implicit`, which iterates the added mass.",
+            "the added-mass instability of explicit coupling: the added mass is {:.3g} times the mass of the "
+            "structure, and one iteration per step diverges from {:.2g}, with any time step. Use `scheme: "
+            "semi-implicit`, which iterates the added mass.",
             r, limit_),
         false);
   }
@@ -246,8 +246,8 @@ void ResidualGrowth::pass(double residual, double omega, AccelerationParameters:
   using Type = AccelerationParameters::Type;
   if (type == Type::constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
   throw SolveFailure(
-      "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
-      "one; {}.",
+      "the coupling diverges: the residual grew {:.3g}-fold per iteration over {} iterations, {:.3g}-fold in the "
+      "last one; {}.",
       factor(), growing_, omega,
       type == Type::aitken ? "`acceleration.type: iqn-ils` handles several modes at once"
                            : "the participants' own tolerances may be too loose for quasi-Newton");
@@ -261,7 +261,7 @@ std::optional<std::string> ResidualGrowth::suspects(double relaxation, int predi
   if (!grows()) return {};
   if (relaxation > 0) return too_much_added_mass(factor(), growing_, relaxation);
   return fmt::format(
-      "the coupling diverges: the residual grew by {:.3g} per pass before a participant failed. Use a lower "
+      "the coupling diverges: the residual grew {:.3g}-fold per iteration before a participant failed. Use a lower "
       "`acceleration.initial-relaxation`{}.",
       factor(), predictor > 0 ? ", or `predictor.order: 0` for the first steps" : "");
 }

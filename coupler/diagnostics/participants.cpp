@@ -94,7 +94,7 @@ class DataOfParticipants final : public CouplingDiagnostic {
     for (const Received& one : answers_)
       if (one.looked > 0 && 2 * one.same >= one.looked)
         text += fmt::format(
-            " '{}' gave the same answer in {} of the last {} passes although its input changed: its solver's "
+            " '{}' gave the same answer in {} of the last {} iterations although its input changed: its solver's "
             "tolerance is too loose for this coupling.",
             one.name, one.same, one.looked);
     return text;

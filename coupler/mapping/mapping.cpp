@@ -174,9 +174,9 @@ void require_sums(MPI_Comm comm, const PointSet& from, const PointSet& to,
   worst = parallel::max(comm, worst);
   if (!(worst < 1e-12))
     throw Error(
-        "An amount that one of the {} gives would differ by {:.2g} of itself from what the {} take. Use "
+        "Amounts that the {} give would differ by {:.2g} % from those that the {} take. Use "
         "`coupling.mapping.type: nearest`.",
-        from.what, worst, to.what);
+        from.what, 100 * worst, to.what);
 }
 
 void require_places(const PointSet& from, const PointSet& to, GlobalIndex n_from, GlobalIndex n_to) {

@@ -251,7 +251,7 @@ void check_anticipation(const std::vector<Side>& sides, const Links& links, cons
     if (behind && schedule.iterates && !schedule.side_by_side) continue;
     throw Error(
         "'{}' anticipates the response of its walls (`surface-density` at its interface), so the structure "
-        "must be solved before it in each pass. Use 'coupling.order: structure-first' (in an exchange: the "
+        "must be solved before it in each iteration. Use 'coupling.order: structure-first' (in an exchange: the "
         "structure first in the list) with 'scheme: semi-implicit' or 'implicit', or remove the key.",
         sides[own.taker].name);
   }
@@ -344,8 +344,8 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
       diagnostics::finding(
           parallel::comm_rank(comm),
           {.id = "surfaces-apart",
-           .sentence = fmt::format("surfaces that move together differ: {}: loads and motion are transferred "
-                                   "between different sizes",
+           .sentence = fmt::format("surfaces that move together differ: {}: parts of one surface have no "
+                                   "partner on the other",
                                    difference),
            .advice = "check the meshes' units and dimensions, and which patches have `type: interface`"});
   }

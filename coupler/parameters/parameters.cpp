@@ -186,8 +186,8 @@ void declare_scheme(config::Section& section, CouplingParameters& p) {
                {"semi-implicit", coupling::Scheme::semi_implicit},
                {"implicit", coupling::Scheme::implicit}})
       .doc(
-          "explicit: one pass per step. semi-implicit: mesh motion and momentum predictor once per step, pressure and "
-          "structure iterated. implicit: everything iterated. auto: starts semi-implicit and switches to implicit when the friction of the fluid drags too much of the moving mass");
+          "explicit: one iteration per step. semi-implicit: mesh motion and momentum predictor once per step, pressure and "
+          "structure iterated. implicit: everything iterated. auto: starts semi-implicit and switches to implicit when viscous forces move too much of the mass");
 }
 
 }  // namespace
@@ -209,9 +209,9 @@ void declare(config::Section& section, CouplingParameters& p) {
                {"parallel", Order::parallel},
                {"structure-first", Order::structure_first}})
       .doc(
-          "order of fluid and structure: serial: the structure with the load of the same pass "
+          "order of fluid and structure: serial: the structure with the load of the same iteration "
           "(Gauss-Seidel). parallel: both at the same time (Jacobi). structure-first: the fluid with the "
-          "motion of the same pass, and the load is iterated, as required by a fluid with `surface-density` "
+          "motion of the same iteration, and the load is iterated, as required by a fluid with `surface-density` "
           "at its interface (Robin)");
   section.value("mesh-on-guess", p.mesh_on_guess)
       .doc(
@@ -264,8 +264,8 @@ void declare(config::Section& section, ConvergenceParameters& p) {
   section.value("relative", p.relative)
       .range(1e-14, 1)
       .doc(
-          "a step has converged when |r| is below this part of |H(x) - x^n|, the motion of the interface in the "
-          "step, or below 1e-7 |H(x)|; r = H(x) - x, the change in one pass");
+          "a step has converged when |r| is below this fraction of |H(x) - x^n|, the motion of the interface in the "
+          "step, or below 1e-7 |H(x)|; r = H(x) - x, the change in one iteration");
   section.value("absolute", p.absolute)
       .unit("m", 1e-18, 0.1)
       .not_negative()

@@ -57,10 +57,11 @@ bool SchemeChoice::accepted(double time) {
   now_ = is_open_ ? coupling::Scheme::semi_implicit : coupling::Scheme::implicit;
   if (is_open_) return failed;
   log::info("t = {:g} s: scheme: implicit from here on: {}", time,
-            in_a_row && failed ? "steps in a row failed"
+            in_a_row && failed ? "several steps in a row failed"
             : in_a_row
-                ? fmt::format("the fluid renewed its prediction {} times or more in steps in a row", too_many)
-                : fmt::format("the fluid renewed its prediction in {:.0f} % of the last steps",
+                ? fmt::format("in several steps in a row, the fluid predicted its velocity {} times or more",
+                              too_many)
+                : fmt::format("in {:.0f} % of the last steps, the fluid predicted its velocity again",
                               100 * renewed_share_));
   return true;
 }

@@ -107,10 +107,10 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
              .number = head / range,
              .limit = told_head,
              .sentence = fmt::format(
-                 "outlet '{}': where fluid enters, 'pressure' is the total pressure of fluid at rest outside, so that the "
-                 "pressure is lower by rho U^2/2, {:.3g} Pa on average, {:.2g} of its range; if it is that in the moving "
-                 "fluid, set 'backflow-stabilisation: false'",
-                 patch->name, head, head / range),
+                 "outlet '{}': where fluid enters, 'pressure' is the total pressure of the fluid at rest outside. The "
+                 "pressure in the opening is lower by rho U^2/2, on average {:.3g} Pa or {:.2g} % of the range of pressures; "
+                 "if 'pressure' is that of the moving fluid, set 'backflow-stabilisation: false'",
+                 patch->name, head, 100 * head / range),
              .effect = "pressure of inflow",
              .subject = patch->name + ", inflow"});
       const double wrong = inlet ? sum[net] : -sum[net];

@@ -382,7 +382,7 @@ void ImplicitFriction<D>::solve_in_passes(const Vectors<D>& w, double a, const V
     if (sums[0] <= enough * enough * sums[1]) return;
     if (pass == most_passes)
       throw SolveFailure(
-          "The non-orthogonal correction of the viscous term did not converge in {} passes (change {:.2e}). "
+          "The non-orthogonal correction of the viscous term did not converge in {} iterations (change {:.2e}). "
           "The mesh is too skewed for an implicit viscous term: use 'viscous: explicit'.",
           most_passes, std::sqrt(sums[0] / sums[1]));
     if (pass >= passes_alone) accelerate(pass == passes_alone, u);

@@ -18,7 +18,7 @@ void declare_rotation(config::Section& r, RotationParameters& rotation) {
       .required()
       .doc("expression of t [s] in rad/s; a ramp applies to it as well");
   r.value("centre", rotation.centre).unit("m", 1e-9, 1e4).doc("a point on the axis");
-  r.value("axis", rotation.axis).size(3).doc("3-D; a 2-D scene rotates about z");
+  r.value("axis", rotation.axis).size(3).doc("3-D; a 2-D case rotates about z");
   r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
           "axis");
 }
@@ -60,8 +60,8 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
 void declare_absorbing(config::Section& s, BoundaryParameters& b) {
   s.value("absorbing", b.absorbing)
       .doc(
-          "with `compressibility`: lets pressure waves out (characteristic); what is prescribed then holds for the mean "
-          "over its mean-time");
+          "with `compressibility`: pressure waves leave without reflection (characteristic boundary); the prescribed "
+          "value then holds for the mean over the mean-time");
 }
 
 void declare_inlet(config::Section& s, BoundaryParameters& b) {
@@ -121,7 +121,7 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
       .doc(
           "mass per area of the structure behind the wall: the pressure equation then anticipates "
           "its response (Robin condition), with `coupling.order: structure-first`; the density of a "
-          "solid times its thickness, or less: too small costs passes, too large may diverge; "
+          "solid times its thickness, or less: too small costs iterations, too large may diverge; "
           "default: the wall moves as the coupling prescribes");
 }
 
@@ -169,7 +169,7 @@ const auto& condition_table() {
       // Impermeable surface without friction that moves with the mesh. A symmetry plane is the same.
       Entry{BoundaryType::slip,
             {.name = "slip",
-             .about = "slip, symmetry: no normal flow, no friction",
+             .about = "slip, symmetry: no flow through it, no shear stress",
              .row = without_friction,
              .velocity = GivenBy::mesh}},
       Entry{BoundaryType::symmetry,

@@ -149,7 +149,7 @@ void declare_scene(config::Section& s, FluidParameters& p) {
           "keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
-  s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene has a depth of 1 m");
+  s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D case has a depth of 1 m");
   s.value("density", p.density).unit("kg/m^3", 0.01, 25000).positive().required().doc("density");
   s.value("viscosity", p.viscosity)
       .unit("Pa s", 1e-6, 1e6)
@@ -178,13 +178,13 @@ void declare_steps(config::Section& s, FluidParameters& p) {
             {"implicit", ViscousTreatment::implicit}})
       .doc(
           "time scheme of the viscous term. auto: implicit where its explicit stability limit would require "
-          "clearly more steps;");
+          "many more steps, as --explain and the log say");
   s.value("implicit-stretch", p.implicit_stretch)
       .range(1, 1e6)
       .doc(
-          "largest step with an implicit viscous term, in units of the explicit limit: bounds it for "
-          "accuracy, since second order shows only where nu dt / h^2 is about 1 or less (4 gives it on the "
-          "flap); default: only the stability limit, which is cheaper");
+          "largest step with an implicit viscous term, as a multiple of the explicit viscous limit. A smaller value "
+          "is more accurate: second order needs nu dt / h^2 of about 1 or less, for which 4 is a good start; default: "
+          "no such bound, which is cheaper");
   s.check(
       [&p] {
         return p.implicit_stretch && p.viscous == ViscousTreatment::explicit_
@@ -222,7 +222,7 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
             {"fourth-order", FaceValues::fourth_order},
             {"auto", FaceValues::automatic}})
       .doc(
-          "order in space of convection, explicit friction, fluxes and pressure gradient. fourth-order: along lines of "
+          "order in space of convection, explicit viscous term, fluxes and pressure gradient. fourth-order: along lines of "
           "hexahedra or quadrilaterals whose faces lie straight across, away from walls, second order elsewhere; a mesh "
           "at rest. auto: fourth-order where that is possible on at least half of the mesh");
   s.value("courant", p.courant)

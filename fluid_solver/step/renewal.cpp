@@ -73,8 +73,8 @@ bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen, doubl
   if (count_ == most && of_all <= uniform * unseen) return false;
   if (count_ == most)
     throw SolveFailure(
-        "After {} renewed predictions, friction that depends on the motion of the wall is still off by {:.2g} % of the load "
-        "(limit {:g} %): the structure yields too much to it for semi-implicit steps. Try `coupling.scheme: implicit`.",
+        "After {} predictions of the velocity, the viscous force on the moving wall has still not converged: it is off by "
+        "{:.2g} % of the load (limit {:g} %). Semi-implicit steps do not suffice here; try `coupling.scheme: implicit`.",
         most, 100 * unseen, 100 * largest_unseen_share);
   move_guess(comm, w);
   passes_ = 1;

@@ -26,7 +26,7 @@ struct StepLimiter {
   bool friction = false;      ///< true if friction has the larger share in its rate, else convection
   bool frame = false;         ///< true if the Coriolis force limits the step in all cells
   double share = 1;           ///< of the cells whose limit is less than twice this one
-  const char* cause() const { return frame ? "the Coriolis force" : friction ? "friction" : "convection"; }
+  const char* cause() const { return frame ? "the Coriolis force" : friction ? "viscosity" : "convection"; }
 };
 /// For example: "In cell 3 at (0.75, 0.75, 0) m, convection limits them to this size."
 std::string in_words(const StepLimiter& limiter);

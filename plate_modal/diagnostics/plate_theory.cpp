@@ -73,9 +73,10 @@ class PlateTheory final : public diagnostics::Diagnostic {
       report_neglected(report, "inertia", inertia, fmt::format("inertia / load = {:.2g}", inertia),
                        "use 'analysis: dynamic'", inertia < 0.5 ? inertia / (1 - inertia) : 1);
     if (view_.parameters.gravity.empty() && !moves_freely() && view_.fluid_force.empty())
-      report_neglected(report, "gravity", weight,
-                       fmt::format("across the plate its weight would add {:.2g} of the motion", weight), "",
-                       unknown, diagnostics::no_verdict);
+      report_neglected(
+          report, "gravity", weight,
+          fmt::format("the weight across the plate would change the motion by {:.2g} %", 100 * weight), "",
+          unknown, diagnostics::no_verdict);
   }
   void visit(io::Archive& archive) override {
     archive.common("largest", displacement_, rotation_, largest_, added_, rate_);

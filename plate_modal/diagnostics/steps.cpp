@@ -36,10 +36,10 @@ class BalanceOfEnergies final : public diagnostics::Diagnostic {
                    "energy-growth");
     if (view_.parameters.damping || !view_.fluid_force.empty()) return;
     const double share = 1 - std::exp(-usual_damping * turns_ / moved_);
-    report_neglected(
-        report, "damping", share,
-        fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual_damping, share), "",
-        unknown, diagnostics::no_verdict);
+    report_neglected(report, "damping", share,
+                     fmt::format("{:g} % of critical damping would reduce the motion by {:.2g} %",
+                                 100 * usual_damping, 100 * share),
+                     "", unknown, diagnostics::no_verdict);
   }
   void visit(io::Archive& archive) override {
     archive.common("energies", mismatch_, largest_, moved_, turns_);

@@ -223,7 +223,7 @@ def apart(job, case, read, runs, within, keys=(), quick=(), timeout=3600):
         results = started(job, case, (*keys, *keys_of(own)), timeout)
         found[name] = readings(job, case, results, read)
         passes = (
-            f", {results.passes().mean():.2f} passes per step"
+            f", {results.iterations().mean():.2f} coupling iterations per step"
             if (results.folder / "coupler/residuals.csv").exists()
             else ""
         )
@@ -335,12 +335,12 @@ def readings(job, case, results, read):
 def reading(job, case, results, text):
     file, what = text.split(": ", 1)
     if file == "passes":
-        return {f"{what} passes per step": float(WAYS[what](results.passes()))}
+        return {f"{what} coupling iterations per step": float(WAYS[what](results.iterations()))}
     if file == "residual":  # of the last pass of each step
         return {
             f"{what} residual": float(
                 WAYS[what](
-                    results.table("coupler", "residuals.csv")["relative residual"][np.cumsum(results.passes()) - 1]
+                    results.table("coupler", "residuals.csv")["relative residual"][np.cumsum(results.iterations()) - 1]
                 )
             )
         }

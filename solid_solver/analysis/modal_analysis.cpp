@@ -265,7 +265,7 @@ std::vector<double> columns(const Eigen::MatrixXd& a) { return {a.data(), a.data
 void check_size(GlobalIndex n) {
   if (n > largest_spectrum)
     throw Error(
-        "output.spectrum: the scene has {} displacement components; the spectrum is computed for at most "
+        "output.spectrum: the mesh has {} displacement components; the spectrum is computed for at most "
         "{}. Use a coarser mesh of the same kind.",
         n, largest_spectrum);
 }

@@ -105,7 +105,7 @@ void SolidBody::check_supports() const {
   check_symmetry(parameters_, mesh_, elastic_);
   if (is_axisymmetric(elastic_)) check_axis(mesh_, elastic_);
   if (!parameters_.gravity.empty() && std::ssize(parameters_.gravity) != mesh_.dim)
-    throw Error("gravity: {} components are given, but the {}-dimensional scene needs {}.",
+    throw Error("gravity: {} components are given, but the {}-dimensional case needs {}.",
                 parameters_.gravity.size(), mesh_.dim, mesh_.dim);
   if (!is_dynamic()) check_supported(mesh_, elastic_);
 }

@@ -93,11 +93,11 @@ std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstim
       .id = "buckling",
       .number = found.factor,
       .limit = limit_of(found),
-      .sentence = fmt::format("buckling: load factor at most {:.3g} (limit {:g}) of the last state: {}",
-                              found.factor, limit_of(found),
-                              found.factor < 1
-                                  ? "if these loads last, the body buckles; linear theory does not show it"
-                                  : neglected(found)),
+      .sentence = fmt::format(
+          "buckling: the last loads are at least {:.3g} times the buckling load (limit {:.2g}): {}",
+          1 / found.factor, 1 / limit_of(found),
+          found.factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
+                           : neglected(found)),
       .advice = "use 'kinematics: finite-strain'"};
 }
 

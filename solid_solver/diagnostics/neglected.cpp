@@ -84,7 +84,8 @@ Opinion neglected_damping(const P& p, double turns) {
       {.effect = "damping",
        .number = share,
        .limit = diagnostics::no_verdict,
-       .what = fmt::format("{:g} of the critical damping would take {:.2g} of the motion", usual, share)});
+       .what = fmt::format("{:g} % of critical damping would reduce the motion by {:.2g} %", 100 * usual,
+                           100 * share)});
 }
 
 // In slow motion, the kinetic energy is (w/w_1)^2 of the strain energy.
@@ -109,10 +110,10 @@ Opinion neglected_geometry(const P& p, const Deformation& d,
                            const std::optional<LargeStrainEstimate>& large_strain, bool is_bounded,
                            double buckling_factor) {
   if (!deforms(p) || has_finite_strain(p)) return {};
-  const std::string parts =
-      std::isnan(d.strain)
-          ? ""
-          : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)", d.strain, 57.29578 * d.rotation);
+  const std::string parts = std::isnan(d.strain)
+                                ? ""
+                                : fmt::format(" (at the end: strain {:.2g}, rotation {:.2g} degrees)",
+                                              d.strain, 57.29578 * d.rotation);
   const double share = share_of_geometry(d, large_strain, buckling_factor);
   const bool is_estimated = large_strain || !std::isnan(buckling_factor);
   // The share by the gradient is a lower bound: a clamped sheet stretches long before its gradient is large.
@@ -193,7 +194,7 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
        .number = share,
        .limit = diagnostics::no_verdict,
        .what = fmt::format(
-           "a temperature {} of {:.3g} K would strain a free body with {:.3g} 1/K by {:.2g}; max |grad u| = {:.2g}",
+           "a temperature {} of {:.3g} K, times {:.3g} 1/K, would strain a free body by {:.2g}; max |grad u| = {:.2g}",
            own ? "change" : "range", kelvins, coefficient, strain, gradient),
        .advice = "use 'thermal-expansion'",
        .share = own ? share : std::nan("")});
@@ -277,13 +278,16 @@ class NeglectedWeight final : public diagnostics::Diagnostic {
     int axis = 1;  // the only one along which a body of revolution can weigh
     if (!is_axisymmetric(body.parameters())) moved.maxCoeff(&axis);
     const double share = gravity * moved[axis] / (2 * strain.strain_energy);
-    add(report, diagnostics::finding_of(
-                    {.effect = "gravity",
-                     .number = share,
-                     .limit = diagnostics::no_verdict,
-                     .what = fmt::format(
-                         "along {} the weight would change the displacement under the loads by {:.2g} of it",
-                         "xyz"[axis], share)}));
+    add(report,
+        diagnostics::finding_of(
+            {.effect = "gravity",
+             .number = share,
+             .limit = diagnostics::no_verdict,
+             .what = share > 1 ? fmt::format("the weight along {} would move the body {:.2g} times as far "
+                                             "as the loads do",
+                                             "xyz"[axis], share)
+                               : fmt::format("the weight along {} would change the displacement by {:.2g} %",
+                                             "xyz"[axis], 100 * share)}));
   }
 
  private:

@@ -82,9 +82,9 @@ bool StrainAudit::is_doubtful() const {
 }
 
 std::string StrainAudit::text() const {
-  std::string text =
-      fmt::format("half the work of the loads is {:.6g} J, the strain energy {:.6g} J ({:.2g} % apart)",
-                  stress_work, strain_energy, 100 * mismatch());
+  std::string text = fmt::format(
+      "energy balance: half the work of the loads {:.6g} J, strain energy {:.6g} J ({:.2g} % apart)",
+      stress_work, strain_energy, 100 * mismatch());
   if (inner_variation > most_variation)
     text += fmt::format(
         "; the strains vary so much within its quadrilaterals that they are {:.2g} % too stiff (use more "
@@ -196,7 +196,7 @@ void StrainEnergy::look(diagnostics::Report& report) {
        .severity = audit.severity(),
        .number = audit.mismatch(),
        .limit = StrainAudit::most_mismatch,
-       .sentence = fmt::format("error indicator: {}: displacement not reliable", audit.text()),
+       .sentence = fmt::format("{}: displacement not reliable", audit.text()),
        .advice = "refine the mesh, above all across the bending direction; typical causes: cells elongated "
                  "along it, few tetrahedra or prisms across, nu near 0.5"});
 }
@@ -204,7 +204,7 @@ void StrainEnergy::look(diagnostics::Report& report) {
 void StrainEnergy::conclude(diagnostics::Report& report) {
   if (worst_)
     report.sentences.push_back(
-        fmt::format("error indicator: {}{}.", worst_->text(), worst_->is_doubtful() ? "; NOT reliable" : ""));
+        fmt::format("{}{}.", worst_->text(), worst_->is_doubtful() ? "; NOT reliable" : ""));
 }
 
 void StrainEnergy::visit(io::Archive& archive) {

@@ -37,10 +37,11 @@ void SolidStepper::announce_time_scheme() const {
   const bool by_auto = parameters_.time_scheme.type == time::TimeScheme::automatic;
   log::info("Time scheme: {}{}{}", time::name(scheme.type),
             !by_auto                                             ? ""
-            : scheme.type == time::TimeScheme::generalised_alpha ? " (auto: a partner loads the body)"
+            : scheme.type == time::TimeScheme::generalised_alpha ? " (auto: another program loads the body)"
                                                                  : " (auto)",
             scheme.type == time::TimeScheme::generalised_alpha
-                ? fmt::format(", which leaves {:g} of the highest modes after a step", scheme.spectral_radius)
+                ? fmt::format(", which damps the highest modes by {:.3g} % per step",
+                              100 * (1 - scheme.spectral_radius))
             : parameters_.energy_momentum ? ", energy and momenta conserved"
                                           : "");
 }

@@ -115,7 +115,7 @@ void SolidProbes::add_columns(const std::string& probe, const std::string& field
     return;
   }
   if (!body_.temperature())
-    throw Error("probes: the field '{}' is requested, but nothing in this scene computes it.", field);
+    throw Error("probes: the field '{}' is requested, but nothing in this case computes it.", field);
   columns_.push_back(probe + " temperature [K]");
 }
 

@@ -98,7 +98,7 @@ void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int
   s.check(
       [&]() -> std::string {
         if (std::ssize(load.gravity) != dimension)
-          return fmt::format("{} components are given, but the {}-dimensional scene needs {}",
+          return fmt::format("{} components are given, but the {}-dimensional case needs {}",
                              load.gravity.size(), dimension, dimension);
         return std::ranges::all_of(load.gravity, [](double g) { return g == 0; })
                    ? "a direction is needed, not the zero vector"
@@ -152,7 +152,7 @@ std::string problem_of_components(const SolidCondition& c, int dimension) {
   const bool any = given(0) || given(1) || given(2);
   if (any != c.value.empty())
     return "give either 'value' (all components) or 'components' (the prescribed ones of x, y, z)";
-  return dimension == 2 && given(2) ? "a 2-dimensional scene has no component z" : "";
+  return dimension == 2 && given(2) ? "a 2-dimensional case has no component z" : "";
 }
 
 void declare_displacement(config::Section& s, SolidCondition& c, const int& dimension) {

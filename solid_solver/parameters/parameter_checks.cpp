@@ -56,7 +56,7 @@ bool has_rigid_patch(const SolidParameters& p) { return any_condition(p, is_rigi
 void check_together(config::Section& s, SolidParameters& p) {
   const bool is_static = p.analysis == Analysis::static_;
   refuse(s, "gravity", !p.gravity.empty() && std::ssize(p.gravity) != p.dimension,
-         fmt::format("{} components are given, but the {}-dimensional scene needs {}", p.gravity.size(),
+         fmt::format("{} components are given, but the {}-dimensional case needs {}", p.gravity.size(),
                      p.dimension, p.dimension));
   refuse(s, "damping", p.damping && is_static, "damping has no effect in a static analysis; remove it");
   refuse(s, "time-scheme",
@@ -154,7 +154,7 @@ void check_contact(config::Section& s, SolidParameters& p) {
   const auto& d = p.contact->direction;
   refuse(s, "contact", p.analysis == Analysis::thermal, "a thermal analysis moves nothing; remove it");
   refuse(s, "contact", p.dimension == 2 && d.size() == 3 && d[2] != 0,
-         "its 'direction' must lie in the plane of a 2-dimensional scene: [x, y, 0]");
+         "its 'direction' must lie in the plane of a 2-dimensional case: [x, y, 0]");
   refuse(
       s, "contact",
       p.analysis == Analysis::dynamic && p.contact->rule == contact::ContactRule::conserving &&
@@ -163,10 +163,11 @@ void check_contact(config::Section& s, SolidParameters& p) {
       "'energy-momentum: true'); use that or 'rule: midpoint'");
   refuse(s, "plane", is_axisymmetric(p),
          "a body of revolution cannot meet a seat; model it in 3-D, or remove 'contact'");
-  refuse(s, "boundaries", has_rigid_patch(p),
-         "a remote-load with 'coupling: rigid' does not go with 'contact'; use 'coupling: distributing'");
+  refuse(
+      s, "boundaries", has_rigid_patch(p),
+      "a remote-load with 'coupling: rigid' cannot be combined with 'contact'; use 'coupling: distributing'");
   refuse(s, "load-stepping", p.load_stepping.type == LoadStepping::Type::arc_length,
-         "arc length does not go with 'contact', whose path has corners; use steps of the load");
+         "arc length cannot be combined with 'contact', whose path has corners; use 'type: load'");
   refuse(s, "solution-method", !derives_from_energy(p),
          "'contact' requires 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
          "'preconditioner: mixed' and 'zero-normal-gradient'");
@@ -259,8 +260,8 @@ void check_orthotropic(config::Section& s, SolidParameters& p) {
     if (m.heat.youngs_modulus || m.heat.poissons_ratio)
       return "an orthotropic material does not support tables of the elastic constants over temperature";
     if (!first.empty() && std::ssize(first) != p.dimension)
-      return fmt::format("'orthotropic.first-axis' has {} components, but the scene has {}", first.size(),
-                         p.dimension);
+      return fmt::format("'orthotropic.first-axis' has {} components, but the case has {} dimensions",
+                         first.size(), p.dimension);
     if (p.dimension == 2 && !second.empty())
       return "in two dimensions 'orthotropic.second-axis' follows from the first (rotated by 90 degrees); "
              "remove it";

@@ -39,7 +39,7 @@ std::string wrong_quantity(const SolidQuantity& q, int dimension) {
     return fmt::format("unknown field '{}'; the fields are {}", q.field, base::join(quantity_fields));
   if (!q.patch.empty() && q.field != "heat") return "only 'field: heat' has a 'patch'";
   if (!q.point.empty() && std::ssize(q.point) != dimension)
-    return fmt::format("'point' has {} numbers, one per dimension of the scene", dimension);
+    return fmt::format("'point' has {} numbers, one per dimension of the case", dimension);
   if (q.field == "heat" || q.field == "temperature") return wrong_heat(q);
   const std::vector<std::string> components =
       q.field == "displacement" ? std::vector<std::string>{"x", "y", "z"}
@@ -86,7 +86,7 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("surfaces", o.surfaces)
       .doc(
           "patches, or [all]: surface-<patch>.xdmf with displacement, stress and traction, temperature and heat flux of a "
-          "scene that has them, at each output");
+          "case that has them, at each output");
   s.value("moments", o.moments)
       .doc(
           "reactions.csv also has the moment of each patch's force about the origin, of large strain that of the deformed body");
@@ -138,10 +138,10 @@ void declare_scene(config::Section& s, SolidParameters& p) {
   s.choice("plane", p.plane,
            {{"strain", Plane::strain}, {"stress", Plane::stress}, {"axisymmetric", Plane::axisymmetric}})
       .doc(
-          "assumption of a 2-D scene. axisymmetric: a body of revolution about the y axis, x is the radius; edges on the axis x = 0 need 'type: symmetry'");
+          "assumption of a 2-D case. axisymmetric: a body of revolution about the y axis, x is the radius; edges on the axis x = 0 need 'type: symmetry'");
   s.check(
       [&p] {
-        return p.dimension == 3 && p.plane != Plane::strain ? "only for 2-dimensional scenes; remove this key"
+        return p.dimension == 3 && p.plane != Plane::strain ? "only for 2-dimensional cases; remove this key"
                                                             : "";
       },
       "plane");

@@ -50,8 +50,8 @@ class ResolvedGrains final : public TankDiagnostic {
                            (6 * bed().closure(r).at(kelvin, MassFlux(flux)).film);
       spread += double(run.count) / double(bed().fluid().size()) * delay * seen_->flow / crossing_mass();
     }
-    report.sentences.push_back(
-        fmt::format("closures: Re of the layers at the largest flow {} from the bottom up", layers));
+    report.sentences.push_back(fmt::format(
+        "closures: Reynolds number of the layers at the largest flow, from the bottom up: {}", layers));
     if (!is_outside || view_.parameters().bed.closures.film_coefficient > 0) return;
     const double share = std::sqrt(spread);
     add(report, {.effect = "range of the film correlation",

@@ -41,7 +41,7 @@ def part(folder, name):
     """Yields the path of a new, empty file with the suffix of `name`, which becomes that file when all is written.
     Creates the folders in `name`."""
     file = below(folder, name)
-    expect(not file.exists() or file.is_file(), f"{file} is no file; choose another name.")
+    expect(not file.exists() or file.is_file(), f"{file} is not a file; choose another name.")
     if file.parent != pathlib.Path(folder):
         file.parent.mkdir(parents=True, exist_ok=True)
     made = file.with_name(f".{secrets.token_hex(6)}{file.suffix}")

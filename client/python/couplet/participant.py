@@ -232,7 +232,7 @@ class Client:
         _wait(self.comm.Ibcast([head, MPI.BYTE], 0))
         r = _Reader(head)
         if r.take("q") != COMMAND or r.take("q") != VERSION:
-            self._end("a message of the coupler is no command of this version")
+            self._end("a message of the coupler is not a command of this version")
         self.operation = r.take("q")
         step = r.take("d"), r.take("d")
         if self.operation == 2:

@@ -34,7 +34,7 @@ def read(file):
     columns = columns_of(file)
     expect(
         next(iter(columns)).startswith("time") and not np.isnan(next(iter(columns.values()))).any(),
-        f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.",
+        f"{file}: is not a monitor file: its first line does not begin with 'time [s]', or there is no row below it.",
     )
     return columns
 

@@ -65,11 +65,13 @@ class OverSocket:
             raise ValueError(f"COUPLET_JOIN: '{file}' was not written by a relay of this version.")
         if name != f"participant {participant}":
             raise ValueError(
-                f"'{file}' is of the relay of '{name.removeprefix('participant ')}'; this program is '{participant}'."
+                f"'{file}' belongs to the relay of '{name.removeprefix('participant ')}'; this program is"
+                f" '{participant}'."
             )
         if comm.size != len(places):
             raise ValueError(
-                f"'{participant}' has {comm.size} processes, its relay {len(places)}: start as many of both."
+                f"'{participant}' has {comm.size} processes, but its relay has {len(places)}: start the same number of"
+                " both."
             )
         kind, *where = places[comm.rank].split()
         if kind == "unix":

@@ -129,7 +129,7 @@ class Surface(FieldSeries):
         super().__init__(file)
         form = self.file.attrs.get("format")
         if form not in (b"couplet surface", "couplet surface"):
-            raise ValueError(f"{file}: is no surface; its format is {form!r}")
+            raise ValueError(f"{file}: is not a surface file; its format is {form!r}")
         self.name = pathlib.Path(file).stem.removeprefix("surface-")
 
     def is_plane(self) -> bool:

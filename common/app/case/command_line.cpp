@@ -108,7 +108,7 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
   app.add_flag("--schema", flags.schema, "print the JSON schema of all keys, for editors");
   app.add_flag("--print-config", flags.print_config, "print all values in effect as YAML");
   app.add_flag("--explain", flags.explain,
-               "print the effects of the scene, their costs and the launch line; runs nothing");
+               "print the effects in the case, their cost and the launch line; runs nothing");
   app.add_flag("-v,--verbose", flags.verbose, "log more, on every rank");
   app.add_flag("-q,--quiet", flags.quiet, "log warnings and errors only");
 }

@@ -96,11 +96,11 @@ void declare(config::Section& section, SimulationParameters& p) {
           "ids of findings (docs/findings.md) to accept: they are logged, but neither end the run with exit "
           "code 4 nor make it fail with --strict");
   section.check([&]() -> std::string { return diagnostics::unknown_ids(p.accept); }, "accept");
-  section.value("neglected-share", p.neglected_share)
+  section.value("neglected-limit", p.neglected_share)
       .range(0, 1)
       .doc(
-          "share of the result from which a neglected effect matters: below it the run says 'justified', from it on "
-          "'matters' (docs/findings.md)");
+          "relative change of the result from which a neglected effect matters: below it the run says 'justified', at or "
+          "above it 'matters' (docs/findings.md)");
   section.choice("effects", p.choose_effects, {{"as-given", false}, {"auto", true}})
       .doc(
           "auto: dimension, inertia, turbulence model and viscous treatment that the case does not set are "
@@ -110,9 +110,9 @@ void declare(config::Section& section, SimulationParameters& p) {
       .choice("diagnostics", p.diagnostics,
               {{"without-errors", When::always}, {"standard", When::with_errors}, {"full", When::in_full}})
       .doc(
-          "what the run finds out about its own answer. standard: with the error due to mesh, time step and tolerances; "
-          "without-errors: nothing is collected for that; full: also searches that may take as long as a solve (all "
-          "low buckling loads, stability in each step)");
+          "what the run checks about its own result. standard: findings and the error due to mesh, time step and "
+          "tolerances; without-errors: findings only; full: also searches that may take as long as a solve (all low "
+          "buckling loads, stability in each step)");
   section.value("hang-timeout", p.hang_timeout)
       .unit("s", 1, 1e6)
       .not_negative()

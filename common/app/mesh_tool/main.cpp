@@ -68,7 +68,7 @@ void open(MPI_Comm comm, const Words& words) {
                base = parallel::sum(comm, before);
   if (parallel::comm_rank(comm) == 0)
     std::printf(
-        "%d ranks, %.0f cells, at most %.0f a rank, copies %.3f; %.2f s; peak of memory %.1f MB over all ranks, %.1f MB on "
+        "%d ranks, %.0f cells, at most %.0f per rank, copies %.3f; %.2f s; peak of memory %.1f MB over all ranks, %.1f MB on "
         "one, of which %.1f MB were there before\n",
         parallel::comm_size(comm), sum, most, copies, seconds, peaks, peak, base);
 }

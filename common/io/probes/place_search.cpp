@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <span>
 
@@ -246,6 +247,7 @@ void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std:
     diagnostics::set_result({.name = "size of the mesh",
                              .unit = "m",
                              .values = {extent.data(), extent.data() + mesh.dim},
+                             .error = std::numeric_limits<double>::infinity(),
                              .rank = 2});
   if (size < smallest || extent.maxCoeff() > largest)
     diagnostics::finding(

@@ -99,7 +99,7 @@ class Part {
       const FaceRecord* record = record_of(first);
       if (cells.size() == 1) {
         if (is_own(first.cell) && record == nullptr)
-          throw Error("The face at {} has lost its other side while the mesh was shared out.",
+          throw Error("The face at {} has lost its other side while the mesh was distributed.",
                       place_of(halves, first));
         return;
       }

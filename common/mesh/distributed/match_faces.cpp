@@ -197,8 +197,8 @@ void warn_unnamed(MPI_Comm comm, const MeshBlock& block, std::span<const FaceSid
   const std::vector<std::string> places = places_of(comm, block, first);
   if (parallel::comm_rank(comm) != 0) return;
   log::info(
-      "mesh: {} boundary face{} in no group {} the patch 'rest', at {}{} (a location inside the domain: two "
-      "coincident points there should be one)",
+      "mesh: {} boundary face{} in no physical group {} the patch 'rest', at {}{}. If such a location is inside "
+      "the domain, the mesh has double points there; merge them.",
       n, n == 1 ? "" : "s", n == 1 ? "forms" : "form", base::join(places),
       n > std::ssize(places) ? ", ..." : "");
 }

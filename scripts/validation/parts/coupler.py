@@ -115,7 +115,7 @@ def exchanged(job, kind, times):
     plain = min(p for _, p, _ in runs)
     return (
         (
-            f"{ms:.2f} ms per pass, {passes:.1f} passes per step; MPI alone {plain:.2f} ms there and back:"
+            f"{ms:.2f} ms per pass, {passes:.1f} coupling iterations per step; MPI alone {plain:.2f} ms there and back:"
             f" {ms / plain:.1f} times"
         ),
         ms <= times * plain,

@@ -15,8 +15,8 @@ def cheaper(job, times, keys, than, one):
     ratio = many.cost.cpu / few.cost.cpu
     return (
         (
-            f"{ratio:.2f} times ({many.cost.cpu:.1f} and {few.cost.cpu:.1f} cpu s; {many.passes().mean():.1f} and"
-            f" {few.passes().mean():.1f} passes per step)"
+            f"{ratio:.2f} times ({many.cost.cpu:.1f} and {few.cost.cpu:.1f} cpu s; {many.iterations().mean():.1f} and"
+            f" {few.iterations().mean():.1f} coupling iterations per step)"
         ),
         bool(ratio >= times),
     )
@@ -64,7 +64,7 @@ def rung(job, rho, mu, dt=0.01, end=END):
             flap(job, rho, mu, dt=FINE, end=end)[0].probes("solid")["tip x [m]"][every - 1 : every * len(tip) : every]
         )
     return (
-        f"{ended}{len(tip)} steps, tip {tip[-1]:.5f} m, {results.passes().mean():.1f} passes, {cost}zigzag {value:.3f}"
+        f"{ended}{len(tip)} steps, tip {tip[-1]:.5f} m, {results.iterations().mean():.1f} passes, {cost}zigzag {value:.3f}"
         + (f", its own {own:.3f}" if own else ""),
         bool(far and (value < SMOOTH or value <= 1.2 * own)),
     )

@@ -54,6 +54,6 @@ with tempfile.TemporaryDirectory() as name:
         assert wrong.returncode in (1, 2) and message in wrong.stderr, (arguments, wrong)
     (folder / "text.csv").write_text("name,value\nx,1\n")
     wrong = run(folder / "text.csv")
-    assert wrong.returncode == 1 and "is no monitor" in wrong.stderr, wrong
+    assert wrong.returncode == 1 and "is not a monitor file" in wrong.stderr, wrong
     assert run(folder).returncode == 0  # one file of a folder that is none
 print("ok")

@@ -87,7 +87,7 @@ WRONG = [  # when the case is checked
     (("panel",), 1, "plot: unknown key 'panel'; allowed: "), (("panels",), None, "plot: the key 'panels' is missing"), (("panels",), [], "expected at least 1 values"),
     (("size",), [1], "plot.size: expected 2 values, found 1"), (("size",), [1e6, 1], "plot.size: expected width and height from 1 to 100 inch"), (("file",), "../x.png", "plot.file: '../x.png'"), (("panels", 0, "field"), "stress", "panels[0]: expected either curves or field"),
     (("panels", 0, "warp"), 2, "panels[0]: 'warp' belongs to a field"), (("panels", 2, "participant"), "fluid", "there is no participant 'fluid'; there are: solid"),
-    (("panels", 2, "at"), "soon", "panels[2].at: 'soon' is no time"), ((*CURVE, "table"), "tip.csv", "curves[0]: expected one of monitor, table"), ((*CURVE, "y"), None, "the key 'y' is missing"),
+    (("panels", 2, "at"), "soon", "panels[2].at: 'soon' is not a time"), ((*CURVE, "table"), "tip.csv", "curves[0]: expected one of monitor, table"), ((*CURVE, "y"), None, "the key 'y' is missing"),
     ((*CURVE, "style"), "wavy", "curves[0].style: 'wavy'; allowed: line, points"), ((*CURVE, "extrema"), "yes", "curves[0].extrema: expected true or false, found 'yes'"),
     (("panels", 0, "curves", 2, "to"), None, "a function needs 'from' and 'to'"), (("quantities", "tip", "prob"), 1, "plot.quantities.tip: unknown key 'prob'"),
     (("panels", 0, "curves", 1, "optional"), True, "'optional' belongs to a monitor"), (("panels", 0, "curves", 5), {"python": "none.py: f", "y": "a"}, "curves[5].python: 'none.py: f'")]
@@ -167,7 +167,7 @@ with tempfile.TemporaryDirectory(prefix="a case with blanks ") as name:
     def warned():
         with contextlib.redirect_stderr(io.StringIO()) as said:
             columns_of(out / "solid/probes.csv")
-        return "probes.csv: is of an earlier run" in said.getvalue()
+        return "probes.csv: belongs to an earlier run" in said.getvalue()
 
     check("no warning of a file of this run", not warned())
     for name, age in (("probes.csv", 100), ("effective.yaml", 50)):

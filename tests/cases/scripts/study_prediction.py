@@ -57,7 +57,7 @@ assert fits.of_values(coarse, 2 + 3 * coarse**-2.0)[0].runs == 7, "else all are 
 swing = np.array([1, -1, 1, -1, 1])
 fit, _ = fits.of_values(SIZES, 2 + 30 * swing * SIZES**-2.0)
 assert fit and fit.bound(32) > 30 * 32**-2.0, fit
-for values, words in ((2 + 0.1 * swing * SIZES / 8, "alternate"), (2 + 0.1 * np.log(SIZES), "move apart"), (2 + 0.001 * SIZES, "move apart")):
+for values, words in ((2 + 0.1 * swing * SIZES / 8, "alternate"), (2 + 0.1 * np.log(SIZES), "diverge"), (2 + 0.001 * SIZES, "diverge")):
     fit, reason = fits.of_values(SIZES, values)
     assert fit is None and words in reason, (reason, values)
 assert fits.of_values([4, 8], [1, 2])[0] is None and "three" in fits.of_values([4, 8], [1, 2])[1]
@@ -145,7 +145,7 @@ assert said["seconds"] < 0.2 < seconds({"n": 100})
 
 # -- a series that fails, and one without a limit: named, with their reasons; the other is taken
 for value, word in ((lambda s: None if s["method"] == "good" else 1 + 3 * float(s["n"])**-2, "it failed"),
-                    (lambda s: 2 + 0.01 * float(s["n"]) if s["method"] == "good" else 1 + 3 * float(s["n"])**-2, "move apart")):
+                    (lambda s: 2 + 0.01 * float(s["n"]) if s["method"] == "good" else 1 + 3 * float(s["n"])**-2, "diverge")):
     said = asked(MadeUp(value, lambda s: 0.1 + 1e-3 * float(s["n"]), {}), 0.01)
     assert said["series"] == "dear" and said["met"] and said["others"][0]["series"] == "good" and word in said["others"][0]["reason"], said
     assert any("good: not chosen" in line and word in line for line in said["lines"]), said["lines"]

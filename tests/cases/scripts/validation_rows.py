@@ -118,14 +118,14 @@ class Coupled:
         assert (participant, file) == ("solid", "probes.csv"), (participant, file)
         return rows_np.array([1.0, 2 + 1 / self.n**2 + self.shift])
 
-    def passes(self):
+    def iterations(self):
         return rows_np.array([2, 4])
 
 
 rows_np = shapes.np
 asked = []
 job = types.SimpleNamespace(quick=True, case=lambda case, keys, ranks, timeout: asked.append((keys, ranks)) or Coupled(keys))
-assert shapes.run(job, "c", ["solid/probes.csv: y", "passes: mean"], high=(3, 3), quick="end=1", cost=True) == ("y 2.0156; mean passes per step 3 (1.5 processor minutes)", True)
+assert shapes.run(job, "c", ["solid/probes.csv: y", "passes: mean"], high=(3, 3), quick="end=1", cost=True) == ("y 2.0156; mean coupling iterations per step 3 (1.5 processor minutes)", True)
 assert asked[-1] == (("end=1",), ())
 assert shapes.run(job, "c", "solid/probes.csv: y", of=2, limits=(None, 0.005), meshes=("n: 4", "n: 16"))[1]
 assert not shapes.run(job, "c", "solid/probes.csv: y", of=2, limits=(0.005, 0.005), meshes=("n: 4", "n: 16"))[1]

@@ -98,7 +98,7 @@ def left_out(folder):
         done = call_here(bin_, "import", folder / "wrong.inp")
         check(f"{claim} is refused", done.returncode == 2 and words in done.stderr and not (folder / "wrong.yaml").exists(), done.stderr)
     done = call_here(bin_, "import", folder / "a.xml", "--units", "mm")
-    check("--units is of decks", done.returncode == 2 and "--units: is of decks" in done.stderr, done.stderr)
+    check("--units is of decks", done.returncode == 2 and "--units: applies to decks" in done.stderr, done.stderr)
 
 
 def static(folder):

@@ -20,7 +20,7 @@ PROGRAMS = {
                    "boundaries: {left: {type: clamped}, right: {type: free}, bottom: {type: free}, top: {type: free}}",
 }
 NUMBER, PLACE = r"[-\d.e+]+", r"\([-\d.e+]+(?:, [-\d.e+]+){1,2}\)"
-LINE = re.compile(rf"mesh: 4 cells in a box of 1 x {NUMBER} m; smallest volume {NUMBER} m\^3 at ({PLACE}), largest angle {NUMBER} degrees at {PLACE}, "
+LINE = re.compile(rf"mesh: 4 cells in a box of 1 x {NUMBER} m; smallest volume {NUMBER} m\^3 at ({PLACE}), largest non-orthogonality {NUMBER} degrees at {PLACE}, "
                   rf"skewness {NUMBER} at {PLACE}, aspect ratio ({NUMBER}) at ({PLACE})$", re.M)
 
 

@@ -136,7 +136,7 @@ class Formats(unittest.TestCase):
         self.refuse(nsrdb(head=HEADS["nsrdb"].replace("40.01", "140")), "weather.csv:2: latitude 140")
         self.refuse(nsrdb(head=HEADS["nsrdb"].replace(",DHI,DNI", ",DHI,GTI")), "weather.csv:3: the column for the direct normal irradiance is missing")
         self.refuse(nsrdb().encode() + b"\0", "weather.csv: this is not a text file")
-        self.refuse("Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\n", "weather.csv:1: this is no weather file that is known")
+        self.refuse("Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\n", "weather.csv:1: this is not a known weather file")
 
     def test_tmy3_has_hours_that_end(self):
         w = self.convert(tmy3(), "723170TYA.CSV")

@@ -219,7 +219,7 @@ def strangers(number):
             if way == "unix":
                 check("the socket is taken away", not pathlib.Path(place[1]).parent.exists())
     for options, code, text in ((["--listen", "tcp:nowhere0"], 1, "no network interface 'nowhere0'"), (["--listen", "tcp6:nowhere0"], 1, "no network interface 'nowhere0' with an IPv6 address"), (["--listen", "udp"], 1, "expected unix, or tcp:INTERFACE"),
-                                (["--listen", "tcp:lo:70000"], 1, "is not a port"), (["--wait", "never"], 2, "expected seconds above 0"),
+                                (["--listen", "tcp:lo:70000"], 1, "is not a port"), (["--wait", "never"], 2, "expected a number of seconds above 0"),
                                 (["--wait", "1"], 1, "nobody connected within 1 s"), (["--door"], 2, "unknown option '--door'")):
         with tempfile.TemporaryDirectory() as folder:
             got, said = result_of(job(folder, relay(*options)), 60)

@@ -287,7 +287,7 @@ def separately():
                                    env={**own, "COUPLET_JOIN": f"{name}.relay"}) for name, n in (("Left", 2), ("Right", 1))]
         done = launch(folder, relays)
         said = [g.communicate(timeout=60)[0] for g in guests]
-        check("another number of processes than the relay's is refused", done.returncode != 0 and "has 2 processes, its relay 1" in said[0], said[0][-300:])
+        check("another number of processes than the relay's is refused", done.returncode != 0 and "has 2 processes, but its relay has 1" in said[0], said[0][-300:])
 
 
 MESHES = """<precice-configuration>
@@ -529,15 +529,15 @@ BAD = {  # replaced, by what, what is said
     "no end": ('<max-time value="1" />', "", "neither <max-time> nor <max-time-windows>"),
     "a degree": ("<data:scalar name", '<data:scalar waveform-degree="-1" name', ':5: waveform-degree of "Displacement-Left" is "-1"; expected a whole number from 0 to 99'),
     "a degree without sub-steps": ('<data:scalar name="Displacement-Left" />', '<data:scalar name="Displacement-Left" waveform-degree="2" />', ':28: waveform-degree 2 of "Displacement-Left" needs its values at the sub-steps'),
-    "a window without end": ('<time-window-size value="0.1" />', '<time-window-size value="1e999" />', "<time-window-size>: '1e999' is no finite number"),
-    "an end that is no number": ('<max-time value="1" />', '<max-time value="nan" />', "<max-time>: 'nan' is no finite number"),
+    "a window without end": ('<time-window-size value="0.1" />', '<time-window-size value="1e999" />', "<time-window-size>: '1e999' is not a finite number"),
+    "an end that is no number": ('<max-time value="1" />', '<max-time value="nan" />', "<max-time>: 'nan' is not a finite number"),
     "what only the coupler refuses": ('<initial-relaxation value="0.5"', '<initial-relaxation value="5"', "the coupler would refuse the case of this configuration:\ncase.yaml:"),
     "windows by the first": ('<time-window-size value="0.1" />', '<time-window-size value="-1" method="first-participant" />', '<time-window-size method="first-participant"> is not supported'),
     "data that are read and never exchanged": ('<exchange data="Displacement-Left"', '<exchange data="Displacement-Right"', "reads 'Displacement-Left', but no <exchange> brings it there"),
     "exchanged data without a name": ('<exchange data="Displacement-Left"', '<exchange data="Displacment"', "<exchange>: the data 'Displacment' is not one of: "),
     "an attribute that nobody knows": ('initialize="true"', 'initialise="true"', ":29: <exchange>: the attribute 'initialise' is not known, only: data, mesh, from, to, initialize, substeps."),
     "no iteration": ('<max-iterations value="50" />', '<max-iterations value="0" />', ":30: <max-iterations>: '0' is not supported; expected a whole number from 1 to 10000"),
-    "a limit that is no number": ('limit="1e-12"', 'limit="small"', "<relative-convergence-measure>: the limit 'small' is no number above 0"),
+    "a limit that is no number": ('limit="1e-12"', 'limit="small"', "<relative-convergence-measure>: the limit 'small' is not a number above 0"),
     "entities": ("<!-- pairs", '<!DOCTYPE a [<!ENTITY b "c">]><!-- pairs', "document types are not read"),
 }
 

@@ -57,8 +57,8 @@ def landing(top):
     energies = columns(top, "whole", "energies.csv", "kinetic [J]", "strain [J]", lost)
     most, off = max(k + s for _, k, s, _ in energies), max(abs(m) for *_, m in energies)
     check("its energies add up through the impacts", off < (1e-4 if structure == "solid_solver" else 1e-9) * most, f"{off:.1e} of {most:.1e} J")
-    found = re.search(r"interface work .* ([\d.e+-]+) % of the .* apart: closed", said)
-    check("so does the work of the fluid", found and float(found[1]) < 0.01, found[1] if found else [line for line in said.splitlines() if "interface work" in line])
+    found = re.search(r"energy at the interface: .* differ by ([\d.e+-]+) % of the .*: balanced", said)
+    check("so does the work of the fluid", found and float(found[1]) < 0.01, found[1] if found else [line for line in said.splitlines() if "energy at the interface" in line])
     in_seat = [n for n in range(1, 14) if any(abs(t - n * CHECKPOINTS) < 1e-9 and force > 0 for t, force, *_ in seat)]
     check("it is in its seat at a checkpoint", in_seat)
     return tip, seat, in_seat[0] if in_seat else 10

@@ -93,7 +93,7 @@ TEST(Limits, expressions_are_checked_where_they_are_read) {
   EXPECT_THAT(
       load("dimension: 3\nflow: {velocity: [0, 1]}\n"),
       ElementsAre(
-          "case.yaml:2:8: flow.velocity: 2 components are given, but the 3-dimensional scene needs 3."));
+          "case.yaml:2:8: flow.velocity: 2 components are given, but the 3-dimensional case needs 3."));
   EXPECT_THAT(load("dimension: 2\nflow: {load: -10 MPa, velocity: [2 km/h, 0]}\n"), testing::IsEmpty());
 }
 

@@ -386,7 +386,8 @@ TEST(CoupledToy, a_step_that_fails_names_the_participant_that_did_not_answer) {
   EXPECT_THAT(run.problem, testing::Not(testing::HasSubstr("gave the same answer")));
   run.deaf = true;
   run();
-  EXPECT_THAT(run.problem, testing::HasSubstr("'fluid' gave the same answer in 15 of the last 15 passes"));
+  EXPECT_THAT(run.problem,
+              testing::HasSubstr("'fluid' gave the same answer in 15 of the last 15 iterations"));
 }
 
 TEST(CoupledToy, a_step_that_is_accepted_unconverged_is_a_finding_and_a_useless_one_is_wrong) {

@@ -82,7 +82,7 @@ TEST(Findings, of_means_over_the_run_count_at_its_end) {
   EXPECT_EQ(run.step(0.01), 0u);
   run.mean.number = run.mean.share = 3e-4;
   EXPECT_THAT(run.all.conclude(false),
-              ::testing::Contains(HasSubstr("share of the result 0.0003 (limit 0.05): justified")));
+              ::testing::Contains(HasSubstr("this changes the result by 0.03 % (limit 5 %): justified")));
   EXPECT_EQ(diagnostics::findings().size(), run.before);
 }
 
@@ -131,7 +131,7 @@ TEST(Findings, say_number_limit_and_cure) {
   ASSERT_TRUE(bad);
   EXPECT_EQ(bad->id, "inertia");
   EXPECT_EQ(bad->sentence,
-            "inertia neglected: inertia / load = 0.3; share of the result 0.2 (limit 0.05): matters");
+            "inertia neglected: inertia / load = 0.3; this changes the result by 20 % (limit 5 %): matters");
   EXPECT_EQ(bad->advice, "use 'analysis: dynamic'");
   EXPECT_FALSE(finding_of({.effect = "inertia", .number = NAN, .limit = 0.01, .what = ""}));
 }
@@ -152,7 +152,7 @@ TEST(Findings, on_neglected_effects_turn_at_the_share_that_matters) {
   diagnostics::share_limit() = 0.05;
   for (const double number : {0.05, 0.2}) {
     const Finding f = with_share(NAN, number);
-    EXPECT_EQ(f.sentence, "inertia neglected: x (limit 0.1): its share of the result is unknown");
+    EXPECT_EQ(f.sentence, "inertia neglected: x (limit 0.1): its effect on the result is unknown");
     EXPECT_EQ(f.severity, number > 0.1 ? Severity::warning : Severity::note);
   }
 }

@@ -97,10 +97,12 @@ TEST(Effects, solid_verdicts_turn_at_their_thresholds) {
   EXPECT_TRUE(sound(on_geometry(0.0199)));
   EXPECT_FALSE(sound(on_geometry(0.0201)));
   for (const double gradient : {1e-6, 0.0199, 0.0201})
-    EXPECT_THAT(on_geometry(gradient)->sentence, HasSubstr("its share of the result is unknown")) << gradient;
+    EXPECT_THAT(on_geometry(gradient)->sentence, HasSubstr("its effect on the result is unknown"))
+        << gradient;
   EXPECT_THAT(on_geometry(0.3, unknown, true)->sentence,
-              HasSubstr("share of the result 0.018 (limit 0.05): justified"));
-  EXPECT_THAT(on_geometry(0.51)->sentence, HasSubstr("share of the result 0.052 (limit 0.05): matters"));
+              HasSubstr("this changes the result by 1.8 % (limit 5 %): justified"));
+  EXPECT_THAT(on_geometry(0.51)->sentence,
+              HasSubstr("this changes the result by 5.2 % (limit 5 %): matters"));
   EXPECT_THAT(on_geometry(1e-4, 21.5)->sentence, HasSubstr("0.049 (limit 0.05): justified"));
   SolidParameters warm = p;
   warm.material.heat.expansion = config::ExpressionText{"2e-5"};

@@ -34,11 +34,11 @@ TEST(ErrorPartsTest, errors_as_large_as_the_solution_prove_an_answer_useless_les
 TEST(ErrorPartsTest, the_next_change_lowers_the_largest_part) {
   const auto said = [](const ErrorParts& parts) { return best_change({{"solid", parts}}); };
   EXPECT_EQ(said({.mesh = 1e-2, .step = 5e-4, .linear = 5e-3}),
-            "half the cell size, for 4 to 8 times the cells");
-  EXPECT_NE(said({.mesh = 1e-2, .step = 5e-4, .dimension = 2}).find("for 4 times the cells"),
+            "half the cell size (with 4 to 8 times the cells)");
+  EXPECT_NE(said({.mesh = 1e-2, .step = 5e-4, .dimension = 2}).find("with 4 times the cells"),
             std::string::npos);
-  EXPECT_EQ(said({.mesh = 1e-3, .step = 5e-2}), "half the time step, for twice the steps");
-  EXPECT_EQ(said({.mesh = 1e-2, .step = 5e-3, .dimension = 1}), "half the cell size, for twice the cells");
+  EXPECT_EQ(said({.mesh = 1e-3, .step = 5e-2}), "half the time step (with twice the steps)");
+  EXPECT_EQ(said({.mesh = 1e-2, .step = 5e-3, .dimension = 1}), "half the cell size (with twice the cells)");
   EXPECT_TRUE(error_sentences({{"solid", {}}}).empty());
 }
 

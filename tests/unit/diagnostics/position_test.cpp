@@ -10,12 +10,11 @@ TEST(Position, is_told_in_one_line_with_the_nearest_limit_and_its_map) {
   EXPECT_EQ(
       position_sentence({{"Courant number", 0.8, 1, "fluid-convection"},
                          {"added mass over mass", 0.4, 1.2, "coupling-mass"}}),
-      "on the map: Courant number 0.8 of 1, added mass over mass 0.4 of 1.2; nearest limit: Courant number, 80 % of the "
-      "way (docs/stability.md, map fluid-convection).");
+      "stability: Courant number 0.8 (limit 1), added mass over mass 0.4 (limit 1.2): within the tested range "
+      "(docs/stability.md, fluid-convection).");
   EXPECT_EQ(
       position_sentence({{"least scaled Jacobian", -0.5, 0, "mover-rotation", true}}),
-      "on the map: least scaled Jacobian -0.5 of at least 0; beyond the limit: least scaled Jacobian, 150 % of the way "
-      "(docs/stability.md, map mover-rotation).");
+      "stability: least scaled Jacobian -0.5 (at least 0): beyond the tested range (docs/stability.md, mover-rotation).");
 }
 
 TEST(Position, of_a_run_is_the_nearest_to_each_limit_that_it_has_been) {

@@ -17,7 +17,7 @@ COST = re.compile(r"seconds|waiting|working|processor|clock|so far|iterations|re
 def share(text):
     value = float(text)
     if not 0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text}: expected a finite share of at least 0")
+        raise argparse.ArgumentTypeError(f"{text}: expected a number of at least 0")
     return value
 
 
@@ -29,7 +29,7 @@ def declare(parser):
         type=share,
         default=0.0,
         metavar="SHARE",
-        help="ignores differences up to this share of the largest value (default: 0)",
+        help="ignores differences up to this fraction of the largest value (default: 0)",
     )
     parser.add_argument("--all", action="store_true", help="also lists values that are equal or within the tolerance")
 
@@ -229,7 +229,7 @@ def by_field(found):
 def run(arguments):
     runs = run_folder(arguments.first), run_folder(arguments.second)
     for folder in runs:
-        expect(folder.is_dir() and Results(folder).participants(), f"{folder}: is no output folder of a run")
+        expect(folder.is_dir() and Results(folder).participants(), f"{folder}: is not the output folder of a run")
     changed = of_mappings(*map(values_in_force, runs))
     findings = of_mappings(
         *(

@@ -86,7 +86,7 @@ def new_folder(folder):
 
 def run(arguments):
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
-    expect(arguments.element is None or arguments.to == "calculix", "--element: is of --to calculix")
+    expect(arguments.element is None or arguments.to == "calculix", "--element: applies to --to calculix only")
     if arguments.to == "vtk":
         from couplet.vtk import write
 

@@ -38,5 +38,5 @@ def run(arguments):
     else:
         from couplet.command import import_precice as chosen
 
-        expect(arguments.units is None, "--units: is of decks, .inp")
+        expect(arguments.units is None, "--units: applies to decks (.inp) only")
     return chosen.run(arguments)

@@ -36,7 +36,10 @@ def run(arguments):
     if arguments.check:
         return 0
     body = yaml.dump(case, sort_keys=False, default_flow_style=None, width=140, allow_unicode=True)
-    expect(body == body.encode(errors="replace").decode(), f"{deck}: names of sets are not in UTF-8; save the deck so.")
+    expect(
+        body == body.encode(errors="replace").decode(),
+        f"{deck}: the names of sets are not in UTF-8; save the deck in UTF-8.",
+    )
     lines = [f"# Made by couplet import from {plain(source)}.", *(f"# {note}" for note in notes), body]
     if not is_own:
         with files.part(output.parent, own_mesh) as made:

@@ -152,7 +152,7 @@ def run(arguments):
         expect(value is None or option in allowed, f"couplet mesh {arguments.what}: {option} does not belong there")
     expect(
         arguments.ranks > 0 and (arguments.ranks == 1 or arguments.what != "cut"),
-        "-n: one process cuts; box and open run on 1 rank and more",
+        "-n: cutting runs on one process; box and open on any number of ranks",
     )
     expect(
         (arguments.source is None) == (arguments.what == "box"),

@@ -42,7 +42,7 @@ def handler_of(progress, token):
             try:
                 address = urllib.parse.urlparse(self.path)
             except ValueError:
-                return self.answer(400, "text/plain", "This is no address.\n")
+                return self.answer(400, "text/plain", "There is no such page.\n")
             given = urllib.parse.parse_qs(address.query).get("token", [""])[0]
             # A request with another host name comes from a foreign page that tries to read this one.
             mine = self.headers.get("Host", "") == f"127.0.0.1:{self.server.server_port}"

@@ -89,7 +89,7 @@ def details(results, names):
                 yield f"  {words}: {report['errors'][key]}"
         for place in report.get("atlas", []):
             yield (
-                f"  {place['quantity']} {place['value']:.3g}, limit {place['limit']:.3g} (docs/stability.md, map"
+                f"  {place['quantity']} {place['value']:.3g}, limit {place['limit']:.3g} (docs/stability.md,"
                 f" {place['map']})"
             )
     for finding in results.findings():

@@ -75,7 +75,7 @@ def options_of_programs(parser):
     parser.add_argument(
         "--diagnostics",
         choices=("standard", "without-errors", "full"),
-        help="what the run finds out about its own answer; full: also searches that may take as long as a solve",
+        help="what the run checks about its own result; full: also searches that may take as long as a solve",
     )
     parser.add_argument(
         "--accept",

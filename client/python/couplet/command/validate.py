@@ -19,7 +19,5 @@ def declare(parser):
 
 def run(arguments):
     script = places.ROOT / "scripts/validate"
-    expect(
-        places.IN_CHECKOUT and script.exists(), "bars are measured in a checkout of the project, where its tests are"
-    )
+    expect(places.IN_CHECKOUT and script.exists(), "acceptance tests are run in a checkout of the project")
     os.execv(script, [str(script), *(arguments.words or ["--help"])])

@@ -381,7 +381,7 @@ def read(source):
         first is not None,
         0,
         (
-            "this is no weather file that is known: EPW, SAM or NSRDB, TMY3, the typical year of PVGIS, or a table with"
+            "this is not a known weather file: EPW, SAM or NSRDB, TMY3, the typical year of PVGIS, or a table with"
             " named columns."
         ),
     )

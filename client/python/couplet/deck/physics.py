@@ -312,7 +312,7 @@ class Physics:
             force = tuple(float(k == axis) * line.number(2) for k in (1, 2, 3))
             faces = self.faces.between(points)
             if not any(force[: len(self.axes)]) or not nodes:
-                self.leave(line, f"*CLOAD of '{name}'", "it is no force along an axis of the mesh")
+                self.leave(line, f"*CLOAD of '{name}'", "it is not a force along an axis of the mesh")
             elif faces and len({p for key in faces for p in key}) == len(points):
                 self.act("force", name, line, faces, tuple(f * len(nodes) for f in force))
                 self.notes.append(

@@ -179,7 +179,7 @@ def seconds(value, where):
     try:
         return float(found[1])
     except (TypeError, ValueError):
-        expect(False, f"{where}: '{value}' is no time in seconds; expected such as 2 s, or last.")
+        expect(False, f"{where}: '{value}' is not a time in seconds; expected for example 2 s, or last.")
 
 
 def check(case):

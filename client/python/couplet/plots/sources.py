@@ -37,7 +37,7 @@ def columns_of(file):
     comments, rows = [line for line in lines if line.startswith("#")], [
         line for line in lines if not line.startswith("#")
     ]
-    expect(rows, f"{file}: there is no row in it.")
+    expect(rows, f"{file}: it has no rows.")
     is_bare = comments and all(np.isfinite(number(cell)) for cell in rows[0].split(","))
     columns = read_csv(file, [cell.strip() for cell in comments[-1].lstrip("# ").split(",")] if is_bare else None)
     expect(

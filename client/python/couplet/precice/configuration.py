@@ -152,7 +152,7 @@ class Import:
                 return number
         except ValueError:
             pass
-        self._refuse(element, f"<{element.name}>: '{element.get(key)}' is no finite number")
+        self._refuse(element, f"<{element.name}>: '{element.get(key)}' is not a finite number")
         return otherwise
 
     def _times(self):
@@ -212,7 +212,7 @@ class Import:
                 return float(word)
         except ValueError:
             pass
-        self._refuse(measure, f"<{measure.name}>: the {key} '{word}' is no number above 0")
+        self._refuse(measure, f"<{measure.name}>: the {key} '{word}' is not a number above 0")
         return 1
 
     def _count(self, element):
@@ -249,7 +249,7 @@ class Import:
             if f.get("type") != "QR2":
                 self._note(f, f"the filter {f.get('type')} is taken as QR2: a column goes by its own size")
         if kind == "IQN-IMVJ":
-            self._note(a, "IQN-IMVJ is taken as IQN-ILS, which needs fewer passes here")
+            self._note(a, "IQN-IMVJ is taken as IQN-ILS, which needs fewer iterations here")
         coupling["acceleration"] = values
 
     # -- maps ---------------------------------------------------------------------------------------------------------

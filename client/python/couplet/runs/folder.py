@@ -132,7 +132,9 @@ def warn_if_older(file):
     except (OSError, ValueError, KeyError, TypeError):
         return
     if written < began and steps > 0:
-        print(f"warning: {file}: is of an earlier run: the last one in this folder did not write it", file=sys.stderr)
+        print(
+            f"warning: {file}: belongs to an earlier run; the last run in this folder did not write it", file=sys.stderr
+        )
 
 
 def write_record(folder, record):

@@ -86,7 +86,7 @@ class Job:
         known = {*case.participants, *([COUPLER] if case.coupled else [])}
         for name in (*self.ranks, *self.played_by, *([alone] if alone else [])):
             expect(
-                name in known, f"there is no participant '{name}' in {case.file}; there is: {', '.join(sorted(known))}"
+                name in known, f"there is no participant '{name}' in {case.file}; there are: {', '.join(sorted(known))}"
             )
         job = ({}, alone, self.ranks, self.sets, self.flags, self.played_by)
         self.parts, self.command = case.parts(*job), [str(w) for w in case.command(*job)]
@@ -137,7 +137,7 @@ class Job:
         if not self.recorded:
             self.note()  # at once, because the launcher itself would end the job within a step
         if self.asked == 1 and self.recorded and folders.stop(self.output):
-            self.say("ends after the step under way, with a checkpoint; once more: at once")
+            self.say("ends after the current step, with a checkpoint; press Ctrl-C again to end at once")
         elif self.asked <= 2:
             self.process.send_signal(signal.SIGTERM)
             self.limit = time.monotonic() + PATIENCE
@@ -198,7 +198,7 @@ class Job:
                     alone = folders.session(self.process.pid) == [self.process.pid]
                     busy = busy if alone else time.monotonic()
                     if alone and time.monotonic() > busy + NOBODY_LEFT:
-                        self.say("mpirun has no program left and does not end; it is ended")
+                        self.say("all programs have ended but mpirun has not; it is stopped")
                         self.end_all()
                 if time.monotonic() > self.limit:
                     self.end_all()

@@ -68,7 +68,11 @@ class Results:
         """Returns {head: last value} of a table."""
         return {name: values[-1] for name, values in self.table(participant, file).items()}
 
-    def passes(self) -> np.ndarray:
+    def passes(self) -> typing.NoReturn:
+        """Former name of `iterations`."""
+        raise AttributeError("Results.passes is now called Results.iterations")
+
+    def iterations(self) -> np.ndarray:
         """Coupling iterations of each accepted step."""
         import numpy as np
 

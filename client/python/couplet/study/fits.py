@@ -179,7 +179,7 @@ def diverges(n, values):
     """Reason why three or more runs show no limit. Empty if they may have one."""
     n, values = n[apart(n)], values[apart(n)]
     if len(n) < 3:
-        return "its sizes are too near to each other to show an order"
+        return "its sizes are too close to each other to show an order"
     changes, steps = np.diff(values), np.diff(np.log(n))
     if turns(n[-3:], values[-3:]):
         if len(values) < LEAST:
@@ -190,7 +190,7 @@ def diverges(n, values):
             f"its values alternate and do not settle (changes of {early:.2g}, then {late:.2g})" if late > early else ""
         )
     if changes[-2] * changes[-1] > 0 and abs(changes[-1] / steps[-1]) >= abs(changes[-2] / steps[-2]):
-        return f"its values move apart with size (changes of {abs(changes[-2]):.2g}, then {abs(changes[-1]):.2g})"
+        return f"its values diverge with the size (changes of {abs(changes[-2]):.2g}, then {abs(changes[-1]):.2g})"
     return ""
 
 

@@ -111,8 +111,8 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
             break
         if not todo:
             say(
-                f"optimise: ends after {len(points)} of {runs} runs: no place is left that is 2 % of the range from all"
-                " others"
+                f"optimise: ends after {len(points)} of {runs} runs: every point is within 2 % of the range of one"
+                " that was run"
             )
     k = int(np.argmin(np.where(np.isfinite(values), values, np.inf)))
     return points[k], values[k], points, values
@@ -144,7 +144,7 @@ class Variable:
             isinstance(self.sets, dict)
             and self.sets
             and all(isinstance(k, str) and is_number(v) for k, v in self.sets.items()),
-            f"{place}.sets: expected {{key: share of the variable, ...}}, the shares numbers.",
+            f"{place}.sets: expected {{key: factor of the variable, ...}} with numbers.",
         )
 
     def at(self, x):
@@ -176,7 +176,7 @@ class Search:
         self.quantity = section.get("minimise", section.get("maximise"))
         expect(
             isinstance(self.quantity, str),
-            f"{place}: what is sought is the name of a quantity of summary.csv, not {self.quantity!r}.",
+            f"{place}: expected the name of a quantity of summary.csv, not {self.quantity!r}.",
         )
         found = section.get("variables") or {}
         expect(isinstance(found, dict), f"{place}.variables: expected {{name: {{from: ..., to: ...}}}}.")
@@ -311,7 +311,7 @@ def run(case, arguments):
         print(line)
     failed = sum(not math.isfinite(v) for v in runs.values)
     if failed:
-        print(f"{failed} of {len(points)} runs gave no value: the search went around them")
+        print(f"{failed} of {len(points)} runs gave no value; the search avoided them")
     if edge:
-        print(f"{', '.join(edge)}: the best lies at the border of the range given; beyond it may be better.")
+        print(f"{', '.join(edge)}: the best value is at the limit of the given range; a wider range may be better.")
     return 0

@@ -262,7 +262,7 @@ def phases(title, rows, file, most=24):
         axes.barh(at, 100 * part / total, left=left, label=p)
         left += 100 * part / total
     axes.set_yticks(at, [f"{r.point.name} ({r.record.cpu:.2g} s)" for r in good], fontsize=6)
-    axes.set(xlabel="share of the run [%]; in brackets its processor seconds", xlim=(0, 100))
+    axes.set(xlabel="part of the run [%]; processor seconds in brackets", xlim=(0, 100))
     axes.margins(y=0.01)
     axes.invert_yaxis()
     made.suptitle(textwrap.fill(title, NARROW), fontsize=10)

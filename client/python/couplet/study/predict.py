@@ -77,8 +77,8 @@ class Search:
                 self.run(series, sizes[2])
             elif len(sizes) > 2:
                 series.short = (
-                    f"size {sizes[2]:g} was not run, which would take {series.seconds(sizes[2]):.2g} s: "
-                    f"{best[0].name} should do in {best[1].seconds:.2g} s, after {self.spent():.2g} s of runs before it"
+                    f"size {sizes[2]:g} was not run, because it would take {series.seconds(sizes[2]):.2g} s: "
+                    f"{best[0].name} should suffice in {best[1].seconds:.2g} s ({self.spent():.2g} s are spent)"
                 )
 
     def run(self, series, size):
@@ -116,7 +116,7 @@ class Search:
             why = (
                 guess.reason
                 if isinstance(guess, Refusal)
-                else f"size {guess.size:g} should do in {guess.seconds:.2g} s, at best {guess.cheap:.2g} s"
+                else f"size {guess.size:g} should suffice in {guess.seconds:.2g} s, at best {guess.cheap:.2g} s"
             )
             self.say(f"{other.name}: {why}; a larger size may show more, in about {seconds:.2g} s")
             self.run(other, self.following(other))
@@ -126,9 +126,10 @@ class Search:
         there = next((r for r in series.rows if r.point.size >= best.size and series.meets(r, self.target)), None)
         if there:
             return self.settle(series, best, there)
+        amount = amounts(self.quantity)
         self.say(
-            f"{series.name}: size {best.size:g} should leave an error of {best.error:.2g} (at most {best.bound:.2g})"
-            f" and take {best.seconds:.3g} s"
+            f"{series.name}: size {best.size:g} should leave an error of {amount(best.error)} (at most"
+            f" {amount(best.bound)}) and take {best.seconds:.3g} s"
         )
         size = self.next_size(series, best)
         row = self.run(series, size)
@@ -178,7 +179,7 @@ class Search:
         less = self.smaller(series, row)
         if less:
             self.say(
-                f"{series.name}: size {row.point.size:g} is better than asked; size {less.size:g} should do in"
+                f"{series.name}: size {row.point.size:g} is better than asked; size {less.size:g} should suffice in"
                 f" {less.seconds:.3g} s"
             )
             made = self.run(series, less.size)
@@ -212,8 +213,8 @@ class Search:
             return
         size = self.following(series)
         self.say(
-            f"{series.name}: size {row.point.size:g} is not sure to meet the target: {self.doubt}; size {size:g} may"
-            f" confirm it, in about {series.seconds(size):.2g} s"
+            f"{series.name}: size {row.point.size:g} probably meets the target, but {self.doubt}; size {size:g} is run"
+            f" as a check, in about {series.seconds(size):.2g} s"
         )
         made = self.run(series, size)
         for one in (row, made) if made.good else ():
@@ -233,7 +234,7 @@ def others(search, chosen, row):
         found = series.predict(search.target) if series.rows else Refusal(series.failed, False)
         if isinstance(found, Prediction):
             most = f"{found.costly:.2g}" if found.costly < math.inf else "far more"
-            why = f"size {found.size:g} should do in {found.seconds:.2g} s ({found.cheap:.2g} to {most} s)"
+            why = f"size {found.size:g} should suffice in {found.seconds:.2g} s ({found.cheap:.2g} to {most} s)"
             if reference is not None and found.seconds < reference:
                 why += ", no clear gain"
         else:
@@ -259,6 +260,11 @@ def seen_from_others(search, chosen, row):
     return least, who
 
 
+def amounts(quantity):
+    """Returns a function that writes an error of a quantity: absolute, or in per cent."""
+    return (lambda error: f"{error:.3g}") if quantity.given.get("absolute") else (lambda error: f"{100 * error:.3g} %")
+
+
 def said(search, series, row, predicted):
     """Result as numbers and as lines."""
     target, quantity = search.target, search.quantity
@@ -273,7 +279,7 @@ def said(search, series, row, predicted):
             "before": search.spent(),
             "lines": [
                 (
-                    f"No setting was found for an error of {target:.3g}, after"
+                    f"No setting was found for an error of {amounts(quantity)(target)}, after"
                     f" {sum(len(s.rows) for s in search.every)} runs:"
                 ),
                 *lines,
@@ -289,13 +295,17 @@ def said(search, series, row, predicted):
     reached = true if true is not None else max(error, elsewhere)
     seconds, spent = series.cost(row), search.spent()
     settings = ", ".join(f"{k}={v}" for k, v in row.point.changes.items())
-    how = "against the reference" if true is not None else f"by extrapolation, at most {max(bound, elsewhere):.3g}"
+    amount = amounts(quantity)
+    how = "against the reference" if true is not None else f"by extrapolation, at most {amount(max(bound, elsewhere))}"
     first = [
-        f"Cheapest for {quantity.name} to {target:.3g}: {series.name}, size {row.point.size:g} ({settings})",
-        f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})"
-        + (f"; seen from {who}" if elsewhere > error else ""),
+        (
+            f"Cheapest run for an error of {amount(target)} of {quantity.name}: {series.name}, size"
+            f" {row.point.size:g} ({settings})"
+        ),
+        f"error: {amount(reached)} {how} (predicted {amount(predicted.error)})"
+        + (f" (compared with {who})" if elsewhere > error else ""),
         *([f"not confirmed: {search.doubt}"] if search.doubt else []),
-        f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); the runs before it took {spent - seconds:.3g} s",
+        f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); all runs together took {spent:.3g} s",
     ]
     return {
         "met": reached <= ENOUGH * target and not search.doubt,

@@ -213,7 +213,7 @@ def check_exact(formula, where):
     try:
         evaluate(formula, {"pi": np.pi, **{n: np.full(1, 0.5) for n in "xyzt"}}, FUNCTIONS)
     except ValueError as error:
-        expect(False, f"{where}: exact: '{formula}' is no expression of x, y, z and t. {error}.")
+        expect(False, f"{where}: exact: '{formula}' is not an expression of x, y, z and t. {error}.")
 
 
 def quantities_of(case, section, participant, place="study"):

@@ -139,8 +139,8 @@ class Series:
             return (
                 None,
                 (
-                    "its limit is 0 or near it: relative errors say nothing (`absolute: true` asks for the difference"
-                    " itself)"
+                    "its limit is close to 0, so relative errors are meaningless (`absolute: true` asks for the"
+                    " difference itself)"
                 ),
             )
         return (

@@ -191,7 +191,7 @@ class Study:
         found = estimates.of(rows, quantity)
         if len(found) >= 3:
             report.text(
-                "Error estimated from a run and what was run no finer beside the true one: within a factor of 2 on "
+                "Error estimated from a run and coarser ones, compared with the true error: within a factor of 2 on "
                 f"{estimates.inside(found)} of {len(found)} runs."
             )
             report.picture(

@@ -112,7 +112,7 @@ def bent(job, source, rows, said):
     off = max(abs(x / PUBLISHED[name][0] - 1) for name, (_, x) in found.items())
     text = ", ".join(f"{x:.4f} m at {t:.2f} s" for t, x in found.values())
     return (
-        f"{text}: {100 * off:.1f} % off; {len(rows)} steps, {passes(said):.2f} passes per step{commit_of(source, job)}",
+        f"{text}: {100 * off:.1f} % off; {len(rows)} steps, {passes(said):.2f} coupling iterations per step{commit_of(source, job)}",
         len(rows) == 250 and off < 0.02,
     )
 

@@ -104,7 +104,7 @@ def tube(job, fluid, solid):
     high, low = middle_pressures(where / f"fluid-{fluid}/output")
     off = max(abs(high / PUBLISHED[0] - 1), abs(low / PUBLISHED[1] - 1))
     return (
-        f"{high:.2f}, {low:.2f} ({100 * off:.2f} % off), {passes(said):.2f} passes per step{commit_of(source, job)}",
+        f"{high:.2f}, {low:.2f} ({100 * off:.2f} % off), {passes(said):.2f} coupling iterations per step{commit_of(source, job)}",
         off < 0.005,
     )
 

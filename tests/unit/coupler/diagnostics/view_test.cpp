@@ -172,7 +172,7 @@ TEST(WorkBalance, a_guess_that_jitters_parts_the_work_but_is_no_instability) {
   WorkBalance guard;
   for (int n = 0; n < 200; ++n) guard.accepted(n % 2 ? -0.8 : 0.4, 0.35 + 0.05 * std::sin(n));
   EXPECT_FALSE(guard.result().sound) << "it is said at the end";
-  EXPECT_THAT(guard.result().text, HasSubstr("NOT CLOSED"));
+  EXPECT_THAT(guard.result().text, HasSubstr("NOT BALANCED"));
   EXPECT_TRUE(guard.result().useless);  // of an iteration
   const WorkBalance::WorkResult lagging = guard.result(true, true);
   EXPECT_FALSE(lagging.useless) << "the motion may be right";
