@@ -31,7 +31,8 @@ std::vector<double> datum(const coupling::Exchange& in, const char* name) {
 
 // Ratio of the number of sub-steps to the one last logged, or its inverse, that is logged again.
 constexpr double most_times_as_many = 2;
-// Share of the cells below which those that limit the sub-steps are few.
+// Number of sub-steps, and share of the cells that limit them, from which implicit convection may pay.
+constexpr int many_sub_steps = 10;
 constexpr double few_cells = 0.05;
 
 bool holds_volume(const FluidParameters& p) { return p.volume_level == VolumeLevelBy::structure; }
@@ -429,7 +430,8 @@ void FluidParticipant<D>::log_sub_steps() {
   const StepLimiter limiter = fluid_->sizes().limiter(fluid_->state());
   const FluidParameters& p = fluid_->parameters();
   // Implicit convection lets the sub-steps follow from the other cells.
-  const bool few = now > 1 && limiter.share < few_cells && !limiter.friction && !limiter.frame && !p.courant;
+  const bool few =
+      now >= many_sub_steps && limiter.share < few_cells && !limiter.friction && !limiter.frame && !p.courant;
   if (parallel::comm_rank(mesh_.comm) == 0)
     log::info(
         "t = {:.6g} s: {} sub-steps of {:.3g} s, which are {:.0f} % of the stability limit of {} in cell {} at "

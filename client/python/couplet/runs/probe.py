@@ -46,7 +46,7 @@ def probe(case, words=(), limit=LIMIT, stepping=STEPPING):
     found = Probe()
     with tempfile.TemporaryDirectory(prefix="couplet-probe-", ignore_cleanup_errors=True) as scratch:
         out, start, marks = pathlib.Path(scratch) / "out", time.monotonic(), []
-        line = [places.command(), "run", case.file, "--bin", case.build / "bin", *words]
+        line = [places.command(), "run", case.file.absolute(), "--bin", case.build / "bin", *words]
         job = subprocess.Popen(
             [*map(str, line), "--set", f"simulation.output.folder={out}"],
             stdin=subprocess.DEVNULL,
