@@ -17,6 +17,8 @@ namespace {
 
 // Contributions below this fraction of the largest one are not worth reducing.
 constexpr double nothing = 0.1;
+// Below this, the known part of an error is not stated beside an unknown one.
+constexpr double least_said = 1e-4;
 // Error from which the result is questionable. Estimates are accurate to a factor, and this one may represent
 // a fifth, beyond which the atlas calls a result wrong.
 constexpr double questionable_error = 0.15;
@@ -191,8 +193,8 @@ std::string error_summary(const std::vector<NamedErrors>& participants) {
     if (!n.parts.field.empty())
       list += n.parts.field + (participants.size() > 1 ? " of '" + n.name + "' " : " ");
     list += unknown.empty() ? fmt::format("{} ({})", percent(total), worst->kind->words)
-            : total >= nothing * most
-                ? fmt::format("{} and that due to {}, which is unknown", percent(total), unknown)
+            : total >= std::max(nothing * most, least_said)
+                ? fmt::format("{} plus an unknown part ({})", percent(total), unknown)
                 : fmt::format("unknown ({})", unknown);
   }
   return list.empty() ? "the error is not estimated" : "estimated error: " + list;

@@ -52,6 +52,8 @@ YAML = {  # page: for each block (case, section that the block is put into), or 
     "docs/theory/solid-solution.md": [("cantilever", "participants.solid")],
     "docs/theory/solid.md": [("cantilever", "participants.solid")],
 }
+NO_FIGURE = {"docs/how-to/README.md": "a list", "docs/how-to/build-elsewhere.md": "no results", "docs/how-to/cluster.md": "no results"}
+MOST_BYTES = 4e6  # of all documents with their figures
 FILES = {"seville.csv": "weather/granada_aldeire_surrogate.csv.gz"}  # which a block names, and what stands for them
 
 
@@ -95,6 +97,10 @@ run = {f"docs/{page}.md" for page in re.findall(r"(?:tutorials|how-to)/[\w-]+|tu
 with_commands = {page for page in pages if blocks(page, "sh")}
 check("a test runs the commands of each page, or the page is named with the reason", with_commands <= run | set(NOT_RUN), with_commands - run - set(NOT_RUN))
 check("no page is named that a test runs, or that has no commands", not set(NOT_RUN) & run and set(NOT_RUN) <= with_commands, (set(NOT_RUN) & run, set(NOT_RUN) - with_commands))
+without = {page for page in pages if page.startswith(("docs/how-to/", "docs/tutorials/")) and not re.search(r"!\[.+\]\((.+\.png)\)", (ROOT / page).read_text())}
+check("each guide and tutorial has a figure, or is named with the reason", without == set(NO_FIGURE), without ^ set(NO_FIGURE))
+size = sum(f.stat().st_size for f in (ROOT / "docs").rglob("*") if f.is_file())
+check("the documents stay small", size < MOST_BYTES, f"{size / 1e6:.2f} MB")
 counts = {page: len(found) for page in pages if (found := blocks(page, "yaml"))}
 check("each block of YAML has its case, or a reason", counts == {page: len(told) for page, told in YAML.items()},
       set(counts.items()) ^ {(page, len(told)) for page, told in YAML.items()})

@@ -40,6 +40,12 @@ FIGURES = {  # page: (picture that its commands draw, width of the figure)
     "how-to/pressure-vessel": ("vessel/out/vessel/equivalent-stress.png", 560),
     "how-to/tank-weather": ("tank/out/tank/days.png", 760),
     "how-to/thermal-stress": ("strip/out/strip/temperature.png", 800),
+    "how-to/accuracy": ("beam/out/study/order-tip.png", 640),
+    "how-to/calculix-deck": ("arm/out/solid/equivalent-stress.png", 640),
+    "how-to/own-mesh": ("lug/out/lug/equivalent-stress.png", 560),
+    "how-to/own-solver-python": ("cylinder/out/coupler/residuals.png", 640),
+    "how-to/restart": ("flap/out/solid/probes.png", 640),
+    "how-to/read-results-python": ("tip.png", 640),
 }
 NUMBERS = {  # page: (file, column, row, value that the page tells)
     "how-to/modes": ("part/out/part/modes.csv", "frequency [Hz]", 0, 304.4),
@@ -81,12 +87,19 @@ def is_said(line, said):
     return any(all(math.isclose(float(a), b, rel_tol=0.02) for a, b in zip(m.groups(), wanted)) for m in re.finditer(pattern, said))
 
 
+def figure_of(page):
+    """File of a page's figure. A guide with the name of a tutorial has a longer one."""
+    name = page.rpartition("/")[2]
+    twice = page.startswith("how-to/") and (ROOT / f"docs/tutorials/{name}.md").exists()
+    return ROOT / f"docs/pictures/{'how-to-' if twice else ''}{name}.png"
+
+
 def figure(page, picture, width):
     """Writes a page's figure to docs/pictures, at most as wide as asked, in 64 colors."""
     from PIL import Image
     drawn = Image.open(picture).convert("RGB")
     size = (min(width, drawn.width), round(drawn.height * min(1, width / drawn.width)))
-    drawn.resize(size, Image.LANCZOS).quantize(64, dither=Image.Dither.NONE).save(ROOT / f"docs/pictures/{page.rpartition('/')[2]}.png", optimize=True)
+    drawn.resize(size, Image.LANCZOS).quantize(64, dither=Image.Dither.NONE).save(figure_of(page), optimize=True)
 
 
 def follow(page, home, begin, env):
@@ -114,10 +127,10 @@ def follow(page, home, begin, env):
         check(f"{column} is what the page tells", abs(found / told - 1) < 1e-3, (found, told))
     if page in FIGURES:
         picture, width = FIGURES[page]
-        file = ROOT / f"docs/pictures/{page.rpartition('/')[2]}.png"
-        check("the page has its figure, which its commands draw", (home / picture).is_file() and f"pictures/{file.name})" in text and file.stat().st_size < 1e5)
+        file = figure_of(page)
         if place == "--figures":
             figure(page, home / picture, width)
+        check("the page has its figure, which its commands draw", (home / picture).is_file() and f"pictures/{file.name})" in text and file.is_file() and file.stat().st_size < 1e5)
     pictures = [p for p in home.rglob("*.png") if p.stat().st_size > 3000 and "share" not in p.parts and p.name != "picture.png"]
     check(f"{page}: {len(blocks)} blocks in {time.monotonic() - start:.0f} s, {len(pictures)} pictures", len(blocks) >= fewest[0] and len(pictures) >= PICTURES.get(page, fewest[1]), pictures)
 

@@ -89,7 +89,7 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
   EXPECT_EQ(error_summary({{"fluid", {.mesh = 1e-2, .step = 1e-3}}, rounding}),
             "estimated error: 1.1 % (mesh); unknown (the mesh)");
   const NamedErrors short_run{"solid", {.mesh = 1e-2, .misses_step = true}};
-  EXPECT_EQ(error_summary({short_run}), "estimated error: 1 % and that due to the step, which is unknown");
+  EXPECT_EQ(error_summary({short_run}), "estimated error: 1 % plus an unknown part (the step)");
   EXPECT_NE(best_change({short_run}).find("half the time step"), std::string::npos);
   const ErrorParts flow{.mesh = 0.3, .step = 2e-2, .field = "velocity"},
       motion{.mesh = 2.5, .field = "displacement"};

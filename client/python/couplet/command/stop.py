@@ -37,5 +37,9 @@ def run(arguments):
             file=sys.stderr,
         )
         return 1
-    print(f"stopped, saved as {folders.checkpoint(folder)}; continue: couplet resume {shlex.quote(str(folder))}")
+    saved = folders.checkpoint(folder)
+    if saved is None:
+        print("stopped before the first step; nothing was saved")
+        return 0
+    print(f"stopped, saved as {saved}; continue: couplet resume {shlex.quote(str(folder))}")
     return 0
