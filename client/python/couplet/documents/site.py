@@ -161,13 +161,25 @@ def with_links(page, text, there, needed):
     )
 
 
+LONG_CODE = 32  # characters of code from which a table may break it
+
+
 def with_breaks(text):
     """Text whose tables may break long code, such as names of tests, after punctuation."""
 
     def broken(code):
+        if len(code[1]) < LONG_CODE:
+            return code[0]
         return "<code>" + re.sub(r"([._:/,])(?=.)", r"\1<wbr>", html.escape(code[1], quote=False)) + "</code>"
 
-    return re.sub(r"^\|.*", lambda row: re.sub(r"`([^`|]{32,})`", broken, row[0]), text, flags=re.M)
+    text = re.sub(r"^\|.*", lambda row: re.sub(r"`([^`|]+)`", broken, row[0]), text, flags=re.M)
+    # Tables of keys have six columns, which a narrow screen shows below each other (site.css).
+    return re.sub(
+        r"^\| key \| type \|.*\n(?:\|.*(?:\n|\Z))+",
+        lambda table: f'<div class="keys" markdown="1">\n\n{table[0].rstrip()}\n\n</div>\n',
+        text,
+        flags=re.M,
+    )
 
 
 def duration(seconds):
