@@ -403,6 +403,13 @@ def reported(folder):
     wanted = ["Results of 'solid' at t = 1 s", "tip 0.1234 0 mm", "equivalent stress 253.5 MPa +- 5.1 (2 %)", "reaction root 5.6 kN", "largest displacement 0.2 mm",
               "Results of 'air' at t = 1 s", "heat wall 25 MW", "Results of 'mover' at t = 1 s", "least scaled Jacobian 0.5", "Verdict: no warning; estimated error: displacement 2 % (mesh)"]
     check("report", [" ".join(line.split()) for line in told.splitlines()][:len(wanted)] == wanted, told)
+    for name, total, error in (("coupler", 0.1, "0.1 % (mesh)"), ("fluid", 0.01, "velocity 1 % (mesh)"), ("solid", 0.05, "displacement 5 % (step)"), ("mover", 0.0001, "motion 0.01 % (mesh)")):
+        (folder / "two" / name).mkdir(parents=True)
+        (folder / "two" / name / f"{name}.log").touch()
+        (folder / "two" / name / "run.json").write_text(json.dumps({"time": 1, "results": [], "error": f"estimated error: {error}", "errors": {"mesh": total}, "next": f"refine {name}"}))
+    told = " ".join(call_here(bin_, "report", folder / "two").stdout.split())
+    check("the verdict of a coupled run names the field of each participant", "Verdict: no warning; estimated error: displacement of 'solid' 5 % (step); velocity of 'fluid' 1 % (mesh) "
+          "next for 'solid': refine solid" in told, told)
     from couplet.command.report import rows
     from couplet.runs import Results
     few = [line.split()[0] for line in rows(Results(folder / "out"), ["mover", "air", "solid"], 5)]

@@ -2,6 +2,7 @@
 """Shows what a run ended with: all results (probes and coefficients, then forces, then the rest), the estimated error
 and its parts, warnings, distance to the limits of stability, and costs."""
 import pathlib
+import re
 import textwrap
 
 from couplet.runs.case import expect
@@ -38,6 +39,26 @@ def ending(results, names):
     return [*rows(results, names, MOST_LINES), *verdict(results, names)]
 
 
+def error_of(results, names, judge):
+    """Returns a sentence about the estimated error, and the participant with the largest one. In a coupled run the
+    sentence has the field of each participant, the largest error first, without those below a tenth of it."""
+    found = []
+    for name in (n for n in names if "coupler" in names and n != "coupler"):
+        report = results.report(name)
+        said = re.match(r"estimated error: (.*?) ?((?:unknown|above|[\d.]).*)", report.get("error", ""))
+        if said:
+            parts = [report.get("errors", {}).get(kind) for kind in ("mesh", "step", "linear")]
+            total = sum(part for part in parts if part)
+            found.append((total, "unknown" in said[2], f"{said[1] or 'result'} of '{name}' {said[2]}", name))
+    found = [f for f in found if f[1] or f[0] >= 0.1 * max(f[0] for f in found)]
+    error = judge.get("error", "the error is not estimated")
+    if not found or "(coupling tolerance)" in error:
+        return error, ""
+    found.sort(key=lambda f: -f[0])
+    largest = "" if any(f[1] for f in found) else found[0][-1]  # an unknown part is looked for first
+    return "estimated error: " + "; ".join(f[2] for f in found), largest
+
+
 def verdict(results, names):
     """Returns a few lines: the errors, the warnings that were not accepted, and the best next change."""
     judge = results.report("coupler" if "coupler" in names else names[0]) if names else {}
@@ -50,15 +71,17 @@ def verdict(results, names):
         if any(f["severity"] == "wrong" for f in found)
         else f"{len(ids)} warning{'s' if len(ids) > 1 else ''}" if ids else "no warning"
     )
-    error = judge.get("error", "the error is not estimated")
+    error, largest = error_of(results, names, judge)
     lines = textwrap.wrap(f"Verdict: {word}; {error}", 78, subsequent_indent="  ")
     if ids:
         shown = textwrap.shorten(', '.join(ids), 56, placeholder=' and more', break_on_hyphens=False)
         lines += [f"  {shown} (docs/findings.md)"]
     cures = (f["advice"] for f in found if f["severity"] == "wrong" and f["id"] != "error-estimate" and f["advice"])
-    following = next(cures, judge.get("next", ""))
-    following = following.rpartition(", for")[0] if len(following) > 70 else following
-    return lines + ([f"  next: {following}"] if 0 < len(following) <= 70 else [])
+    following = next(cures, "")
+    whose = f" for '{largest}'" if largest and not following else ""
+    following = following or (results.report(largest) if largest else judge).get("next", "")
+    following = following.rpartition(" (with")[0] if len(following) > 70 else following
+    return lines + ([f"  next{whose}: {following}"] if 0 < len(following) <= 70 else [])
 
 
 def costs(results, names):
