@@ -16,6 +16,15 @@ install(FILES README.md CHANGELOG.md CITATION.cff LICENSE packaging/copyright DE
 find_program(COUPLET_PYTHON python3 HINTS /usr/bin NO_DEFAULT_PATH)
 find_program(COUPLET_PYTHON python3 REQUIRED)
 
+# An installation without them cannot link programs of others.
+install(CODE "
+  foreach(file client/libcouplet_client.a precice/lib/libprecice.so)
+    if(NOT EXISTS \"${PROJECT_BINARY_DIR}/\${file}\")
+      message(WARNING \"\${file} was not built, so own C++ programs or those of preCICE cannot be linked: \"
+                      \"scripts/build release couplet_client precice_couplet\")
+    endif()
+  endforeach()")
+
 # Where Debian's Python looks: below /usr, /usr/local, and ~/.local or the prefix of an environment. The same files each time.
 execute_process(COMMAND ${COUPLET_PYTHON} -c "import sys; print('python%d.%d' % sys.version_info[:2])" OUTPUT_VARIABLE python
                 OUTPUT_STRIP_TRAILING_WHITESPACE)

@@ -45,6 +45,14 @@ def programs(bin_):
         ), said is not None
 
 
+def libraries():
+    """What own programs in C++ and those of preCICE are linked with."""
+    kept = {"couplet_client": ("client/libcouplet_client.a", "lib/libcouplet_client.a")}
+    kept["precice_couplet"] = ("precice/lib/libprecice.so", "lib/couplet/precice/lib/libprecice.so")
+    missing = [target for target, files in kept.items() if not any((places.build() / file).exists() for file in files)]
+    yield "libraries", f"not there: scripts/build release {' '.join(missing)}" if missing else "all there", True
+
+
 def surroundings():
     said = first_line("mpirun", "--version")
     yield "MPI", said or "there is no mpirun: apt install openmpi-bin", said is not None
@@ -91,7 +99,7 @@ def self_test():
 
 
 def run(arguments):
-    found = [*programs(places.build() / "bin"), *surroundings()]
+    found = [*programs(places.build() / "bin"), *libraries(), *surroundings()]
     good = all(fine for _, _, fine in found)
     for name, text, fine in found:
         print(f"{'ok ' if fine else 'NO '} {name:14} {text}")

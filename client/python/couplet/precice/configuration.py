@@ -66,7 +66,10 @@ class Import:
         ]
         library = next((path for path in map(pathlib.Path, places_of) if path.is_file()), None)
         if library is None:
-            return self._note(self.root, f"not checked by the library, which is not at {places_of[1]}")
+            return self._note(
+                self.root,
+                f"not checked by the library, which is not at {places_of[1]}: scripts/build release precice_couplet",
+            )
         ask = ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL).couplet_precice_problem
         ask.restype = ctypes.c_char_p
         for name in self.case["participants"]:
