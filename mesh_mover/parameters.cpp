@@ -52,7 +52,7 @@ void declare_method(config::Section& s, Parameters& p) {
           "laplacian: each component separately, cheapest. pseudo-solid: an elastic body, tolerates bending "
           "and rotation. barrier: least distortion of the cells, which grows without "
           "bound as a cell flattens: cannot fold, costs several linear solves per motion. auto: laplacian, or barrier if the "
-          "prescribed motions would invert a cell, or from the first motion on that inverts one or folds it at a corner; "
+          "prescribed motions would invert a cell, or after the first motion that inverts one or folds it at a corner; "
           "laplacian with periodic patches");
   s.value("stiffening", p.stiffening)
       .range(0, 3)

@@ -117,7 +117,7 @@ class UseOfCase final : public diagnostics::Diagnostic {
           find(
               "unseen-between-steps", use.unseen / use.largest(), least_unseen,
               fmt::format(
-                  "{}: {} goes {:.3g} beyond its values at the steps around t = {:g} s, the largest of all steps is {:.3g}: the steps miss it; shorten 'time-step'",
+                  "{}: {} differs by {:.3g} from its values at the neighboring steps around t = {:g} s (largest value at all steps: {:.3g}): the steps miss this change; shorten 'time-step'",
                   name, use.given, use.unseen, use.unseen_at, use.largest()));
         break;
       case Use::Kind::table:

@@ -56,7 +56,7 @@ bool SchemeChoice::accepted(double time) {
   is_open_ = !in_a_row && renewed_share_ < most_renewed;
   now_ = is_open_ ? coupling::Scheme::semi_implicit : coupling::Scheme::implicit;
   if (is_open_) return failed;
-  log::info("t = {:g} s: scheme: implicit from here on: {}", time,
+  log::info("t = {:g} s: the scheme is implicit from now on: {}", time,
             in_a_row && failed ? "several steps in a row failed"
             : in_a_row
                 ? fmt::format("in several steps in a row, the fluid predicted its velocity {} times or more",

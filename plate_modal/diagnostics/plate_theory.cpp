@@ -131,7 +131,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
     if (moves_freely() || weight > 9) share = std::max(share, weight);
     report_neglected(
         report, "motion in the plane", share,
-        fmt::format("part of {1} in the plane / across it = {0:.2g}", share,
+        fmt::format("{1}: part in the plane / part across it = {0:.2g}", share,
                     p.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
         "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a "
         "volume model",

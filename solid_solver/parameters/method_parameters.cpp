@@ -160,7 +160,7 @@ void declare(config::Section& s, LoadStepping& l) {
       .doc("for arc-length: load factor of the first step; sets the length of the later ones");
   s.value("iterations", l.iterations)
       .range(2, 15)
-      .doc("for arc-length: iterations of Newton's method per step toward which the length is adapted");
+      .doc("for arc-length: target number of Newton iterations per step, to which the length is adapted");
 }
 
 }  // namespace couplet::solid

@@ -56,7 +56,8 @@ class ResolvedGrains final : public TankDiagnostic {
     const double share = std::sqrt(spread);
     add(report, {.effect = "range of the film correlation",
                  .number = share,
-                 .what = fmt::format("Re {} of the layers, fitted from 15 to 8500", layers),
+                 .what = fmt::format(
+                     "Reynolds numbers {} of the layers; the correlation was fitted from 15 to 8500", layers),
                  .advice = "give 'bed.closures.film-coefficient'",
                  .share = share});
   }

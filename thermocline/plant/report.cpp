@@ -222,8 +222,8 @@ std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) co
   const double thickness = s[Sums::thickness_time] > 0 ? s[Sums::thickness] / s[Sums::thickness_time] : 0;
   return {{"Q_SF", "MWh/day", energy(Sums::field), ", heat of the solar field"},
           {"Q_excess/Q_SF", "%", share(s[Sums::excess], s[Sums::field]), ", not used at once"},
-          {"Q_C/Q_excess", "%", share(s[Sums::stored], s[Sums::excess]), ", stored of the excess"},
-          {"Q_D/Q_C", "%", share(s[Sums::delivered], s[Sums::stored]), ", regained of the stored"},
+          {"Q_C/Q_excess", "%", share(s[Sums::stored], s[Sums::excess]), ", stored part of the excess"},
+          {"Q_D/Q_C", "%", share(s[Sums::delivered], s[Sums::stored]), ", recovered from storage"},
           {"B_D", "MWh/day", energy(Sums::exergy)},
           {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], s[Sums::asked]), unmet_demand},
           {"energy losses", "MWh/day", energy(Sums::losses), " to the surroundings"},

@@ -25,7 +25,7 @@ SETS = ("simulation.max-step-halvings=0", "simulation.output.interval=0", "parti
         "coupling.convergence.max-iterations=100")
 COARSE = (f"participants.fluid.{FLUID_MESH}", f"participants.mover.{FLUID_MESH}", "participants.solid.mesh-parameters={n_side: 40, n_tip: 8}")
 DAMPED = "participants.solid.time-scheme={type: generalised-alpha}"
-CHANGE = re.compile(r"t = (\S+) s: scheme: implicit from here on: (.*)")
+CHANGE = re.compile(r"t = (\S+) s: the scheme is implicit from now on: (.*)")
 REPEATED = re.compile(r"t = (\S+) s: repeated as an implicit step: (.*)")
 
 
