@@ -26,7 +26,7 @@ GlobalIndex place_at_owner(const Mesh& mesh, Index face) {
     });
     if (same) return k;
   }
-  throw Error("A face of the mesh has other points than the cell that owns it.");
+  throw Error("A face of the mesh has points that the cell that owns it does not have.");
 }
 
 /// Order of interior faces, optionally followed by boundary faces.
