@@ -103,7 +103,7 @@ TEST(Effects, solid_verdicts_turn_at_their_thresholds) {
               HasSubstr("this changes the result by 1.8 % (limit 5 %): justified"));
   EXPECT_THAT(on_geometry(0.51)->sentence,
               HasSubstr("this changes the result by 5.2 % (limit 5 %): matters"));
-  EXPECT_THAT(on_geometry(1e-4, 21.5)->sentence, HasSubstr("0.049 (limit 0.05): justified"));
+  EXPECT_THAT(on_geometry(1e-4, 21.5)->sentence, HasSubstr("4.9 % (limit 5 %): justified"));
   SolidParameters warm = p;
   warm.material.heat.expansion = config::ExpressionText{"2e-5"};
   EXPECT_TRUE(sound(neglected_thermal_strain(warm, 0.01, 0, 24)));

@@ -10,6 +10,7 @@ from couplet.runs.job import RUN_HELP, run_folder
 from couplet.runs.results import Results
 
 MOST_LINES = 14  # of the results at the end of a run, on a terminal of 24 lines
+USUAL_VERDICT = 3  # lines of a verdict for which there is room beside them
 
 
 def declare(parser):
@@ -36,7 +37,8 @@ def rows(results, names, most=10**9):
 
 def ending(results, names):
     """Last lines of a run: its main results and the verdict."""
-    return [*rows(results, names, MOST_LINES), *verdict(results, names)]
+    last = verdict(results, names)
+    return [*rows(results, names, MOST_LINES - max(0, len(last) - USUAL_VERDICT)), *last]
 
 
 def error_of(results, names, judge):
