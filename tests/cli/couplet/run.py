@@ -165,7 +165,7 @@ def side_by_side(folder):
 
 def stop(folder):
     """A run that is stopped goes on to what the undisturbed one leaves."""
-    case = case_in(folder / "a", bin_, end_time=1.2, checkpoints=0.1)
+    case = case_in(folder / "a", bin_, end_time=3, checkpoints=0.1)
     whole = call(bin_, "run", case, "--set", f"simulation.output.folder={folder / 'whole'}", "-q")
     check("undisturbed", whole.returncode == 0, whole.stderr)
     for how in ("couplet stop", "SIGINT", "SIGTERM"):
@@ -176,7 +176,7 @@ def stop(folder):
             second = call(bin_, "run", case)
             check("a second job in the same folder is refused", second.returncode == 2 and "in use by another job" in second.stderr, second.stderr)
             watched = call_here(bin_, "watch", folder / "a/out", "--once")
-            check("watch shows the time", re.search(r"t=[\d.e-]+/1.2 s .* its", watched.stdout), watched.stdout)
+            check("watch shows the time", re.search(r"t=[\d.e-]+/3 s .* its", watched.stdout), watched.stdout)
             stopped = call(bin_, "stop", folder / "a/out")
             check("stop waits for the end and names the checkpoint", stopped.returncode == 0 and "saved as step-" in stopped.stdout, stopped.stdout + stopped.stderr)
         else:
@@ -202,12 +202,12 @@ def stop(folder):
     before = {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in (folder / "a/out").rglob("*") if file.is_file()}
     for words in ((folder / "a/out",), (folder / "a", "-q"), (folder / "a/out", "--set", "simulation.end-time=900 ms")):
         again = call(bin_, "resume", *words)
-        check(f"a finished run is not resumed {words[1:]}", again.returncode == 0 and "this run is finished (t = 1.2 s); to go on: couplet resume " in again.stdout
-              and "--set simulation.end-time='1.8 s'" in again.stdout, again.stdout + again.stderr)
+        check(f"a finished run is not resumed {words[1:]}", again.returncode == 0 and "this run is finished (t = 3 s); to go on: couplet resume " in again.stdout
+              and "--set simulation.end-time='4.5 s'" in again.stdout, again.stdout + again.stderr)
     check("nor changed", before == {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in (folder / "a/out").rglob("*") if file.is_file()})
     shutil.copytree(folder / "a", folder / "longer")
-    longer = call(bin_, "resume", folder / "longer", "-q", "--set", "simulation.end-time=1.25")
-    check("with a later end time it is, quietly", longer.returncode == 0 and "] t=" not in longer.stdout and json.loads((folder / "longer/out/coupler/run.json").read_text())["time"] == 1.25, longer.stdout + longer.stderr)
+    longer = call(bin_, "resume", folder / "longer", "-q", "--set", "simulation.end-time=3.05")
+    check("with a later end time it is, quietly", longer.returncode == 0 and "] t=" not in longer.stdout and abs(json.loads((folder / "longer/out/coupler/run.json").read_text())["time"] - 3.05) < 1e-9, longer.stdout + longer.stderr)
     others = call(bin_, "resume", folder / "stopped/out", "-n", "fluid=2,solid=2")
     check("resume goes on on other ranks", others.returncode == 0 and "done in" in others.stdout, others.stdout[-200:] + others.stderr)
     one, other = ([float(word) for word in (run / "solid/probes.csv").read_text().splitlines()[-1].split(",")] for run in (folder / "whole", folder / "stopped/out"))
@@ -237,7 +237,7 @@ def stop(folder):
     check("resume starts no program of a folder from elsewhere", foreign.returncode == 2 and "give its command again: --with solid=" in foreign.stderr, foreign.stderr)
     record = json.loads((folder / "stopped/out/job.json").read_text())
     (folder / "stopped/out/job.json").write_text(json.dumps({**record, "bin": str(folder), "with": {"fluid": ["sh", "-c", touch]}}))
-    foreign = call(bin_, "resume", folder / "stopped/out", "--set", "simulation.end-time=2 s")
+    foreign = call(bin_, "resume", folder / "stopped/out", "--set", "simulation.end-time=4 s")
     check("nor one that its record names", foreign.returncode == 2 and "--with fluid=" in foreign.stderr, foreign.stderr)
     for program in ("/bin/sh", "../../bin/sh", "sh"):
         hostile.write_text(f'note: "$({touch})"\nsimulation: {{end-time: 1 s, time-step: 1 s}}\nparticipants: {{solid: {{program: {program}}}}}\n')
