@@ -47,6 +47,7 @@ void log_size(const Structure& structure) {
   }
   log::info("the structure extends over {:.4g} x {:.4g} x {:.4g} m, mass {:.4g} kg{}", side.x(), side.y(),
             side.z(), model.mass, slender);
+  if (structure.parameters().mesh) diagnostics::set_mesh_size(side, 3, structure.parameters().mesh_scale);
 }
 
 }  // namespace

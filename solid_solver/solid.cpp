@@ -11,6 +11,7 @@
 #include "common/elasticity/vector_at.hpp"
 #include "common/fv/use.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/probes/place_search.hpp"
 #include "common/io/probes/probe.hpp"
 #include "solid_solver/analysis/modal_analysis.hpp"
 #include "solid_solver/output/quantities.hpp"
@@ -114,8 +115,12 @@ ThermalSolid::ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, So
       heat_(make_heat(mesh_, geometry_, parameters_)),
       series_(context_, mesh_.comm) {
   check_names(mesh_, parameters_);
-  for (const auto& [name, probe] : parameters_.probes)
+  std::vector<Vec3> places;
+  for (const auto& [name, probe] : parameters_.probes) {
     probes_.emplace_back(mesh_, geometry_.points, name, probe.point);
+    places.push_back(probe.point);
+  }
+  io::check_mesh_scale(mesh_, geometry_.points, places, parameters_.mesh_scale);
   check_heat_quantities(*heat_, parameters_.quantities);
   if (!parameters_.output.surfaces.empty())
     surfaces_.emplace(mesh_, geometry_.points, parameters_.output.surfaces, "output.surfaces");

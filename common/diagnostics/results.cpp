@@ -126,6 +126,20 @@ void set_result(Result result) {
     *found = std::move(result);
 }
 
+const char* hint_on_unit(double largest, double mesh_scale) {
+  constexpr double usual = 10;  // [m]; what is drawn in millimeters is rarely smaller
+  return mesh_scale == 1 && largest >= usual ? "(in millimeters? set 'mesh-scale: 0.001')" : "";
+}
+
+void set_mesh_size(const Vec3& size, int dimension, double mesh_scale) {
+  set_result({.name = "size of the mesh",
+              .unit = "m",
+              .values = {size.data(), size.data() + dimension},
+              .error = std::numeric_limits<double>::infinity(),
+              .place = hint_on_unit(size.maxCoeff(), mesh_scale),
+              .rank = 2});
+}
+
 void set_largest(MPI_Comm comm, const char* name, const char* unit, double value, const Vec3& place) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);

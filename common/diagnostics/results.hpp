@@ -24,6 +24,11 @@ struct Result {
 };
 std::string place_text(const Vec3& place);
 
+/// Hint on the unit of a mesh whose largest side [m] is unusual and that has no scale of its own, else "".
+const char* hint_on_unit(double largest, double mesh_scale);
+/// Shows the sides of the mesh [m] among the results, with that hint. On one rank.
+void set_mesh_size(const Vec3& size, int dimension, double mesh_scale);
+
 /// Adds the row of the largest value over the ranks, with its place. Collective.
 void set_largest(MPI_Comm comm, const char* name, const char* unit, double value, const Vec3& place);
 /// Adds a row, or replaces the one of this name. Call it on rank 0.

@@ -64,7 +64,7 @@ void FluidOutput<D>::set_up_points(const mesh::Geometry& geometry) {
     probes_.emplace_back(mesh_, geometry.points, name, probe.point);
     places.push_back(probe.point);
   }
-  io::check_mesh_scale(mesh_, geometry.points, places);
+  io::check_mesh_scale(mesh_, geometry.points, places, p.mesh_scale);
   for (const auto& [name, sample] : p.output.samples)
     samples_.emplace_back(mesh_, geometry.points, name, sample);
   if (!probes_.empty() || !samples_.empty()) point_values_.emplace(fluid_, geometry);

@@ -160,7 +160,7 @@ void HeatError::conclude(diagnostics::Report& report) {
   if (now.steps == 0) return;
   const double level = is_steady_ || !begun_ ? mean(now.cells) : level_, size = size_about(now.cells, level);
   if (!(size > 1e-12 * std::abs(level))) return;  // uniform temperature has no error
-  report.errors.field = "temperature", report.errors.unit = "K";
+  report.errors.field = "differences of temperature", report.errors.unit = "K";
   report.errors.size = size, report.errors.level = level;
   report.errors.mesh = root_mean_square(mesh_, geometry_, 1, gaps()) / size;
   if (is_steady_) return;

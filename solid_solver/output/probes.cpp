@@ -83,9 +83,7 @@ SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : bo
     probes_.push_back({name, std::move(probe), chosen.fields, std::move(materials)});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
-  constexpr double usual = 5;  // [m]; a body drawn in millimeters and read in meters is larger
-  io::check_mesh_scale(body.mesh(), body.geometry().points, places,
-                       body.parameters().mesh_scale == 1 ? usual : 2e3);
+  io::check_mesh_scale(body.mesh(), body.geometry().points, places, body.parameters().mesh_scale);
   std::vector<Index> stressed;
   for (const Watched& watched : probes_)
     if (std::ranges::any_of(watched.fields, is_stress))

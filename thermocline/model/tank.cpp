@@ -244,11 +244,13 @@ void Tank::write_monitors(double time) {
 std::vector<std::string> Tank::finish() {
   if (!report_) return {};
   report_->finish();
-  constexpr double nearly_all = 95;  // [%]
+  constexpr double nearly_all = 95;     // [%]
+  constexpr double whole_day = 86'000;  // [s]; a part of one may be the night
   for (const ReportLine& line :
        parallel::comm_rank(comm_) == 0 ? report_->lines() : std::vector<ReportLine>()) {
     if (*line.meaning) diagnostics::set_result({line.quantity + line.meaning, line.unit, {line.value}});
-    if (std::string_view(line.meaning) == unmet_demand && line.value > nearly_all)
+    if (std::string_view(line.meaning) == unmet_demand && line.value > nearly_all &&
+        report_->results()[ReportSums::duration] > whole_day)
       diagnostics::finding(
           0, {.id = "questionable-plant",
               .number = line.value,

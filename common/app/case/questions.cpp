@@ -15,6 +15,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/config/document.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/io/cut_mesh.hpp"
@@ -202,11 +203,15 @@ int check(const CommandLine& command_line, const Program& program, bool print) {
 namespace {
 
 /// Prints number of cells and size of the mesh. A run reports problems of the mesh.
-void print_mesh(const diagnostics::CaseScene& scene, const Program& program) {
+void print_mesh(const CaseFile& file, const diagnostics::CaseScene& scene, const Program& program) {
   try {
     const mesh::MeshFacts facts = program.mesh(scene.folder);
     const std::span<const double> sides(facts.size.data(), std::size_t(facts.dim));
-    fmt::print("mesh:             {} cells, {:.4g} m\n", facts.cells, fmt::join(sides, " x "));
+    const bool is_scaled =
+        config::text_of(*file.document, "participants." + file.participant + ".mesh-scale").has_value();
+    const std::string hint = diagnostics::hint_on_unit(facts.largest_side(), is_scaled ? 0 : 1);
+    fmt::print("mesh:             {} cells, {:.4g} m{}{}\n", facts.cells, fmt::join(sides, " x "),
+               hint.empty() ? "" : " ", hint);
   } catch (const Error& error) {
     fmt::print("mesh:             unknown: {}\n", error.what());
   }
@@ -255,7 +260,7 @@ int explain(const CommandLine& command_line, const Program& program) {
   for (const diagnostics::EffectChoice& choice : file.choices)
     fmt::print("  {}\n", diagnostics::text(choice));
   print_effects(file, program);
-  if (program.mesh) print_mesh(scene, program);
+  if (program.mesh) print_mesh(file, scene, program);
   fmt::print("{} {}\n", file.coupled ? "whole case:       couplet run" : "launch:           " + program.name,
              command_line.case_file.string());
   return 0;

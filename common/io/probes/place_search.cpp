@@ -238,17 +238,13 @@ std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
 }
 
 void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places,
-                      double largest) {
+                      double mesh_scale) {
+  constexpr double largest = 2e3;       // [m]
   constexpr double smallest = 1e-6;     // [m]
   constexpr double corner = 1.0 / 300;  // between sizes in one case and a confusion of mm and m
   const double size = mesh_size(mesh, points);
   const Vec3 extent = mesh::extent_of(mesh.comm, points).size();
-  if (parallel::comm_rank(mesh.comm) == 0)
-    diagnostics::set_result({.name = "size of the mesh",
-                             .unit = "m",
-                             .values = {extent.data(), extent.data() + mesh.dim},
-                             .error = std::numeric_limits<double>::infinity(),
-                             .rank = 2});
+  if (parallel::comm_rank(mesh.comm) == 0) diagnostics::set_mesh_size(extent, mesh.dim, mesh_scale);
   if (size < smallest || extent.maxCoeff() > largest)
     diagnostics::finding(
         parallel::comm_rank(mesh.comm),

@@ -63,8 +63,8 @@ class PlaceSearch {
 };
 
 /// Shows the extents of the mesh among the results and warns about one in millimeters that is read in meters: some extent is above
-/// `largest` [m], or all `places` of the YAML (probes) lie within 1/300 of its size. Collective.
+/// 2 km, or all `places` of the YAML (probes) lie within 1/300 of its size. Collective.
 void check_mesh_scale(const mesh::Mesh& mesh, std::span<const Vec3> points, std::span<const Vec3> places,
-                      double largest = 2e3);
+                      double mesh_scale);
 
 }  // namespace couplet::io

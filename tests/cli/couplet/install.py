@@ -71,7 +71,7 @@ def empty(folder, home):
     """Nothing was built: the command is installed all the same, and says what is missing."""
     subprocess.run(["cmake", "-S", ROOT, "-B", folder / "build", "-DCOUPLET_TESTS=OFF"], check=True, capture_output=True)
     said = subprocess.run(["cmake", "--install", folder / "build", "--prefix", folder / "prefix"], capture_output=True, text=True)
-    check("cmake --install after any build", said.returncode == 0 and "CMake Warning" not in said.stderr, said.stderr)
+    check("cmake --install after any build", said.returncode == 0 and said.stderr.count("CMake Warning") == said.stderr.count("scripts/build release couplet_client precice_couplet") == 2, said.stderr)
     doctor = run(folder / "prefix", home, "couplet", "doctor", "--quick")
     check("the doctor names what is missing", doctor.returncode == 1 and "NO  coupler" in doctor.stdout, doctor.stdout + doctor.stderr)
     wrong = run(folder / "prefix", home, "couplet", "run", folder / "prefix/share/couplet/configs/cavity")

@@ -111,9 +111,9 @@ TEST(ErrorPartsTest, results_have_the_error_of_their_field_and_of_no_other) {
     text += r.name + ": " + r.text + "\n";
   EXPECT_EQ(text,
             "equivalent stress: 253.5 MPa +- 5.1 (2 %)\n"
-            "tip: 0.1234  0 mm +- 0.003 (2.4 %)\n"
+            "tip: 123.4  0 um +- 3 (2.4 %)\n"
             "reaction root: 5.6  0 kN +- unknown\n"
-            "largest displacement: 0.2 mm +- 0.003 (1.5 %)\n")
+            "largest displacement: 200 um +- 3 (1.5 %)\n")
       << "the error of a motion counts at its largest size";
 }
 

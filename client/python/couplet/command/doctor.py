@@ -50,7 +50,11 @@ def libraries():
     kept = {"couplet_client": ("client/libcouplet_client.a", "lib/libcouplet_client.a")}
     kept["precice_couplet"] = ("precice/lib/libprecice.so", "lib/couplet/precice/lib/libprecice.so")
     missing = [target for target, files in kept.items() if not any((places.build() / file).exists() for file in files)]
-    yield "libraries", f"not there: scripts/build release {' '.join(missing)}" if missing else "all there", True
+    yield "libraries", (
+        f"not there, needed by own C++ programs and those of preCICE: scripts/build release {' '.join(missing)}"
+        if missing
+        else "all there"
+    ), True
 
 
 def surroundings():
