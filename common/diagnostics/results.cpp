@@ -128,7 +128,7 @@ void set_result(Result result) {
 
 const char* hint_on_unit(double largest, double mesh_scale) {
   constexpr double usual = 10;  // [m]; what is drawn in millimeters is rarely smaller
-  return mesh_scale == 1 && largest >= usual ? "(in millimeters? set 'mesh-scale: 0.001')" : "";
+  return mesh_scale == 1 && largest >= usual ? "(if in mm: 'mesh-scale: 0.001')" : "";
 }
 
 void set_mesh_size(const Vec3& size, int dimension, double mesh_scale) {

@@ -196,7 +196,7 @@ PlaceReport compare_places(MPI_Comm comm, const Side& from, const Side& to, bool
       const Vec3& p = places[k];
       report.problem = fmt::format(
           "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest point of '{}', where "
-          "the face size is {:.3g} m: the two interfaces are not the same surface. Check the meshes and which "
+          "the face size is {:.3g} m: the two interfaces are not the same surface. Check the meshes, their 'mesh-scale' and which "
           "patches are of type interface.",
           p.x(), p.y(), p.z(), to.name, distance, from.name, size);
     }
