@@ -78,13 +78,6 @@ def pack(job):
     return f"{sum(f.stat().st_size for f in clone.rglob('*.pack')) / 1e6:.2f} MB", True
 
 
-def lines_of_programs(job, most):
-    found = {}
-    for f, text in texts(job).items():
-        found[f.split("/")[0]] = found.get(f.split("/")[0], 0) + len(text.splitlines())
-    return f"{sum(found.values())}: {worst(found, 7)}", sum(found.values()) <= most
-
-
 TEN = (
     ("cook", (".mesh-parameters={n: 64, shape: 0}",), True),
     ("elliptic-plate", (), True),
