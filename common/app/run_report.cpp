@@ -68,10 +68,12 @@ std::string json(const std::vector<diagnostics::Result>& results) {
     for (const double v : r.values)
       values += fmt::format("{}{}", values.empty() ? "" : ", ",
                             std::isfinite(v) ? fmt::format("{:.9g}", v) : "null");
+    std::string errors;
+    for (const double e : r.errors) errors += fmt::format("{}{:.6g}", errors.empty() ? "" : ", ", e);
     out += fmt::format(
-        "{}\n    {{\"name\": {}, \"values\": [{}], \"unit\": {}, \"error\": {}, \"place\": {}, \"rank\": {}, \"text\": {}}}",
+        "{}\n    {{\"name\": {}, \"values\": [{}], \"unit\": {}, \"error\": {}, \"errors\": [{}], \"place\": {}, \"rank\": {}, \"text\": {}}}",
         out.empty() ? "" : ",", quoted(r.name), values, quoted(r.unit),
-        std::isfinite(r.error) ? fmt::format("{:.6g}", r.error) : "null", quoted(r.place), r.rank,
+        std::isfinite(r.error) ? fmt::format("{:.6g}", r.error) : "null", errors, quoted(r.place), r.rank,
         quoted(r.text));
   }
   return "[" + out + (out.empty() ? "]" : "\n  ]");

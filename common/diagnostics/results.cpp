@@ -92,17 +92,25 @@ double largest_of(const std::vector<double>& values, double level = 0) {
   return largest;
 }
 
+std::string share_of_value(double error) {
+  return error < 1 ? fmt::format("{:.2g} %", 100 * error) : "useless";
+}
+
 /// Values below `nothing` are 0.
 std::string text(const Result& r, double nothing) {
   const double largest = largest_of(r.values);
   const auto [factor, unit] = prefix_of(r.unit, largest > nothing ? largest : 0);
   std::string line;
-  for (const double v : r.values)
+  for (std::size_t i = 0; i < r.values.size(); ++i) {
+    const double v = r.values[i];
     line += fmt::format("{}{:.5g}", line.empty() ? "" : "  ",
                         std::abs(v) > nothing || std::isnan(v) ? v * factor : 0);
+    if (i < r.errors.size()) line += fmt::format(" (+- {})", share_of_value(r.errors[i]));
+  }
   if (unit != "1" && unit != "-" && !unit.empty()) line += " " + unit;
+  if (!r.errors.empty()) return line;
   if (std::isfinite(r.error)) {
-    const std::string share = r.error < 1 ? fmt::format("{:.2g} %", 100 * r.error) : "useless";
+    const std::string share = share_of_value(r.error);
     line += r.unit == "Hz" || largest <= nothing
                 ? " +- " + share
                 : fmt::format(" +- {:.2g} ({})", r.error * largest * factor, share);
@@ -124,6 +132,14 @@ void set_result(Result result) {
     set_rows().push_back(std::move(result));
   else
     *found = std::move(result);
+}
+
+void set_errors(const std::string& name, std::vector<double> errors) {
+  const auto found = std::ranges::find(set_rows(), name, &Result::name);
+  if (found == set_rows().end() || errors.empty()) return;
+  found->error = std::ranges::max(errors);
+  errors.resize(std::min(errors.size(), found->values.size()));
+  found->errors = std::move(errors);
 }
 
 const char* hint_on_unit(double largest, double mesh_scale) {

@@ -20,6 +20,7 @@ struct Result {
   double error = std::numeric_limits<double>::quiet_NaN();
   std::string place{};  ///< "at (1, 0, 0) m"
   int rank = 0;  ///< 0: the case asks for it, 1: follows from what it asks for, 2: shows how the run went
+  std::vector<double> errors{};  ///< of each value, relative to it; empty where `error` holds for all of them
   std::string text{};  ///< values with unit, error and place, as the run prints them; from results()
 };
 std::string place_text(const Vec3& place);
@@ -33,6 +34,8 @@ void set_mesh_size(const Vec3& size, int dimension, double mesh_scale);
 void set_largest(MPI_Comm comm, const char* name, const char* unit, double value, const Vec3& place);
 /// Adds a row, or replaces the one of this name. Call it on rank 0.
 void set_result(Result result);
+/// Sets the error of each value of a row, relative to that value, and of values that it does not show. Call it on rank 0.
+void set_errors(const std::string& name, std::vector<double> errors);
 /// Storage for the last row of a table whose columns ("tip x [m]") are results, such as probes.csv. nullptr
 /// for any other table. Components of a vector share a row.
 std::vector<double>* results_of_table(const std::string& file, const std::vector<std::string>& columns);

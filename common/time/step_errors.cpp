@@ -35,7 +35,7 @@ void StepErrors::add(const Inputs& seen, int steps) {
     swing = std::ilogb(frequency);
     amplitude = below_ / std::pow(frequency, seen.order);
   }
-  Sum& sum = errors_[{swing, std::ilogb(rate_)}];
+  Sum& sum = errors_[{swing, std::ilogb(fading())}];
   sum.all += steps * seen.error, sum.kept += steps * seen.error;
   amplitude_[swing] = std::max(amplitude_[swing], amplitude);
 }
@@ -45,7 +45,8 @@ double StepErrors::over_size() const {
   std::map<int, double> left;
   for (const auto& [key, sum] : errors_) {
     const auto [swing, level] = key;
-    const double shrunk = level >= std::ilogb(rate_) ? std::min(1.0, rate_ / std::ldexp(1.0, level)) : 1.0;
+    const double shrunk =
+        level >= std::ilogb(fading()) ? std::min(1.0, fading() / std::ldexp(1.0, level)) : 1.0;
     left[swing] += std::min(sum.all * shrunk, sum.kept);
   }
   double all = 0;

@@ -15,8 +15,9 @@ namespace couplet::time {
 /// Remaining effect of the local errors of all steps so far on the current solution.
 ///
 /// An error propagates by the equation linearized about the solution, and so does the solution's own rate of
-/// change if the equation does not depend on time. An error made at step k has therefore decayed like the
-/// rate of change, |u'(now)| / |u'(t_k)|. Errors on the way to a steady state are forgotten, those of an
+/// change if the equation does not depend on time; in a linear equation, its higher derivatives do, too. An error
+/// C dt^{p+1} u^(p+1)(t_k) made at step k has therefore become C dt^{p+1} u^(p+1)(now): it has decayed like that
+/// derivative, or like the rate of change if only that is known. Errors on the way to a steady state are forgotten, those of an
 /// oscillation add up. Known damping may remove them faster while loads maintain the solution; the smaller
 /// remainder counts. No error is assumed to grow or to exceed its cause: the error C dt^{p+1} u^(p+1) of
 /// order p belongs to an oscillation of frequency w = |u^(p+1)| / |u^(p)| and amplitude |u^(p)| / w^p, so it
@@ -63,7 +64,9 @@ class StepErrors {
       numbers(all, kept);
     }
   };
-  // Sums by the binary logarithms of the frequency and of the rate at which they were made.
+  /// Largest recent |u^(p+1)|, or |u'| if that is not known.
+  double fading() const { return highest_ > 0 ? highest_ : rate_; }
+  // Sums by the binary logarithms of the frequency and of that derivative when they were made.
   std::map<std::pair<int, int>, Sum> errors_;
   std::map<int, double> amplitude_;  // largest, by the binary logarithm of the frequency
   // Largest recent values, since an oscillation passes through zero rate and zero size.

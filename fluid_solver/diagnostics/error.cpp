@@ -41,10 +41,9 @@ struct LinearFit {
   Eigen::Matrix<double, D + 1, D> values = Eigen::Matrix<double, D + 1, D>::Zero();
   void add(const Vec<D>& d, const Vec<D>& value) {
     Eigen::Matrix<double, D + 1, 1> row;
-    const double length = d.norm();
-    row << 1, d / length;
-    moments += row * row.transpose() / (length * length);
-    values += row * value.transpose() / (length * length);
+    row << 1, d;
+    moments += row * row.transpose() / d.squaredNorm();
+    values += row * value.transpose() / d.squaredNorm();
   }
   /// Value of the fit in the cell itself.
   Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/diagnostics/results.hpp"
 #include "plate_modal/diagnostics/motion.hpp"
 #include "plate_modal/diagnostics/view.hpp"
 #include "plate_modal/model/midsurface.hpp"
@@ -56,15 +57,19 @@ class MeshOfModes final : public diagnostics::Diagnostic {
     report.errors.field = is_modal ? "frequencies" : "displacement",
     report.errors.unit = is_modal ? "Hz" : "m";
     report.errors.mesh = mesh_gap();
+    std::vector<double> of_frequencies;
+    for (const double gap : gaps_) of_frequencies.push_back(frequency_error(gap));
+    diagnostics::set_errors("frequencies", std::move(of_frequencies));
   }
 
  private:
+  /// Half the error of the stiffness of a mode.
+  double frequency_error(double gap) const { return with_corners(softness(gap) / 2, gap, view_.built.kinks); }
   /// Error of the stiffness of the modes, weighted by their motion. In motion the whole gap counts, because errors of
-  /// phases add; in a modal analysis half of that of the highest mode, as its frequency.
+  /// phases add. In a modal analysis it is the error of the highest frequency.
   double mesh_gap() const {
     if (gaps_.empty()) return unknown;
-    if (view_.parameters.analysis == Parameters::Analysis::modal)
-      return with_corners(softness(gaps_.back()) / 2, gaps_.back(), view_.built.kinks);
+    if (view_.parameters.analysis == Parameters::Analysis::modal) return frequency_error(gaps_.back());
     double all = 0, apart = 0;
     for (std::size_t m = 0; m < gaps_.size(); ++m) {
       const double moved = motion_ ? motion_->moved(m) : view_.state.q[m] * view_.state.q[m];

@@ -160,11 +160,11 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
   return modes;
 }
 
-double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
+std::vector<double> mode_errors(const SolidBody& body, const modes::EigenModes& modes) {
   const mesh::Mesh& mesh = body.mesh();
-  double most = 0;
+  std::vector<double> errors;
   for (std::size_t m = 0; m < modes.shape.size(); ++m) {
-    if (!(modes.eigenvalue[m] > 0)) continue;  // a rigid motion
+    if (!(modes.eigenvalue[m] > 0)) continue;  // a rigid-body mode
     const std::vector<double>& shape = modes.shape[m];
     const MissedStrain of_mesh =
         missed_strain(body, shape, {}, [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose())); });
@@ -175,9 +175,9 @@ double mode_error(const SolidBody& body, const modes::EigenModes& modes) {
         modes.eigenvalue[m];
     const double missed =
         std::max({of_mesh.recovered, of_mesh.variation, first_order_part * std::sqrt(of_mesh.recovered)});
-    most = std::max(most, share * missed);
+    errors.push_back(0.5 * share * missed);
   }
-  return 0.5 * most;
+  return errors;
 }
 
 modes::ModalModel modal_model(const SolidProblem& problem, const modes::EigenModes& modes) {

@@ -29,10 +29,10 @@ std::optional<SolidProblem> vibration(const SolidBody& body);
 modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
                               std::span<const double> cell_mass, int n);
 
-/// Bound of the relative errors of the frequencies due to the mesh: half that of the strain energies of the
-/// mass-normalised shapes. Face strains and recovered ones differ by a strain g and by the energy g^2, which falls faster
+/// Bound of the relative error of each frequency above 0 due to the mesh: half that of the strain energy of its
+/// mass-normalised shape. Face strains and recovered ones differ by a strain g and by the energy g^2, which falls faster
 /// with the cell size than the error of the frequencies: the larger of this energy and of a share of g counts. Collective.
-double mode_error(const SolidBody& body, const modes::EigenModes& modes);
+std::vector<double> mode_errors(const SolidBody& body, const modes::EigenModes& modes);
 
 /// Surface values of these modes on rank 0 (empty elsewhere), vertices by ascending point_id and faces by
 /// ascending boundary_id. A plane body has a depth of 1 m and a third component of 0. Collective.

@@ -85,7 +85,7 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
   model.mass = 0;
   for (const double m : cell_masses(body_)) model.mass += m;
   model.mass = parallel::sum(mesh.comm, model.mass);
-  const double error = mode_error(body_, found);
+  std::vector<double> errors = mode_errors(body_, found);
   write_shapes("mode-shapes", "mode", found.shape);
   if (parallel::comm_rank(mesh.comm) != 0) return;
   io::Series series(context_.output_folder / "modes.csv",
@@ -100,11 +100,11 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
   if (mesh.dim == 3) couplet::modes::write_modes(context_.output_folder / "modes.h5", model, "");
   const auto first = std::ranges::find_if(model.frequency, [](double f) { return f > 0; });
   const std::ptrdiff_t rigid = first - model.frequency.begin(), left = model.frequency.end() - first;
-  diagnostics::set_result(
-      {fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid motions", rigid) : ""),
-       "Hz",
-       {first, first + std::min<std::ptrdiff_t>(5, left)},
-       error});
+  const double error = errors.empty() ? 0 : std::ranges::max(errors);
+  const std::string name =
+      fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid motions", rigid) : "");
+  diagnostics::set_result({name, "Hz", {first, first + std::min<std::ptrdiff_t>(5, left)}});
+  diagnostics::set_errors(name, std::move(errors));
   log::info(
       "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv, shapes in mode-shapes.xdmf{}; max residual {:.1e}; estimated error due "
       "to the mesh up to {:.2g} %",

@@ -14,6 +14,9 @@ import tempfile
 from scene import ROOT
 from checks import check, end  # noqa: E402
 
+sys.path.append(str(ROOT / "tests/coupling/precice"))
+from oscillators_xml import configuration  # noqa: E402
+
 SUITE = sys.argv.pop() if sys.argv[-1] in ("bookworm", "trixie") else "bookworm"
 build, what = pathlib.Path(sys.argv[1]), (sys.argv[2:] or ["package"])[0]
 MIRROR = "http://deb.debian.org/debian"
@@ -102,6 +105,23 @@ def used(system, user, entry):
         check(f"man {page}", page in system.must(f"man {page}", user=user).lower())
 
 
+def joined(system, user, entry):
+    """Programs of one's own, compiled against the package: C++ and Python beside the fluid, and two on preCICE's interface."""
+    home = f"/home/{user}"
+    system.must("DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends g++ pkg-config libopenmpi-dev python3-mpi4py")
+    for file in ("client/examples/spring_cylinder.cpp", "tests/coupling/precice/oscillators.cpp"):
+        shutil.copy(ROOT / file, system.folder / home[1:])
+    (system.folder / home[1:] / "precice-config.xml").write_text(configuration("serial-implicit"))
+    system.must("chmod a+rw *.cpp *.xml", folder=home)
+    system.must("g++ -std=c++20 spring_cylinder.cpp -o spring_cylinder $(pkg-config --cflags --libs couplet_client)", user=user, folder=home)
+    for words in ("new cylinder --from spring-cylinder --end-time '0.05 s'", "run cylinder -q", "run cylinder -q --set simulation.output.folder=out-cpp --with body='./spring_cylinder body 2 0 8 0.01'"):
+        system.must(f"{entry} {words}", user=user, folder=home)
+    found = system.must("PKG_CONFIG_PATH=$(dirname $(find /usr/lib -path '*couplet/precice*' -name libprecice.pc)) pkg-config --cflags --libs libprecice", user=user).strip()
+    system.must(f"g++ -std=c++20 oscillators.cpp -o oscillators $(pkg-config --cflags mpi-cxx) {found} $(pkg-config --libs mpi-cxx)", user=user, folder=home)
+    for words in ("import precice-config.xml", "run precice-config.yaml -q --with Left='./oscillators Left precice-config.xml 1' --with Right='./oscillators Right precice-config.xml 1'"):
+        system.must(f"{entry} {words}", user=user, folder=home)
+
+
 def follow(maker):
     """The demo, and all commands of the quick start in one shell, in a checkout with its build."""
     maker.must("apt-get install -q -y --no-install-recommends sudo && echo 'APT::Get::Assume-Yes \"true\";' > /etc/apt/apt.conf.d/yes")
@@ -139,6 +159,8 @@ with tempfile.TemporaryDirectory(prefix="couplet-chroot-") as scratch:
     depends = subprocess.run(["dpkg", "-f", package, "Depends"], capture_output=True, text=True).stdout
     check("the package names the libraries that it needs", all(name in depends for name in ("libpetsc", "libopenmpi", "libhdf5", "python3-yaml")), depends)
     system = System(folder / "system", base)
-    used(system, *make(system, second, package))
+    user, entry = make(system, second, package)
+    used(system, user, entry)
+    joined(system, user, entry)
     removed(system)
 end()
