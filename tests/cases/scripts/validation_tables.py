@@ -50,7 +50,7 @@ with tempfile.TemporaryDirectory() as name:
             Bar("new", "<= 1", None), Bar("other mesh", "<= 1", None, but="a finer mesh"), Bar("shown", "reported", None)]
     rows = {"old": table.Row("<= 1", "0 | 1", "met", first), "rebased": table.Row("<= 1", "0", "met", f"{measured}, script of x"),
             "lost": table.Row("<= 1", "0", "met", lost), "reworded": table.Row("<= 1", "0", "met", landed),
-            "other mesh": table.Row("<= 1 (not as first asked: a finer mesh)", "0", "met", landed),
+            "other mesh": table.Row("<= 1 (differs from the original request: a finer mesh)", "0", "met", landed),
             "shown": table.Row("reported", "5", "met", landed)}
     file = folder / "table.md"
     table.write(file, "x", list(rows.items()))
