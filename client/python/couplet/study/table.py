@@ -106,7 +106,7 @@ def set_errors(rows, quantities, others=()):
                 finest, best = min(limits, key=lambda pair: (-pair[0].point.size, pair[1].gci))
                 reference = best.value
                 word = (
-                    f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by"
+                    f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertainty"
                     f" {100 * best.gci / (quantity.size(best.value, finest) or 1):.2g} %)"
                 )
         elif reference == "finest":
