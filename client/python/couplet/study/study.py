@@ -120,9 +120,9 @@ class Study:
         where, asked = machine(), self.case.asked.resolve()
         versions = sorted({r.record.version for r in rows})
         report.text(
-            f"Of {len(rows)} runs, {sum(not r.good for r in rows)} failed. They were measured at {', '.join(versions)} on"
-            f" {where['processor']} with {where['cores']} cores. Times are the {pictures.CLOCKS[self.clock]}. The table is"
-            " in `runs.csv`. Repeat the study with `couplet study"
+            f"Of {len(rows)} runs, {sum(not r.good for r in rows)} failed. They were measured at"
+            f" {', '.join(versions)} on {where['processor']} with {where['cores']} cores. Times are the"
+            f" {pictures.CLOCKS[self.clock]}. The table is in `runs.csv`. Repeat the study with `couplet study"
             f" {asked.relative_to(ROOT) if asked.is_relative_to(ROOT) else asked.name}`."
         )
         others = self.others(peers)
@@ -143,7 +143,8 @@ class Study:
                 "Cost as a function of the size; the exponents are those of the three finest runs.",
             )
         report.picture(
-            pictures.phases(f"{self.title}: cost by phase", rows, self.out / "phases.png"), "Share of the time by phase."
+            pictures.phases(f"{self.title}: cost by phase", rows, self.out / "phases.png"),
+            "Share of the time by phase.",
         )
         self.all_runs(report, rows)
         return report.write(self.out)
@@ -191,8 +192,8 @@ class Study:
         found = estimates.of(rows, quantity)
         if len(found) >= 3:
             report.text(
-                "The error estimated from each run and runs that are no finer is within a factor of 2 of the true error for "
-                f"{estimates.inside(found)} of {len(found)} runs."
+                "The error estimated from each run and runs that are no finer is within a factor of 2 of the true"
+                f" error for {estimates.inside(found)} of {len(found)} runs."
             )
             report.picture(
                 pictures.scatter(
@@ -220,7 +221,9 @@ class Study:
                         ),
                     )
                 )
-            report.text("Richardson extrapolation of the three finest runs, and grid convergence index (GCI) of the finest run:")
+            report.text(
+                "Richardson extrapolation of the three finest runs, and grid convergence index (GCI) of the finest run:"
+            )
             report.table(("series", "finest", "extrapolated", "observed order", "GCI"), lines)
 
     def all_runs(self, report, rows):
