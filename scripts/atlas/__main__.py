@@ -40,9 +40,12 @@ def page(maps, folder):
         counts = collections.Counter(s.outcome for s in squares.values())
         if squares:
             text += f"\n## {m.title}\n\n{m.about}\n\n"
+            found = [f"{n} {('are ' if n > 1 else 'is ') * ('with' in o)}{o}" for o, n in sorted(counts.items())]
+            shown = " and ".join(filter(None, (", ".join(found[:-1]), found[-1])))
+            x, y = (("" if a["label"][0].isupper() else "the ") + a["label"] for a in (m.x, m.y))
             text += (
-                f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}:"
-                f" [table](stability/{m.name}.csv). Columns: {m.x['label']}; rows: {m.y['label']}.*\n"
+                f"*The tables show the {m.criterion}. Of {len(squares)} runs, {shown}"
+                f" ([table](stability/{m.name}.csv)). The columns vary {x}, and the rows vary {y}.*\n"
             )
             text += tables(m, squares)
         if squares and m.given.get("without-halving"):
