@@ -509,7 +509,7 @@ def write(args):
              f"{'-' if one['with'] is None else format(one['with'] / one['truth'], '.2f')} |" for name, one in found.items()]
     PAGE.write_text(f"""# Validation: ablation of the error estimators
 
-**Measured on {datetime.date.today()}.** Written by `benchmarks/ablation.py` (programs of {version}) from {len(found)} runs of {len({p for one in every for p in one['programs']})} programs. Each run takes fractions of a second, and its true error is known
+**Measured on {datetime.date.today()}.** This page was written by `benchmarks/ablation.py` (programs of {version}) from {len(found)} runs of {len({p for one in every for p in one['programs']})} programs. Each run takes fractions of a second, and its true error is known
 from closed forms, published values, or the same case with a fine mesh or step. The estimated error is the sum of the mesh, step, solver and coupling parts of a run, or the part named in
 the last table. Each estimator was switched off in all runs of its program. {coverage(every)} of {len(every)} estimates are within a factor of 2 of the true error, and {sum(is_near(one['with'], one['truth'], 3) for one in every)} are within a factor of 3.
 

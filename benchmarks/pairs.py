@@ -209,7 +209,7 @@ def write(arguments):
               "ratios of the turns, with minimum and maximum in parentheses.", "", "| case | before | now | ratio of now to before | commits |", "|---|---|---|---|---|",
               *(timed_row(name, timed[name]) for name in TIMED if name in timed)] if timed else []
     note = PAGE.read_text().partition("\n## ")[2] if PAGE.exists() else ""
-    PAGE.write_text(f"# Instructions compared with an older commit\n\n**Counted on {datetime.date.today()}.** Written by `benchmarks/pairs.py write`. The numbers are millions of instructions of one process each, counted by valgrind, without those inside MPI.\n\n"
+    PAGE.write_text(f"# Instructions compared with an older commit\n\n**Counted on {datetime.date.today()}.** This page was written by `benchmarks/pairs.py write`. The numbers are millions of instructions of one process each, counted by valgrind, without those inside MPI.\n\n"
                     "| case | program | unit | before | now | change | commits |\n|---|---|---|---|---|---|---|\n" + "\n".join(lines) + "\n" + (f"\n## {note}" if note else ""))
 
 

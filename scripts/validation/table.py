@@ -140,11 +140,8 @@ def write(file, name, table, note="", age=""):
     text = (
         f"# Validation: {name}\n\n"
         + (f"**{age}**\n\n" if age else "")
-        + f"Written by `scripts/validate {name} --write` on "
-    )
-    text += (
-        f"{platform.machine()}: {counts(row.verdict for _, row in table)}. The last column names the commit that was"
-        " measured.\n\n"
+        + f"This page was written by `scripts/validate {name} --write` on {platform.machine()}"
+        + f" ({counts(row.verdict for _, row in table)}). The last column names the commit that was measured.\n\n"
     )
     text += f"{note}\n\n" if note else ""
     text += "| quantity | wanted | got | | commit |\n|---|---|---|---|---|\n"

@@ -165,7 +165,8 @@ class Study:
             }
             front = fits.pareto(list(named))
             report.text(
-                "Fastest runs for their error (Pareto front" + (", including other programs):" if others else "):")
+                "The fastest runs for their error (Pareto front"
+                + (", including other programs) are:" if others else ") are:")
             )
             report.table(("run", "seconds", "error"), [(named[p], p[0], p[1]) for p in front])
         report.picture(
@@ -175,7 +176,10 @@ class Study:
             f"Error of {name} as a function of the time.",
         )
         if others:
-            report.text("Other programs on the same case, with processor seconds of the whole process on one core:")
+            report.text(
+                "Other programs gave these results for the same case, in processor seconds of the whole process on one"
+                " core:"
+            )
             report.table(("program", "seconds", "error"), [(who, *point) for who, points in others for point in points])
         if not self.axes.refining:
             return
@@ -222,7 +226,8 @@ class Study:
                     )
                 )
             report.text(
-                "Richardson extrapolation of the three finest runs, and grid convergence index (GCI) of the finest run:"
+                "The Richardson extrapolation of the three finest runs and the grid convergence index (GCI) of the"
+                " finest run are:"
             )
             report.table(("series", "finest", "extrapolated", "observed order", "GCI"), lines)
 
