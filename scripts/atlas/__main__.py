@@ -42,16 +42,19 @@ def page(maps, folder):
             text += f"\n## {m.title}\n\n{m.about}\n\n"
             found = [f"{n} {('are ' if n > 1 else 'is ') * ('with' in o)}{o}" for o, n in sorted(counts.items())]
             shown = " and ".join(filter(None, (", ".join(found[:-1]), found[-1])))
-            x, y = (("" if a["label"][0].isupper() else "the ") + a["label"] for a in (m.x, m.y))
+            shown = (
+                f"Of {len(squares)} runs, {shown}" if len(found) > 1 else f"All {len(squares)} runs are {max(counts)}"
+            )
+            x, y = (("" if "'s " in a["label"] else "the ") + a["label"] for a in (m.x, m.y))
             text += (
-                f"*The tables show the {m.criterion}. Of {len(squares)} runs, {shown}"
+                f"*The tables show the {m.criterion}. {shown}"
                 f" ([table](stability/{m.name}.csv)). The columns vary {x}, and the rows vary {y}.*\n"
             )
             text += tables(m, squares)
         if squares and m.given.get("without-halving"):
             text += (
-                "\n*These runs did not halve failed steps, as the default settings do. Points that stopped may be"
-                " stable now.*\n"
+                "\n*In these runs, failed steps were not halved, although the default settings do so. Points that"
+                " stopped may therefore be stable with default settings.*\n"
             )
     if lost := atlas.missing_tests():
         raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")
