@@ -155,7 +155,11 @@ class Study:
         report.text(
             "This quantity is itself an error."
             if against == table.ITSELF
-            else f"Errors are relative to this reference: {against}."
+            else (
+                f"Errors are not available, because {against}."
+                if against.startswith("no ")
+                else f"Errors are relative to {against}."
+            )
         )
         costs = [(getattr(r.record, self.clock), r.errors[name], r) for r in rows if name in r.errors]
         if costs:
