@@ -144,7 +144,7 @@ def write(file, name, table, note="", age=""):
         + f" ({counts(row.verdict for _, row in table)}). The last column names the commit that was measured.\n\n"
     )
     text += f"{note}\n\n" if note else ""
-    text += "| quantity | wanted | got | | commit |\n|---|---|---|---|---|\n"
+    text += "| quantity | criterion | measured | | commit |\n|---|---|---|---|---|\n"
     for quantity, row in table:
         cells = (quantity, row.wanted, row.got, row.verdict, row.commit)
         text += "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |\n"
