@@ -70,12 +70,12 @@ namespace { [[maybe_unused]] bool is_off_(std::string_view name) { const char* o
 """
 # Why one that moves the coverage by less than three points stays.
 KEPT = {
-    "solid_solver: recovered strains": "the only estimate of a motion, beside a seat and at large strain",
-    "solid_solver: variation within quadrilaterals": "no reconstruction shows it: the ring 1.2 of the truth instead of 0.17",
+    "solid_solver: recovered strains": "the only estimate for dynamic runs, with a contact seat and at large strain",
+    "solid_solver: variation within quadrilaterals": "no reconstruction includes this error: the estimate for the ring is 1.2 instead of 0.17 times the true error",
     "solid_solver: errors of the steps": "the only estimate of this part",
     "solid_solver: residual of the solver": "the only estimate of this part",
     "solid_solver: quadratics of the neighbors (stress)": "the only estimate of this part",
-    "fluid_solver: residual of the pressure": "the only estimate of this part; it sees the last step alone, which is too little for flows that begin",
+    "fluid_solver: residual of the pressure": "the only estimate of this part; it is based on the last step alone, which is too little for flows that start",
     "plate_modal: corners against means": "the only estimate of this part",
     "plate_modal: errors of the steps": "the only estimate of this part",
     "coupler: contraction of the iteration": "the only estimate of this part",
@@ -451,8 +451,8 @@ def speaks(one, switch):
 
 def estimators(found):
     every = list(found.values())
-    lines = ["| estimator | runs that it could change, that it changes | all runs within a factor of 2: with, without | points | least estimate over the truth where it changes it: with, without "
-             "| more than 4 times the truth: with, without | of the time | below three points and kept for |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| estimator | runs that it could change, that it changes | runs within a factor of 2: with, without it | difference [points] | smallest ratio of estimate to true error "
+             "in the changed runs: with, without it | runs above 4 times the true error: with, without it | share of the time | reason to keep it if below three points |", "|---|---|---|---|---|---|---|---|"]
     for program, switches in SWITCHES.items():
         for switch in switches:
             name = f"{program}: {switch}"
@@ -479,7 +479,7 @@ def shares(found):
             spent_on[name] = spent_on.get(name, 0) + seconds
             whole[name] = whole.get(name, 0) + one["time"]["run"]
             most[name] = max(most.get(name, (0, "")), (seconds / one["time"]["run"], run))
-    lines = ["| diagnostic | of the time of its runs | largest, and where |", "|---|---|---|"]
+    lines = ["| diagnostic | share of the time of its runs | largest share, and the run |", "|---|---|---|"]
     return lines + [f"| {n} | {100 * spent_on[n] / whole[n]:.1f} % | {100 * most[n][0]:.1f} %, {most[n][1]} |" for n in sorted(spent_on, key=lambda n: -spent_on[n] / whole[n])
                     if most[n][0] > 0.01]
 
@@ -495,7 +495,7 @@ def findings():
                 spoken.append(f"| {name} | {program} | {len(cases['note'])} | {len(cases['warning'])} | {len(cases['wrong'])} |")
             else:
                 silent.append(name)
-    return len(golden), "\n".join(["| finding | declared in | cases with a note | a warning | wrong |", "|---|---|---|---|---|", *spoken]), ", ".join(silent)
+    return len(golden), "\n".join(["| finding | declared in | cases with a note | cases with a warning | cases with `wrong` |", "|---|---|---|---|---|", *spoken]), ", ".join(silent)
 
 
 def write(args):
@@ -504,18 +504,19 @@ def write(args):
     unknown = [name for name, one in found.items() if one["with"] is None]
     n_golden, spoken, silent = findings()
     version = text_of("git", "-C", ROOT, "rev-parse", "--short=8", "HEAD").strip()
-    runs = ["| run | part | estimate | truth | estimate over the truth |", "|---|---|---|---|---|"]
+    runs = ["| run | part | estimated error | true error | ratio |", "|---|---|---|---|---|"]
     runs += [f"| {name} | {one['part']} | {one['with'] if one['with'] is None else format(one['with'], '.3g')} | {one['truth']:.3g} | "
              f"{'-' if one['with'] is None else format(one['with'] / one['truth'], '.2f')} |" for name, one in found.items()]
     PAGE.write_text(f"""# Validation: ablation of the error estimators
 
-**Measured on {datetime.date.today()}.** Written by `benchmarks/ablation.py` (programs of {version}). {len(found)} runs of {len({p for one in every for p in one['programs']})} programs, of fractions of a second each, whose error is known: closed forms,
-published values, or the same case with a fine mesh or step. The estimate is the sum of a run's mesh, step, solver and coupling parts, or the part named. Each estimator was switched off
-in all runs of its program. {coverage(every)} of {len(every)} estimates are within a factor of 2 of the truth, {sum(is_near(one['with'], one['truth'], 3) for one in every)} within 3.
+**Measured on {datetime.date.today()}.** This page was written by `benchmarks/ablation.py` (programs of {version}) from {len(found)} runs of {len({p for one in every for p in one['programs']})} programs. Each run takes fractions of a second, and its true error is known
+from closed forms, published values, or the same case with a fine mesh or step. The estimated error is the sum of the mesh, step, solver and coupling parts of a run, or the part named in
+the last table. Each estimator was switched off in all runs of its program. {coverage(every)} of {len(every)} estimates are within a factor of 2 of the true error, and {sum(is_near(one['with'], one['truth'], 3) for one in every)} are within a factor of 3.
 
-The truth is the error of a displacement, drag or profile, the estimate that of the whole field in a norm, so a factor between them is expected; the table shows what an estimator adds.
-Special situations have two or three runs each, so the coverage here is lower than that of the [studies](studies/README.md), and few estimators move it by three points (three runs): those
-that do not are the only ones of their part, as the last column says. {len(unknown)} runs have no estimate: {'; '.join(unknown)}. Times were taken beside other processes and are good to a point or two.
+The true error is that of a displacement, drag or profile, whereas the estimate is a norm over the whole field. A constant factor between the two is therefore expected; the table shows what
+an estimator adds. Special situations have two or three runs each, so fewer estimates are within a factor of 2 than in the [studies](studies/README.md), and few estimators change this share
+by three points (three runs). Those that do not are the only ones of their part, as the last column says. {len(unknown)} runs have no estimate: {'; '.join(unknown)}. The times were measured
+while other processes ran and are accurate to one or two percentage points.
 
 ## Estimators
 
@@ -523,18 +524,18 @@ that do not are the only ones of their part, as the last column says. {len(unkno
 
 ## Time of the diagnostics
 
-Runs this short spend much of their time on starting; those of ten usual cases are a row of [source-metrics](source-metrics.md). Diagnostics of at most 1 % are omitted.
+Runs this short spend much of their time on starting; the shares for ten usual cases are a row of [source-metrics](source-metrics.md). Diagnostics that take at most 1 % in every run are omitted.
 
 {chr(10).join(shares(found))}
 
 ## Findings in the shipped cases
 
-The first steps of the {n_golden} shipped cases, as recorded in tests/golden; the one that is `wrong` is the start of cavity-flexible-bottom. Those of whole runs have their reasons in
-[findings](../findings.md#findings-of-the-shipped-cases).
+These are the findings in the first steps of the {n_golden} shipped cases, as recorded in tests/golden. The one that is `wrong` is the start of cavity-flexible-bottom. The findings of whole runs
+are listed with their reasons in [findings](../findings.md#findings-of-the-shipped-cases).
 
 {spoken}
 
-Silent in all of them: {silent}.
+The following findings appear in none of these cases: {silent}.
 
 ## Runs
 

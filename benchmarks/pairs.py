@@ -205,12 +205,12 @@ def write(arguments):
     _, known = kept(arguments)
     lines = [row for name in CASES if name in known for row in rows_of(name, known[name])]
     timed = known.get("seconds", {})
-    lines += ["", f"Processor milliseconds of a step, medians of {TURNS} turns of both commits, written by `benchmarks/pairs.py time` and `write`; the change is the median, least and most",
-              "of the ratios of the turns.", "", "| case | before | now | now over before | commits |", "|---|---|---|---|---|",
+    lines += ["", f"Processor milliseconds per step, as medians of {TURNS} turns of both commits, written by `benchmarks/pairs.py time` and `write`. The ratio is the median of the",
+              "ratios of the turns, with minimum and maximum in parentheses.", "", "| case | before | now | ratio of now to before | commits |", "|---|---|---|---|---|",
               *(timed_row(name, timed[name]) for name in TIMED if name in timed)] if timed else []
     note = PAGE.read_text().partition("\n## ")[2] if PAGE.exists() else ""
-    PAGE.write_text(f"# Instructions beside an older commit\n\n**Counted on {datetime.date.today()}.** Written by `benchmarks/pairs.py write`. Millions of instructions, counted by valgrind, of one process each and without those inside MPI.\n\n"
-                    "| case | program | of | before | now | change | commits |\n|---|---|---|---|---|---|---|\n" + "\n".join(lines) + "\n" + (f"\n## {note}" if note else ""))
+    PAGE.write_text(f"# Instructions compared with an older commit\n\n**Counted on {datetime.date.today()}.** This page was written by `benchmarks/pairs.py write`. The numbers are millions of instructions of one process each, counted by valgrind, without those inside MPI.\n\n"
+                    "| case | program | unit | before | now | change | commits |\n|---|---|---|---|---|---|---|\n" + "\n".join(lines) + "\n" + (f"\n## {note}" if note else ""))
 
 
 def main():

@@ -86,7 +86,7 @@ def problems(rows, folder=ROOT / "common/linalg"):
 
 
 def verdicts(rows):
-    yield "| solver | system | size | ranks | unknowns | time over PETSc's quickest | memory over PETSc's leanest |"
+    yield "| solver | system | size | ranks | unknowns | time relative to PETSc's quickest solver | memory relative to PETSc's smallest |"
     yield "|---|---|---|---|---|---|---|"
     for name in HAND_WRITTEN:
         for time, memory, row in gains(rows, name):
@@ -102,11 +102,11 @@ def table_of(rows, system, size):
             continue
         first = done[0]
         base = seconds(first)
-        reuse = f", {float(first['reuse']):.0f} solves a preconditioner" if float(first["reuse"]) > 1 else ""
+        reuse = f", {float(first['reuse']):.0f} solves per preconditioner" if float(first["reuse"]) > 1 else ""
         yield ""
-        yield f"**{system}**, {first['unknowns']} unknowns, {ranks} rank{'s' if ranks != '1' else ''}, to {float(first['tolerance']):.0e}{reuse}:"
+        yield f"**{system}**, {first['unknowns']} unknowns, {ranks} rank{'s' if ranks != '1' else ''}, tolerance {float(first['tolerance']):.0e}{reuse}:"
         yield ""
-        yield "| solver | iterations | set-up [s] | solve [s] | time | memory [MB] | residual over wanted |"
+        yield "| solver | iterations | set-up [s] | solve [s] | time | memory [MB] | residual over tolerance |"
         yield "|---|---|---|---|---|---|---|"
         for r in group:
             if not solved(r):

@@ -40,15 +40,21 @@ def page(maps, folder):
         counts = collections.Counter(s.outcome for s in squares.values())
         if squares:
             text += f"\n## {m.title}\n\n{m.about}\n\n"
+            found = [f"{n} {('are ' if n > 1 else 'is ') * ('with' in o)}{o}" for o, n in sorted(counts.items())]
+            shown = " and ".join(filter(None, (", ".join(found[:-1]), found[-1])))
+            shown = (
+                f"Of {len(squares)} runs, {shown}" if len(found) > 1 else f"All {len(squares)} runs are {max(counts)}"
+            )
+            x, y = (("" if "'s " in a["label"] else "the ") + a["label"] for a in (m.x, m.y))
             text += (
-                f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}:"
-                f" [table](stability/{m.name}.csv). Columns: {m.x['label']}; rows: {m.y['label']}.*\n"
+                f"*The tables show the {m.criterion}. {shown}"
+                f" ([table](stability/{m.name}.csv)). The columns vary {x}, and the rows vary {y}.*\n"
             )
             text += tables(m, squares)
         if squares and m.given.get("without-halving"):
             text += (
-                "\n*These runs did not halve failed steps, as the default settings do. Points that stopped may be"
-                " stable now.*\n"
+                "\n*In these runs, failed steps were not halved, although the default settings do so. Points that"
+                " stopped may therefore be stable with default settings.*\n"
             )
     if lost := atlas.missing_tests():
         raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")

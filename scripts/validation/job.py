@@ -32,7 +32,7 @@ class Bar:
     @property
     def text(self):
         """Text of the wanted value in the table."""
-        return f"{self.wanted} (not as first asked: {self.but})" if self.but else self.wanted
+        return f"{self.wanted} (differs from the original request: {self.but})" if self.but else self.wanted
 
 
 def made_of(command, folder):

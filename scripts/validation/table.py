@@ -107,7 +107,7 @@ def counts(verdicts):
     verdicts = list(verdicts)
     reported = sum(v in ("reported", "stale (reported)") for v in verdicts)
     text = f"{verdicts.count('met')} of {len(verdicts) - reported} criteria met"
-    text += f", {reported} rows only report" if reported else ""
+    text += f", {reported} {'row only reports' if reported == 1 else 'rows only report'}" if reported else ""
     for word, found in (
         ("stale", sum(v.startswith("stale") for v in verdicts)),
         ("not measured", verdicts.count("not measured")),
@@ -123,12 +123,16 @@ def age(name, bars, rows, folders, history):
     }
     measured = [b.quantity for b in bars if b.quantity in rows and rows[b.quantity].verdict != "not measured"]
     dates = sorted(filter(None, (commit and history.date(commit) for commit in old.values())))
-    text = (
-        f"On {datetime.date.today()}, {len(measured) - len(old)} of {len(bars)} rows were measured on the present"
-        " sources"
-    )
-    text += f", {len(old)} on older ones (since {dates[0]})" if dates else ""
-    return text + (f"; {len(bars) - len(measured)} were not measured." if len(bars) > len(measured) else ".")
+    return age_text(datetime.date.today(), len(bars), len(measured), len(old), dates[0] if dates else None)
+
+
+def age_text(today, n, measured, old, since):
+    """Sentence about `n` rows of which `measured` were measured, `old` of them with older source code since that date."""
+    count = lambda part: "all" if part == n else "none" if part == 0 else str(part)
+    was = lambda part: "was" if part == 1 else "were"
+    text = f"As of {today}, {count(measured - old)} of the {n} rows had been measured with the current source code"
+    text += f"; {count(old)} {was(old)} measured with older versions, the earliest on {since}" if since else ""
+    return text + (f"; {count(n - measured)} {was(n - measured)} not measured." if n > measured else ".")
 
 
 def write(file, name, table, note="", age=""):
@@ -136,14 +140,11 @@ def write(file, name, table, note="", age=""):
     text = (
         f"# Validation: {name}\n\n"
         + (f"**{age}**\n\n" if age else "")
-        + f"Written by `scripts/validate {name} --write` on "
-    )
-    text += (
-        f"{platform.machine()}: {counts(row.verdict for _, row in table)}. The last column names the commit that was"
-        " measured.\n\n"
+        + f"This page was written by `scripts/validate {name} --write` on {platform.machine()}"
+        + f" ({counts(row.verdict for _, row in table)}). The last column names the commit that was measured.\n\n"
     )
     text += f"{note}\n\n" if note else ""
-    text += "| quantity | wanted | got | | commit |\n|---|---|---|---|---|\n"
+    text += "| quantity | criterion | measured | | commit |\n|---|---|---|---|---|\n"
     for quantity, row in table:
         cells = (quantity, row.wanted, row.got, row.verdict, row.commit)
         text += "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |\n"

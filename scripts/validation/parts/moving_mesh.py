@@ -9,11 +9,11 @@ from couplet.runs.process import RunFailed
 
 BEND = ("sin(pi*t*x)/(pi*t) - y*sin(pi*t*x) - x", "(cos(pi*t*x)-1)/(-pi*t) + y*cos(pi*t*x) - y")
 MOTIONS = {
-    "shift by 0.5": {"translation": ["0", "0.5*t"]},
-    "turn by 45 degrees": {"angle": "pi/4*t"},
-    "turn by 60 degrees": {"angle": "pi/3*t"},
-    "turn by 90 degrees": {"angle": "pi/2*t"},
-    "bend to a half circle": {"displacement": BEND},
+    "shifted by 0.5": {"translation": ["0", "0.5*t"]},
+    "rotated by 45 degrees": {"angle": "pi/4*t"},
+    "rotated by 60 degrees": {"angle": "pi/3*t"},
+    "rotated by 90 degrees": {"angle": "pi/2*t"},
+    "bent to a half circle": {"displacement": BEND},
 }
 
 

@@ -50,7 +50,7 @@ with tempfile.TemporaryDirectory() as name:
             Bar("new", "<= 1", None), Bar("other mesh", "<= 1", None, but="a finer mesh"), Bar("shown", "reported", None)]
     rows = {"old": table.Row("<= 1", "0 | 1", "met", first), "rebased": table.Row("<= 1", "0", "met", f"{measured}, script of x"),
             "lost": table.Row("<= 1", "0", "met", lost), "reworded": table.Row("<= 1", "0", "met", landed),
-            "other mesh": table.Row("<= 1 (not as first asked: a finer mesh)", "0", "met", landed),
+            "other mesh": table.Row("<= 1 (differs from the original request: a finer mesh)", "0", "met", landed),
             "shown": table.Row("reported", "5", "met", landed)}
     file = folder / "table.md"
     table.write(file, "x", list(rows.items()))
@@ -65,7 +65,7 @@ with tempfile.TemporaryDirectory() as name:
                    "reworded": "the criterion reads differently now", "new": "not measured", "other mesh": "changed since: fluid",
                    "shown": "changed since: fluid"}, why
     assert history.changed(first, ("fluid", "!fluid/b")) == [] and history.changed(first, ("fluid",)) == ["fluid"]
-    assert table.age("x", bars, rows, ("solid", "fluid"), history).endswith(f"0 of 7 rows were measured on the present sources, 6 on older ones (since {history.date(first)}); 1 were not measured.")
-    assert "3 of 7 rows were measured on the present sources, 3 on older" in table.age("x", bars, rows, ("docs",), history), table.age("x", bars, rows, ("docs",), history)
+    assert table.age("x", bars, rows, ("solid", "fluid"), history).endswith(f", none of the 7 rows had been measured with the current source code; 6 were measured with older versions, the earliest on {history.date(first)}; 1 was not measured.")
+    assert "3 of the 7 rows had been measured with the current source code; 3 were measured with older versions" in table.age("x", bars, rows, ("docs",), history), table.age("x", bars, rows, ("docs",), history)
 result = subprocess.run([ROOT / "scripts/validate", "--stale", "nothing"], capture_output=True, text=True)
 assert result.returncode == 2 and "there is: " in result.stderr, result.stderr

@@ -17,8 +17,8 @@ from couplet.study.table import series_of
 
 CLOCKS = {
     "cpu": "processor time of the run [s]",
-    "wall": "wall time of the run [s]",
-    "work": "processor time of all programs at work, without waiting [s]",
+    "wall": "wall-clock time of the run [s]",
+    "work": "processor time of all programs without waiting [s]",
 }
 MARKS = "osD^vP*Xh<>"
 

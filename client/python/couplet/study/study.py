@@ -120,9 +120,9 @@ class Study:
         where, asked = machine(), self.case.asked.resolve()
         versions = sorted({r.record.version for r in rows})
         report.text(
-            f"{len(rows)} runs, {sum(not r.good for r in rows)} of them failed. Measured at {', '.join(versions)} on"
-            f" {where['processor']}, {where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table:"
-            " `runs.csv`. Repeat with `couplet study"
+            f"Of {len(rows)} runs, {sum(not r.good for r in rows)} failed. They were measured at"
+            f" {', '.join(versions)} on {where['processor']} with {where['cores']} cores. Times are the"
+            f" {pictures.CLOCKS[self.clock]}. The table is in `runs.csv`. Repeat the study with `couplet study"
             f" {asked.relative_to(ROOT) if asked.is_relative_to(ROOT) else asked.name}`."
         )
         others = self.others(peers)
@@ -140,10 +140,11 @@ class Study:
                     self.axes.refining.name,
                     self.out / "growth.png",
                 ),
-                "Cost over the size; the exponents are those of the three finest runs.",
+                "Cost as a function of the size; the exponents are those of the three finest runs.",
             )
         report.picture(
-            pictures.phases(f"{self.title}: cost by phase", rows, self.out / "phases.png"), "Where the time goes."
+            pictures.phases(f"{self.title}: cost by phase", rows, self.out / "phases.png"),
+            "Share of the time by phase.",
         )
         self.all_runs(report, rows)
         return report.write(self.out)
@@ -152,9 +153,13 @@ class Study:
         name, safe = quantity.name, "".join(c if c.isalnum() else "-" for c in quantity.name)
         report.head(name)
         report.text(
-            "The quantity is already an error."
+            "This quantity is itself an error."
             if against == table.ITSELF
-            else f"Errors are measured against: {against}."
+            else (
+                f"Errors are not available, because {against}."
+                if against.startswith("no ")
+                else f"Errors are relative to {against}."
+            )
         )
         costs = [(getattr(r.record, self.clock), r.errors[name], r) for r in rows if name in r.errors]
         if costs:
@@ -164,17 +169,21 @@ class Study:
             }
             front = fits.pareto(list(named))
             report.text(
-                "Cheapest for their error (Pareto front" + (", other programs among them):" if others else "):")
+                "The fastest runs for their error (Pareto front"
+                + (", including other programs) are:" if others else ") are:")
             )
             report.table(("run", "seconds", "error"), [(named[p], p[0], p[1]) for p in front])
         report.picture(
             pictures.error_against_time(
                 f"{self.title}: {name}", rows, quantity, self.clock, self.out / f"error-{safe}.png", others
             ),
-            f"Error of {name} against time.",
+            f"Error of {name} as a function of the time.",
         )
         if others:
-            report.text("Other programs on the same case, processor seconds of the whole process on one core:")
+            report.text(
+                "Other programs gave these results for the same case, in processor seconds of the whole process on one"
+                " core:"
+            )
             report.table(("program", "seconds", "error"), [(who, *point) for who, points in others for point in points])
         if not self.axes.refining:
             return
@@ -186,13 +195,13 @@ class Study:
                 self.axes.refining.name,
                 self.out / f"order-{safe}.png",
             ),
-            f"Error of {name} over the size.",
+            f"Error of {name} as a function of the size.",
         )
         found = estimates.of(rows, quantity)
         if len(found) >= 3:
             report.text(
-                "Error estimated from a run and coarser ones, compared with the true error: within a factor of 2 on "
-                f"{estimates.inside(found)} of {len(found)} runs."
+                "The error estimated from each run and runs that are no finer is within a factor of 2 of the true"
+                f" error for {estimates.inside(found)} of {len(found)} runs."
             )
             report.picture(
                 pictures.scatter(
@@ -220,7 +229,10 @@ class Study:
                         ),
                     )
                 )
-            report.text("Richardson's extrapolation of the three finest and the grid convergence index of the finest:")
+            report.text(
+                "The Richardson extrapolation of the three finest runs and the grid convergence index (GCI) of the"
+                " finest run are:"
+            )
             report.table(("series", "finest", "extrapolated", "observed order", "GCI"), lines)
 
     def all_runs(self, report, rows):

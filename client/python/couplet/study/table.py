@@ -100,22 +100,22 @@ def set_errors(rows, quantities, others=()):
                 for some, limit in ((series_of(rows)[s], limit) for s, limit in limits_of(rows, quantity).items())
                 if limit
             ]
-            reference, word = None, "none: the values do not approach a limit"
+            reference, word = None, "no limit is approached by the values"
             # Coarse series look too certain: take the one with the smallest uncertainty among those with the largest sizes.
             if limits:
                 finest, best = min(limits, key=lambda pair: (-pair[0].point.size, pair[1].gci))
                 reference = best.value
                 word = (
-                    f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by"
+                    f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertainty"
                     f" {100 * best.gci / (quantity.size(best.value, finest) or 1):.2g} %)"
                 )
         elif reference == "finest":
             finest = max(good, key=lambda r: (r.point.size, r.record.cpu)) if good else None
             reference, word = (
-                (finest.values[name], f"the finest run, {finest.point.name}") if finest else (None, "no run")
+                (finest.values[name], f"the finest run, {finest.point.name}") if finest else (None, "no run succeeded")
             )
         else:
-            word = f"{reference:g}"
+            word = f"the reference value {reference:g}"
         against[name] = word
         for row in (*good, *(r for r in others if r.good)) if reference is not None else ():
             row.errors[name] = abs(row.values[name] - reference) / (quantity.size(reference, row) or 1)

@@ -82,7 +82,7 @@ def flag(case, rows):
                 )
             )
     values = [[float(number(r[name], name)) for r in theirs.values() if r[name]] for name in shown]
-    found.append(("spread of the published", "", "", *map(spread, values), ""))
+    found.append(("range of the published values", "", "", *map(spread, values), ""))
     return [
         f"## {case} of Turek and Hron",
         "",
