@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every block of commands and of YAML in README.md, docs/, docs/how-to, docs/theory and docs/tutorials is run or checked, or is named below with the
-reason. Commands are run by tutorials.py, page by page. A block of YAML is put into a shipped case, which `couplet check` must then accept.
+"""Every block of commands, of YAML and of sample output in README.md, docs/, docs/how-to, docs/theory and docs/tutorials is run or checked, or is named
+below with the reason. Commands and the samples after them are run by tutorials.py, page by page. A block of YAML is put into a shipped case, which
+`couplet check` must then accept. Each line of another sample must be in the output of the command that is named here, with numbers within 2 %.
 Usage: blocks.py BIN"""
 import pathlib
 import re
+import shutil
 import sys
 import tempfile
 
@@ -11,6 +13,7 @@ import yaml
 
 from scene import ROOT, call_here
 from checks import check, end  # noqa: E402
+from samples import is_said  # noqa: E402
 
 bin_ = pathlib.Path(sys.argv[1])
 OUTLINE = "an outline with gaps (...)"
@@ -52,6 +55,21 @@ YAML = {  # page: for each block (case, section that the block is put into), or 
     "docs/theory/solid-solution.md": [("cantilever", "participants.solid")],
     "docs/theory/solid.md": [("cantilever", "participants.solid")],
 }
+INPUT, FORM = "an input file", "its words are under test where the message is made; the numbers are an example"
+CANTILEVER = "run cantilever"
+SAMPLES = {  # page: for each block of output that follows no commands: the command that gives it, or why no test compares it
+    "docs/checkpoints.md": [FORM],
+    "docs/effects.md": [FORM],
+    "docs/error-estimates.md": [CANTILEVER, FORM, CANTILEVER, FORM, FORM, "run cook --set participants.solid.quantities={tip: {point: [48 mm, 60 mm], component: y}}", CANTILEVER],
+    "docs/formats.md": ["a list of files"],
+    "docs/glossary.md": [FORM],
+    "docs/input-data.md": [INPUT, INPUT],
+    "docs/large-strain.md": [FORM],
+    "docs/plant.md": [INPUT],
+    "docs/quantities.md": [FORM],
+    "docs/studies.md": ["times differ by machine", "study cook --quantities", FORM],
+    "docs/how-to/boundary-conditions.md": [INPUT],
+}
 NO_FIGURE = {"docs/how-to/README.md": "a list", "docs/how-to/build-elsewhere.md": "no results", "docs/how-to/cluster.md": "no results"}
 MOST_BYTES = 4e6  # of all documents with their figures
 FILES = {"seville.csv": "weather/granada_aldeire_surrogate.csv.gz"}  # which a block names, and what stands for them
@@ -59,6 +77,22 @@ FILES = {"seville.csv": "weather/granada_aldeire_surrogate.csv.gz"}  # which a b
 
 def blocks(page, language):
     return re.findall(rf"^ *```{language}\n(.*?)^ *```", (ROOT / page).read_text(), flags=re.M | re.S)
+
+
+def samples(page):
+    """Blocks of output that follow no commands."""
+    fenced = re.findall(r"^ *```(\w*)\n(.*?)^ *```", (ROOT / page).read_text(), flags=re.M | re.S)
+    return [block for k, (language, block) in enumerate(fenced) if language == "text" and (k == 0 or fenced[k - 1][0] != "sh")]
+
+
+def said_by(command, scratch):
+    """Output of a command on a copy of the shipped case that it names."""
+    word, name, *options = command.split(" ", 3)
+    folder = pathlib.Path(tempfile.mkdtemp(dir=scratch)) / name
+    shutil.copytree(ROOT / "configs" / name, folder, ignore=shutil.ignore_patterns("out", "out-*"))
+    done = call_here(bin_, word, folder, *options)
+    check(command, done.returncode == 0, done.stdout[-800:] + done.stderr[-800:] if done.returncode else "")
+    return done.stdout + done.stderr
 
 
 def joined(old, new):
@@ -104,7 +138,18 @@ check("the documents stay small", size < MOST_BYTES, f"{size / 1e6:.2f} MB")
 counts = {page: len(found) for page in pages if (found := blocks(page, "yaml"))}
 check("each block of YAML has its case, or a reason", counts == {page: len(told) for page, told in YAML.items()},
       set(counts.items()) ^ {(page, len(told)) for page, told in YAML.items()})
+told = {page: len(found) for page in pages if (found := samples(page))}
+check("each sample of output has its command, or a reason", told == {page: len(of) for page, of in SAMPLES.items()}, set(told.items()) ^ {(page, len(of)) for page, of in SAMPLES.items()})
 with tempfile.TemporaryDirectory(prefix="couplet-blocks-") as scratch:
+    outputs = {}
+    for page, told in SAMPLES.items():
+        for command, sample in zip(told, samples(page)):
+            if not command.startswith(("run ", "study ")):
+                continue
+            if command not in outputs:
+                outputs[command] = said_by(command, scratch)
+            for line in sample.splitlines():
+                check(f"{page}: {line.strip()}", is_said(line, outputs[command]), [w for w in outputs[command].splitlines() if line.strip()[:12] in w])
     for page, told in YAML.items():
         for number, (where, text) in enumerate(zip(told, blocks(page, "yaml"))):
             if not isinstance(where, str):

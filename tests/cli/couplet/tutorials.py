@@ -16,13 +16,13 @@ import time
 
 from scene import ROOT, environment
 from checks import check, end  # noqa: E402
+from samples import is_said  # noqa: E402
 import couplet  # noqa: E402
 
 bin_, asked, place = pathlib.Path(sys.argv[1]), sys.argv[2], (sys.argv[3:] or ["checkout"])[0]
 PAGES = ["../README", "quickstart", *sorted(f"tutorials/{file.stem}" for file in (ROOT / "docs/tutorials").glob("*.md"))] if asked == "newcomer" else [asked]
 BUILDS = re.compile(r"^(sudo|cmake|cd build|scripts/|export PATH).*\n", flags=re.M)
 SITE = re.compile(r"^couplet docs .*\n", flags=re.M)  # would serve until it is interrupted; command_site builds it
-NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 PICTURES = {"tutorials/accuracy": 2}
 FIGURES = {  # page: (picture that its commands draw, width of the figure)
     "tutorials/first-solid": ("beam/out/solid/equivalent-stress.png", 700),
@@ -78,13 +78,6 @@ def cases_into(home):
     (home / "build").mkdir()
     for link, target in (("scripts", ROOT / "scripts"), ("build/bin", bin_.absolute())):
         (home / link).symlink_to(target)
-
-
-def is_said(line, said):
-    """True if a line of a sample is in the output, with numbers within 2 %; "..." stands for anything."""
-    wanted = [float(n) for n in NUMBER.findall(line)]
-    pattern = ".*".join(f"({NUMBER.pattern})".join(map(re.escape, NUMBER.split(part))) for part in line.strip().split("..."))
-    return any(all(math.isclose(float(a), b, rel_tol=0.02) for a, b in zip(m.groups(), wanted)) for m in re.finditer(pattern, said))
 
 
 def figure_of(page):
