@@ -177,9 +177,8 @@ struct Expression::ParserState {
 
   [[noreturn]] void fail(std::size_t column, const std::string& what) const {
     throw Error(
-        "{}cannot parse the expression '{}' at column {}: {}. Known are the variables x, y, z [m] and t "
-        "[s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, "
-        "sqrt, abs, min, max.",
+        "{}cannot parse the expression '{}' at column {}: {}. An expression may contain the variables x, y, z [m] and t [s], "
+        "the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.",
         where.empty() ? "" : where + ": ", text, column, what);
   }
 

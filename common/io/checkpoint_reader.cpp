@@ -143,7 +143,7 @@ struct CheckpointReader::ReaderState {
     const int size = parallel::comm_size(comm);
     if (ranks != size && in.has(array_path(name)))
       throw Error(
-          "The checkpoint '{}' was written on {} {}, this run has {}: its array '{}' is each rank's own. "
+          "The checkpoint '{}' was written on {} {}, but this run has {}, and its array '{}' belongs to individual ranks. "
           "Restart on the same number of ranks.",
           in.file().string(), ranks, ranks == 1 ? "rank" : "ranks", size, name);
     return array_of(name, parallel::comm_rank(comm));
@@ -218,14 +218,15 @@ void CheckpointReader::on(const mesh::Mesh& mesh) {
   const bool same = parallel::on_all(state_->comm, [&] {
     const hdf5::Reader& in = state_->in;
     auto then = now;
-    if (!in.has(mesh_table)) in.refuse("it holds no mesh: it was written by another program or another case");
+    if (!in.has(mesh_table))
+      in.refuse("it contains no mesh: it was written by another program or another case");
     in.read(mesh_table, {0, 1, 1, then.size()}, then.data());
     if (then != now)
       throw Error(
-          "The checkpoint '{}' is from another mesh, of {} cells, {} points and {} boundary faces; this one "
-          "has {}, {} and {}{}. Another version of gmsh may number them otherwise; give the same mesh file.",
+          "The checkpoint '{}' is from another mesh, of {} cells, {} points and {} boundary faces; this one has {}, {} and "
+          "{}{}. Another version of gmsh may number them differently; give the same mesh file.",
           in.file().string(), then[0], then[1], then[2], now[0], now[1], now[2],
-          std::equal(then.begin(), then.begin() + 3, now.begin()) ? ", in another order" : "");
+          std::equal(then.begin(), then.begin() + 3, now.begin()) ? ", in a different order" : "");
     if (!state_->same_share) return false;
     std::int64_t before = 0;
     in.read(shares_table,

@@ -94,8 +94,8 @@ std::string impossible_in(const ModalModel& model) {
   for (std::size_t m = 0; m < n && model.frequency[m] == 0; ++m)
     if (const double misfit = rigid_motion(model, m).misfit; misfit > 0.02)
       return fmt::format(
-          "mode {} has 0 Hz, but its shape is not a rigid motion: {:.2g} of it (rms) is deformation. The "
-          "rows of the shapes are per vertex, with three components each",
+          "mode {} has a frequency of 0 Hz, but its shape is not a rigid-body motion: a fraction {:.2g} of it (rms) is "
+          "deformation. Check the array layout: one row per vertex, with three components",
           m + 1, misfit);
   if (const int m = mode_of_two_shapes(model); m >= 0)
     return fmt::format(
@@ -137,8 +137,9 @@ std::string overlap_problem_of(const ModalModel& model) {
     for (std::size_t j = 0; j < i; ++j)
       if (const double both = product[i * n + i] * product[j * n + j];
           product[i * n + j] * product[i * n + j] > 0.25 * both)
-        return fmt::format("modes {} and {} are not orthogonal: {:.2g} of one is the other", j + 1, i + 1,
-                           std::abs(product[i * n + j]) / std::sqrt(both));
+        return fmt::format(
+            "modes {} and {} are not orthogonal: the cosine of the angle between them is {:.2g}", j + 1,
+            i + 1, std::abs(product[i * n + j]) / std::sqrt(both));
   return "";
 }
 
@@ -204,7 +205,8 @@ std::string problem_of(const ModalModel& model) {
       return fmt::format("face {} has {} vertices; 3 or 4 are needed", f + 1, corners.size());
     for (const Index v : corners)
       if (v < 0 || std::size_t(v) >= vertices)
-        return fmt::format("face {} refers to vertex {}; there are {}", f + 1, v, vertices);
+        return fmt::format("face {} refers to vertex {}, but the number of vertices is {}", f + 1, v,
+                           vertices);
   }
   if (std::string wrong = surface_problem_of(model); !wrong.empty()) return wrong;
   const auto finite = [](double value) { return std::isfinite(value); };

@@ -299,7 +299,8 @@ class Sides {
 
 /// Reports a wrong orientation of one part. Empty if it is right or undetermined.
 std::string part_problem(const Sides& sides, std::size_t part, std::size_t samples, Facing wanted) {
-  constexpr const char* rule = "(the vertices of a face must turn right-handed about its outward normal)";
+  constexpr const char* rule =
+      "(seen from outside, the vertices of a face must be in counterclockwise order)";
   const Votes votes = sides.of(part, samples);
   const double said = votes.outward + votes.inward;
   const double right = wanted == Facing::outward ? votes.outward : votes.inward, wrong = said - right;

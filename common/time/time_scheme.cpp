@@ -93,8 +93,8 @@ void declare(config::Section& s, TimeSchemeParameters& p, const std::string& aut
   s.value("spectral-radius", p.spectral_radius)
       .range(0, 1)
       .doc(
-          "for generalised-alpha: spectral radius at high frequencies: the fraction of the amplitude of the highest "
-          "modes that remains after a step; 1 damps nothing");
+          "for generalised-alpha: spectral radius at high frequencies, the fraction of the amplitude of the highest modes that "
+          "remains after a step; 1 means no damping");
 }
 
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,

@@ -136,9 +136,11 @@ class Cast {
     if (!flow || !body || !coupling::player_of(flow->program) || !coupling::player_of(body->program)) return;
     const std::string key = "coupling.sub-steps." + body->participant;
     if (const auto steps = config::text_of(document_, key); steps && *steps != "1")
-      say(key, fmt::format("{} supports no sub-steps beside {}: the fluid's added mass acts on its change of "
-                           "velocity over the whole step; use a smaller `simulation.time-step`",
-                           body->program, flow->program));
+      say(key,
+          fmt::format(
+              "{} does not support sub-steps when coupled with {}: the fluid's added mass acts on the change of velocity over "
+              "the whole step; use a smaller `simulation.time-step`",
+              body->program, flow->program));
   }
 
   /// Checks that a fluid and its mesh mover name the same patches: a wall moved by the structure must move.
@@ -264,7 +266,7 @@ class ContactSeat {
   }
 
   void take(const std::string& name, const std::string& gaps, const std::vector<std::string>& names) {
-    if (gaps.empty()) return say("gap", "it names a gap of the fluid, and no fluid is coupled");
+    if (gaps.empty()) return say("gap", "it refers to a gap of a fluid, but no fluid is coupled");
     if (std::ranges::find(names, name) == names.end())
       return say("gap", "the fluid has no gap '" + name + "'. " + base::did_you_mean(name, names, "gaps"));
     for (const char* key : {"height", "opening", "direction"})

@@ -100,15 +100,15 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
       ->allow_extra_args(false);
   app.add_option(
          "--diagnostics", flags.diagnostics,
-         "short for --set simulation.diagnostics=WORD: standard, without-errors, or full, with searches that may take as "
-         "long as a solve")
+         "short for --set simulation.diagnostics=WORD (standard, without-errors or full, which includes searches that may take "
+         "as long as a solve)")
       ->type_name("WORD");
   app.add_flag("--check", flags.check, "only check the configuration; exit code 0 or 2");
   app.add_flag("--docs", flags.docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", flags.schema, "print the JSON schema of all keys, for editors");
   app.add_flag("--print-config", flags.print_config, "print all values in effect as YAML");
   app.add_flag("--explain", flags.explain,
-               "print the effects in the case, their cost and the launch line; runs nothing");
+               "print the effects in the case, their cost and the launch line without running the case");
   app.add_flag("-v,--verbose", flags.verbose, "log more, on every rank");
   app.add_flag("-q,--quiet", flags.quiet, "log warnings and errors only");
 }

@@ -59,7 +59,7 @@ TEST(MeshErrors, patch_between_cells_is_refused) {
   EXPECT_EQ(
       error_of(raw),
       "Patch 'ymax' has a face at (1, 0.5) that lies between two cells. A patch must lie on the boundary; "
-      "remove the inner surface from the physical group (or the mesh contains every cell twice).");
+      "remove the inner surface from the physical group. If there is none, check whether the mesh contains every cell twice.");
 }
 
 TEST(MeshErrors, a_cell_in_two_groups_is_named) {
