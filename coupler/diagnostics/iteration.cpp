@@ -122,7 +122,8 @@ class CouplingError final : public CouplingDiagnostic {
     const bool by_motion = noise_[2] > std::pow(limits.least_change(), 2) * noise_[3];
     const double relative = (by_motion ? 1 : limits.least_change()) * limits.relative * most_noise / share;
     const std::string sentence = fmt::format(
-        "coupling: residuals are {:.2g} of the interface's acceleration (limit {}), so loads due to added mass contain noise of that size",
+        "coupling: the residuals correspond to {:.2g} of the interface acceleration (limit {}), so loads due to added mass "
+        "contain noise of that relative size",
         share, most_noise);
     const std::string advice =
         fmt::format("use 'coupling.convergence.relative: {:.0e}', or a longer step", relative);

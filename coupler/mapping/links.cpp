@@ -37,8 +37,8 @@ std::vector<DatumSource> sources_of(const Datum& wanted, std::size_t taker, cons
     if (const Datum* datum = find_datum(sides[g].interface.gives, wanted.name)) found.push_back({g, datum});
   }
   if (found.empty())
-    throw Error("'{}' takes '{}', which no participant gives. Given are: {}.", sides[taker].name, wanted.name,
-                all.empty() ? "no data at all" : base::join(all));
+    throw Error("'{}' takes '{}', but no participant gives it. Data available: {}.", sides[taker].name,
+                wanted.name, all.empty() ? "none" : base::join(all));
   return found;
 }
 

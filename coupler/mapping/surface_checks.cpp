@@ -161,8 +161,8 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
          .number = apart,
          .limit = limit,
          .sentence = fmt::format(
-             "mesh motion: '{}' moves {} faces by the structure, but the interface of '{}' has {}: "
-             "patches that are not an interface of the fluid follow the nearest vertex",
+             "mesh motion: '{}' moves {} faces with the structure, but the interface of '{}' has {}: patches that are not an "
+             "interface of the fluid follow the nearest vertex",
              mover->name, moves.faces, fluid->name, moved.faces),
          .advice = "set another type for them"});
 }

@@ -147,9 +147,12 @@ std::string waiting_sentence(const std::vector<std::string>& names, const std::v
   if (seconds.size() < 2 || sum < too_short) return {};
   const auto slowest = std::ranges::max_element(seconds);
   const std::string& name = names[std::size_t(slowest - seconds.begin())];
-  if (side_by_side) return fmt::format("waiting: side by side, all wait for '{}', which takes longest", name);
-  return fmt::format("waiting: one after another, the others wait for '{}' {:.0f} % of the time at work",
-                     name, 100 * *slowest / sum);
+  if (side_by_side)
+    return fmt::format(
+        "waiting: the participants run concurrently, and all wait for '{}', which takes longest", name);
+  return fmt::format(
+      "waiting: the participants run one after another, and the others wait for '{}' during {:.0f} % of the computing time",
+      name, 100 * *slowest / sum);
 }
 
 }  // namespace couplet::coupler

@@ -505,10 +505,10 @@ def edited(folder, words):
     refused = lambda done, said: (done.returncode == 2 and said in done.stdout + done.stderr, (done.returncode, done.stdout[-300:], done.stderr[-500:]))  # noqa: E731
     file.write_text(text.replace('<max-time value="1" />', '<max-time value="2" />'))
     done = launch(folder, words)
-    check("another end in the configuration than in its case is refused", *refused(done, "reads a configuration of preCICE that is not the one this case was made of"))
+    check("another end in the configuration than in its case is refused", *refused(done, "reads a preCICE configuration that differs from the one this case was created from"))
     (folder / "other.xml").write_text(text)
     done = launch(folder, {**words, "Right": [*words["Right"][:2], "other.xml", 1]}, sets=["coupling.exchange.digest="])
-    check("two programs with different configurations are refused", *refused(done, "'Left' and 'Right' read different configurations of preCICE"))
+    check("two programs with different configurations are refused", *refused(done, "'Left' and 'Right' read different preCICE configurations"))
     file.write_text(text)
     for key, said in (("coupling.scheme=explicit", "coupling.scheme: explicit here, but implicit"), ("coupling.exchange.order=parallel", "coupling.exchange.order: parallel here, but serial"),
                       ("coupling.exchange.participants=[Right, Left]", "coupling.exchange.participants: 'Right' before 'Left' here, but after it")):
