@@ -57,8 +57,8 @@ constexpr std::array ids{
     FindingId{neglected, "stretch-of-the-mid-surface", "the deflection is so large that it stretches the mid-surface", {"plate_modal", "", "ratio of the deflection to the thickness, for a plate held on opposite sides"}},
     FindingId{neglected, "shear-and-rotary-inertia", "the wavelengths of some modes are too short for thin-plate theory", {"plate_modal", "", "reduction of the modal stiffness by shear and rotary inertia, estimated from thickness and wavelength (rms over the motion)"}},
     // solid_solver
-    FindingId{answer, "stress-error", "the estimated error of the stress at a probe or of the largest equivalent stress is large"},
-    FindingId{answer, "quantity-error", "the estimated error of a quantity of interest is large"},
+    FindingId{answer, "stress-error", "the estimated error of the stress at a probe or of the largest equivalent stress, with a warning if it is large"},
+    FindingId{answer, "quantity-error", "the value of a quantity of interest and its estimated error"},
     FindingId{answer, "strain-energy", "the work of the loads and the strain energy disagree, or the strains vary too much within quadrilaterals"},
     FindingId{answer, "energy-growth", "the motion or flow gained energy that nothing supplied, or the energies of the modes do not balance"},
     FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},

@@ -131,9 +131,9 @@ void SolidBody::find_mass() {
         "'face-gradient: thesis'.");
   if (kernel_.is_symmetric() && parallel::any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
     throw Error(
-        "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement "
-        "and ends at vertices that it does not hold; this gradient would lose part of the reaction there. "
-        "Give the part its own patch, hold all components, or use 'face-gradient: thesis'.");
+        "solution-method.face-gradient: symmetric: a part of a patch prescribes components of the displacement, but not those "
+        "of the vertices at its edge; this gradient would lose part of the reaction there. Give the part its own patch, "
+        "prescribe all components, or use 'face-gradient: thesis'.");
   if (!kernel_.is_symmetric() && largest_poissons_ratio(parameters_) > most_poissons_ratio)
     throw Error(
         "material.poissons-ratio: {:g} exceeds {:g}, the limit of 'face-gradient: thesis'; "

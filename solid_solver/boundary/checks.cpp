@@ -360,9 +360,8 @@ void check_supported(const mesh::Mesh& mesh, const elastic::ElasticOperator& ela
   }
   if (trouble.empty()) return;
   throw Error(
-      "boundaries: the supports of this static analysis leave rigid motions free: {}. Prevent them by "
-      "'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use "
-      "'analysis: dynamic'.",
+      "boundaries: the supports of this static analysis leave rigid-body motions free: {}. Prevent them by "
+      "'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.",
       trouble);
 }
 

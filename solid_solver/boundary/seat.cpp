@@ -49,8 +49,8 @@ Seat::Seat(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const e
   direction_ /= length;
   if (parallel::sum(mesh.comm, GlobalIndex(faces_.size())) == 0)
     throw Error(
-        "contact: no face of the solid points toward the seat. Check 'direction' (from the seat to the solid) and "
-        "'where'; only faces with a known force (free, interface, traction, pressure) can meet a seat.");
+        "contact: no face of the solid points toward the seat. Check 'direction' (from the seat to the solid) and 'where'; "
+        "only faces with a known force (free, interface, traction, pressure) can touch a seat.");
   if (!p.starts_inside) refuse_start_inside();
 }
 

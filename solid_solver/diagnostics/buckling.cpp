@@ -49,7 +49,7 @@ double limit_of(const BucklingEstimate& found) {
 std::string neglected(const BucklingEstimate& found) {
   return "linear theory neglects the softening by these loads" +
          (found.growth > BucklingEstimate::most_growth
-              ? fmt::format(", which adds {:.2g} of the displacement", found.growth)
+              ? fmt::format(", which increases the displacement by a fraction of {:.2g}", found.growth)
               : std::string());
 }
 
@@ -96,7 +96,7 @@ std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstim
       .sentence = fmt::format(
           "buckling: the last loads are at least {:.3g} times the buckling load (limit {:.2g}): {}",
           1 / found.factor, 1 / limit_of(found),
-          found.factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
+          found.factor < 1 ? "if these loads last, the body buckles, which linear theory does not show"
                            : neglected(found)),
       .advice = "use 'kinematics: finite-strain'"};
 }
@@ -118,12 +118,11 @@ std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& fou
                       "equilibrium is unstable",
                       *how == '\0' ? "" : "at least ", 1 / found.factor),
       .advice =
-          holds ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
+          holds ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives load factors and mode shapes"
           : found.factor < absurd
               ? "check the units of 'youngs-modulus', of the loads and of the mesh"
-              : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
-                "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling "
-                "state"};
+              : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives load factors and mode shapes, "
+                "and 'kinematics: finite-strain' with a small lateral load gives the post-buckling state"};
 }
 
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields,

@@ -197,8 +197,9 @@ void StrainEnergy::look(diagnostics::Report& report) {
        .number = audit.mismatch(),
        .limit = StrainAudit::most_mismatch,
        .sentence = fmt::format("{}: displacement not reliable", audit.text()),
-       .advice = "refine the mesh, above all across the bending direction; typical causes: cells elongated "
-                 "along it, few tetrahedra or prisms across, nu near 0.5"});
+       .advice =
+           "refine the mesh, especially across the bending direction; typical causes are cells elongated along it, few "
+           "tetrahedra or prisms across, and nu near 0.5"});
 }
 
 void StrainEnergy::conclude(diagnostics::Report& report) {

@@ -338,7 +338,7 @@ linalg::SolveStatistics FiniteStrain::press(const Load& load, std::span<double> 
     if (one.iterations == 0) return all;
     if (i == most_multipliers)
       throw SolveFailure(
-          "The pressure of the rigid seat did not settle in {} corrections (last change {:.1e} of it).",
+          "The contact pressure on the rigid seat did not converge in {} corrections (last relative change {:.1e}).",
           most_multipliers, change);
   }
 }

@@ -101,7 +101,7 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
   const auto first = std::ranges::find_if(model.frequency, [](double f) { return f > 0; });
   const std::ptrdiff_t rigid = first - model.frequency.begin(), left = model.frequency.end() - first;
   diagnostics::set_result(
-      {fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid motions", rigid) : ""),
+      {fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid-body modes", rigid) : ""),
        "Hz",
        {first, first + std::min<std::ptrdiff_t>(5, left)},
        error});

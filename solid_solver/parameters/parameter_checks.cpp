@@ -133,15 +133,15 @@ void check_quantities(config::Section& s, SolidParameters& p) {
             return "heat conduction alone has the quantities temperature (at a 'point') and heat (through a 'patch')";
           return p.heat && p.heat->analysis == HeatParameters::Analysis::steady
                      ? ""
-                     : "the errors of 'quantities' are estimated with 'heat: {analysis: steady}'; 'couplet study --quantities' estimates "
-                       "those of any run, by differences of coarser ones";
+                     : "the errors of 'quantities' are estimated with 'heat: {analysis: steady}'; 'couplet study --quantities' "
+                       "estimates those of any run from differences between coarser runs";
         }
         if (std::ranges::any_of(p.quantities, is_of_heat))
-          return "temperature and heat are quantities of 'analysis: thermal'; 'couplet study --quantities' estimates those of any run, by "
-                 "differences of coarser ones";
+          return "temperature and heat are quantities of 'analysis: thermal'; 'couplet study --quantities' estimates those of "
+                 "any run from differences between coarser runs";
         if (p.analysis != Analysis::static_ || has_finite_strain(p))
-          return "the errors of 'quantities' are estimated in a linear static analysis; 'couplet study --quantities' estimates those of "
-                 "any run, by differences of coarser ones";
+          return "the errors of 'quantities' are estimated in a linear static analysis; 'couplet study --quantities' estimates "
+                 "those of any run from differences between coarser runs";
         if (is_axisymmetric(p) || has_rigid_patch(p) || p.contact)
           return "'quantities' support neither a body of revolution, nor a patch that moves as a rigid body, nor 'contact'";
         return symmetric_suits(p) ? "" : "'quantities' require 'face-gradient: symmetric', the default";
@@ -159,10 +159,10 @@ void check_contact(config::Section& s, SolidParameters& p) {
       s, "contact",
       p.analysis == Analysis::dynamic && p.contact->rule == contact::ContactRule::conserving &&
           scheme_of(p).type != time::TimeScheme::trapezoidal,
-      "'rule: conserving' keeps the energy with 'time-scheme: {type: trapezoidal}' only (at finite strain with "
+      "'rule: conserving' conserves the energy only with 'time-scheme: {type: trapezoidal}' (at finite strain with "
       "'energy-momentum: true'); use that or 'rule: midpoint'");
   refuse(s, "plane", is_axisymmetric(p),
-         "a body of revolution cannot meet a seat; model it in 3-D, or remove 'contact'");
+         "a body of revolution does not support contact with a seat; model it in 3-D, or remove 'contact'");
   refuse(
       s, "boundaries", has_rigid_patch(p),
       "a remote-load with 'coupling: rigid' cannot be combined with 'contact'; use 'coupling: distributing'");
