@@ -24,8 +24,8 @@ class LeastJacobian final : public diagnostics::Diagnostic {
            .number = *least,
            .limit = 0,
            .sentence = fmt::format(
-               "a cell of the moved mesh is folded at a corner, and gradients there are wrong: least "
-               "scaled Jacobian {:.2g} (limit 0)",
+               "a cell of the moved mesh is folded at a corner, so that gradients there are wrong: least scaled Jacobian "
+               "{:.2g} (limit 0)",
                *least),
            .advice =
                "use 'method: barrier' or a finer mesh near the moving walls; quality.csv names the cell"});

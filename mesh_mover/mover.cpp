@@ -206,7 +206,7 @@ void Mover::move(const coupling::Exchange& in) {
         "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
         parameters_.method == Method::barrier
             ? ""
-            : " 'method: barrier', to which 'auto' changes by itself, follows larger motions.");
+            : " 'method: barrier', to which 'auto' switches automatically, handles larger motions.");
 }
 
 coupling::Exchange Mover::solve(const coupling::Exchange& in) {

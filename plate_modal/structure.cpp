@@ -38,7 +38,8 @@ void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState&
   if (!(std::abs(jump) > 1e-9 * scale)) return;
   if (tells)
     log::warn(
-        "energy: with the changes of this restart the structure holds {:.4g} J instead of {:.4g} J: this jump is not part of the balance.",
+        "energy: after the changes of this restart the structure has {:.4g} J instead of {:.4g} J; this jump is not part of "
+        "the balance.",
         now.total(), kept.total());
   kept.kinetic = now.kinetic, kept.strain = now.strain, kept.gravity = now.gravity,
   kept.contact = now.contact;
@@ -103,14 +104,16 @@ void Structure::make_contact() {
   if (parallel::comm_rank(context_.comm) != 0) return;
   const double steps = shortest / context_.time_step;
   const std::string text = fmt::format(
-      "contact over all faces lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
+      "contact over all faces lasts {:.3g} s (pi sqrt(m / kappa)), and contact over some of them lasts longer",
+      shortest);
   if (std::isnan(steps))
     log::info("{}.", text);
   else if (steps >= 10)
     log::info("{}. The time step resolves it with {:.3g} steps.", text, steps);
   else
     log::warn(
-        "{}. The time step resolves it with only {:.2g} steps. Twenty give the rebound speed to 1 %: 'simulation.time-step: {:.2g} s'.",
+        "{}. The time step resolves it with only {:.2g} steps. Twenty steps give the rebound speed to 1 %: "
+        "'simulation.time-step: {:.2g} s'.",
         text, steps, shortest / 20);
 }
 

@@ -149,8 +149,8 @@ void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) 
   const auto rigid =
       std::ranges::count_if(first.eigenvalue, [&](double value) { return value < rigid_limit(plate); });
   throw Error(
-      "modes.number: the plate has {} free rigid motions (modes of 0 Hz), but only {} of them would be "
-      "kept, so that it would move in some ways and not in others. Keep at least {}.",
+      "modes.number: the plate has {} free rigid-body motions (modes of 0 Hz), but only {} of them would be kept, so that it "
+      "could move in some directions but not in others. Keep at least {}.",
       rigid, modes.eigenvalue.size(), rigid);
 }
 

@@ -62,8 +62,8 @@ std::string missing_weather(const TankParameters& p) {
   const bool plant = p.flow.type == FlowParameters::Type::plant;
   const bool deep = p.ground.has_value();
   if (p.ambient_given || !(p.insulation || p.ullage || deep || plant)) return "";
-  return fmt::format("the section 'ambient' is missing: {} see still air of 20 degC{}.",
-                     plant ? "plant and tank" : "the surroundings of the tank",
+  return fmt::format("the section 'ambient' is missing, so the conditions of {} are still air of 20 degC{}.",
+                     plant ? "the plant and the tank" : "the surroundings of the tank",
                      plant ? " and no sun, day and night; the field collects nothing" : " and no sun");
 }
 
@@ -71,8 +71,8 @@ std::string restart_beyond_cut_off(const FlowParameters& flow) {
   const PlantParameters& p = flow.plant;
   if (flow.type != FlowParameters::Type::plant || p.restart <= p.cut_off) return "";
   return fmt::format(
-      "flow.restart ({:g} K) is above flow.cut-off ({:g} K): what may start at a temperature is stopped at "
-      "once, so the cut-off alone is effective.",
+      "flow.restart ({:g} K) is above flow.cut-off ({:g} K): a flow that may start is stopped at once, so that only the "
+      "cut-off is effective.",
       p.restart, p.cut_off);
 }
 

@@ -91,7 +91,7 @@ void declare(config::Section& s, ReportParameters& p) {
   s.value("run-in", p.run_in)
       .unit("day", 1, 1e4)
       .not_negative()
-      .doc("these first days, in which the cycle becomes periodic, are excluded from the means");
+      .doc("number of initial days, in which the cycle becomes periodic, that are excluded from the means");
   s.value("profile-day", p.profile_day)
       .unit("day", 1, 1e4)
       .not_negative()

@@ -65,8 +65,8 @@ std::vector<std::string> sun_at_night(const WeatherHours& record) {
   }
   if (total == 0 || (std::abs(sum) >= least * total && sum.real() > 0)) return {};
   return {fmt::format(
-      "{}: the sun shines at night, with irradiance in {} of {} hours{}. Check the column dni_W_m2, and that the clock "
-      "is that of the place; the lines latitude, longitude and time-zone let the run judge better",
+      "{}: the sun shines at night, with irradiance in {} of {} hours{}. Check the column dni_W_m2, and that the hours are "
+      "local time; the lines latitude, longitude and time-zone let the run judge better",
       record.source, std::ranges::count_if(record.dni, [](double dni) { return dni > 0; }), record.dni.size(),
       std::abs(sum) < least * total
           ? ""
