@@ -65,8 +65,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
   }
   if (p.analysis == Parameters::Analysis::static_ && surface_.omega().front() == 0)
     throw Error(
-        "The structure moves as a rigid body (mode 1 has zero frequency): a static analysis needs supports "
-        "that prevent this.");
+        "The structure moves as a rigid body (mode 1 has zero frequency): a static analysis needs supports that prevent this.");
   gravity_.assign(surface_.n_modes(), 0);
   if (!p.gravity.empty()) gravity_ = surface_.participation(Vec3(p.gravity.data()));
   if (p.contact) make_contact();

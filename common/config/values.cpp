@@ -91,9 +91,7 @@ std::string table_text(const YAML::Node& node, const Key::Facts& facts, const st
   std::string text = fmt::format("table({}, {}", axis.expression, outside_of(node));
   if (node["file"]) {
     if (node["at"] || node["values"])
-      throw Error(
-          "a table takes either 'file' or 'at' and 'values', not "
-          "both.");
+      throw Error("a table takes either 'file' or 'at' and 'values', not both.");
     text += fmt::format(", \"{}\"", (folder / word(node, "file")).string());
     if (node["column"]) text += fmt::format(", \"{}\"", word(node, "column"));
     return text + ")";

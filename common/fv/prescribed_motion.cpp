@@ -70,8 +70,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
 void check_axis(const Vec3& axis, int dim, const std::string& key) {
   if (dim == 2 && (axis[0] != 0 || axis[1] != 0 || !(axis[2] > 0)))
     throw Error(
-        "{}: a 2-D case rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or "
-        "speed.",
+        "{}: a 2-D case rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or speed.",
         key);
 }
 

@@ -33,8 +33,7 @@ std::vector<std::int64_t> layout_of_array(const hdf5::Reader& in, const std::str
   for (std::size_t r = 0; r < n; ++r) {
     if (layout[r] < 0 || std::uint64_t(layout[r]) > left)
       in.refuse(
-          fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
-                      "remaining",
+          fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} remaining",
                       name, total, r, layout[r], left));
     left -= std::uint64_t(layout[r]);
   }
@@ -72,8 +71,7 @@ void examine_stamp(const hdf5::Reader& in) {
   const auto set = read_checkpoint_set(folder_of(in.file()));
   if (!set || in.text("/", "set", 1024) == set->stamp.text()) return;
   throw Error(
-      "'{}' is from another step or another run than the checkpoint that contains it (step {}, t = {:g} s "
-      "of run {}).",
+      "'{}' is from another step or another run than the checkpoint that contains it (step {}, t = {:g} s of run {}).",
       in.file().string(), set->stamp.step, set->stamp.time, set->stamp.run);
 }
 

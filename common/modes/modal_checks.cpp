@@ -152,8 +152,7 @@ std::string scale_problem_of(const ModalModel& model) {
     largest = std::max(largest, sums[m].modal_mass);
     if (sums[m].modal_mass > most)
       return fmt::format(
-          "mode {} is not mass-normalized: the surface alone has a modal mass of {:.3g}; that of the structure must be 1 "
-          "kg",
+          "mode {} is not mass-normalized: the surface alone has a modal mass of {:.3g}; that of the structure must be 1 kg",
           m + 1, sums[m].modal_mass);
     if (model.face_density.empty() || sums[m].mass < 0.5 * model.mass) continue;
     for (int c = 0; c < 3; ++c) {
@@ -227,9 +226,8 @@ std::string order_problem_of(const ModalModel& model) {
       roughness(model, lowest, [n](std::size_t v, std::size_t c) { return c * n + v; });
   if (by_component >= 0.5 * by_vertex) return "";
   return fmt::format(
-      "the shape of mode {} seems to list all x components first, then all y, then all z: read that way, "
-      "neighboring vertices differ {:.2g} times less (mean square). The rows must be per vertex, with "
-      "three components each",
+      "the shape of mode {} seems to list all x components first, then all y, then all z: read that way, neighboring vertices "
+      "differ {:.2g} times less (mean square). The rows must be per vertex, with three components each",
       lowest + 1, by_vertex / std::max(by_component, 1e-12 * by_vertex));
 }
 

@@ -209,8 +209,7 @@ EigenModes lowest_modes(const Pencil& pencil, int n, double shift,
     keep(modes, std::size_t(n));
   }
   throw SolveFailure(
-      "Cannot verify the {} lowest modes: further ones keep appearing below them. Request fewer modes or "
-      "refine the mesh.",
+      "Cannot verify the {} lowest modes: further ones keep appearing below them. Request fewer modes or refine the mesh.",
       n);
 }
 
@@ -219,8 +218,7 @@ EigenModes lowest_modes(const linalg::SparseMatrix& stiffness, const linalg::Spa
   const GlobalIndex rows = parallel::sum(stiffness.comm(), stiffness.n_owned_rows());
   if (n > rows)
     throw Error(
-        "{} modes are requested, but the model has only {} unknowns. Request fewer modes or refine "
-        "the model.",
+        "{} modes are requested, but the model has only {} unknowns. Request fewer modes or refine the model.",
         n, rows);
   const linalg::SymmetricFactors factors(stiffness, mass, shift);
   const Pencil pencil{.comm = stiffness.comm(),

@@ -87,8 +87,7 @@ void declare(config::Section& s, TimeSchemeParameters& p, const std::string& aut
   if (!automatic.empty()) words.emplace(words.begin(), "auto", TimeScheme::automatic);
   s.choice("type", p.type, words)
       .doc(
-          "time integration scheme; all but euler are second order, all but trapezoidal damp the highest "
-          "modes" +
+          "time integration scheme; all but euler are second order, all but trapezoidal damp the highest modes" +
           automatic);
   s.value("spectral-radius", p.spectral_radius)
       .range(0, 1)

@@ -247,8 +247,7 @@ void ResidualGrowth::pass(double residual, double omega, AccelerationParameters:
   using Type = AccelerationParameters::Type;
   if (type == Type::constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
   throw SolveFailure(
-      "the coupling diverges: the residual grew {:.3g}-fold per iteration over {} iterations, {:.3g}-fold in the "
-      "last one; {}.",
+      "the coupling diverges: the residual grew {:.3g}-fold per iteration over {} iterations, {:.3g}-fold in the last one; {}.",
       factor(), growing_, omega,
       type == Type::aitken ? "`acceleration.type: iqn-ils` handles several modes at once"
                            : "the participants' own tolerances may be too loose for quasi-Newton");

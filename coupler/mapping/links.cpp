@@ -105,11 +105,10 @@ PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std
     if (other == t) here = theirs.size();
     theirs.push_back(sides[other].places_taken(*find_datum(sides[other].interface.takes, given.name)));
   }
-  const auto taker_of =
-      nearest_of(comm, places, theirs,
-                 fmt::format("'{}' and '{}' both take '{}' of '{}' at the same location: it would count "
-                             "twice.",
-                             sides[takers[0]].name, sides[takers[1]].name, given.name, sides[g].name));
+  const auto taker_of = nearest_of(
+      comm, places, theirs,
+      fmt::format("'{}' and '{}' both take '{}' of '{}' at the same location: it would count twice.",
+                  sides[takers[0]].name, sides[takers[1]].name, given.name, sides[g].name));
   return part_of(places, taker_of, here);
 }
 

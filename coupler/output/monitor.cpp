@@ -119,8 +119,7 @@ void Monitor::step(const coupling::Step& step, double time, const FixedPointResu
 std::string Monitor::summary(int halvings) const {
   const double steps = double(std::max(1L, steps_));
   std::string text = fmt::format(
-      "{} steps, {} halvings in {:.2f} s; coupling iterations: mean {:.2f}, max {}\n"
-      "  {:<20} {:>11} {:>11} {:>15}",
+      "{} steps, {} halvings in {:.2f} s; coupling iterations: mean {:.2f}, max {}\n  {:<20} {:>11} {:>11} {:>15}",
       steps_, halvings, wall_, double(iterations_) / steps, most_iterations_, "", "working", "waiting",
       "working");
   for (std::size_t i = 0; i < names_.size(); ++i)

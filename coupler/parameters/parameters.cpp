@@ -45,8 +45,7 @@ std::string problem_of_roles(const CouplingParameters& p) {
       return "an exchange has no separate structure, because the structure is one of its participants; use either `exchange` "
              "or `structure`";
     if (bool(p.fluid) != bool(p.mesh))
-      return "with an exchange give either both `fluid` and `mesh` (whose mesh is moved, and by which "
-             "participant) or neither";
+      return "with an exchange give either both `fluid` and `mesh` (whose mesh is moved, and by which participant) or neither";
     if (p.fluid && std::ranges::find(list, p.fluid->participant) == list.end())
       return "`fluid` with an exchange must be one of its participants";
     if (p.mesh && std::ranges::find(list, p.mesh->participant) != list.end())
@@ -144,8 +143,7 @@ void declare_participants(config::Section& section, CouplingParameters& p) {
       "participant that receives the load and gives the interface motion. Without it, but with `mesh`, bodies move as the mesh "
       "mover's boundaries prescribe (type: moving), and nothing is iterated");
   declare_role(section, "mesh", p.mesh,
-               "participant that moves the mesh of the fluid; default: the mesh is "
-               "at rest");
+               "participant that moves the mesh of the fluid; default: the mesh is at rest");
   section.optional_section<CouplingParameters::Exchange>(
       "exchange", p.exchange, [](config::Section& s, CouplingParameters::Exchange& e) { declare(s, e); },
       "instead of fluid, structure and mesh: participants of any kind that exchange data once per step; data that one "

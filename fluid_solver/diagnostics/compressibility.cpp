@@ -240,8 +240,7 @@ diagnostics::EffectFinding wave_time(double rate, double size, const Sound& soun
       .effect = "waves of pressure",
       .number = phase,
       .what = fmt::format(
-          "the travel time of sound across {} is {:.2g} s = {:.2g} times the time scale 1/omega = {:.2g} s of the driving "
-          "motion",
+          "the travel time of sound across {} is {:.2g} s = {:.2g} times the time scale 1/omega = {:.2g} s of the driving motion",
           sound.of, size / sound.speed, phase, 1 / rate),
       .advice = "pressure waves return while this motion changes: add 'compressibility'",
       .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};

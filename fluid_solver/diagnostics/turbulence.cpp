@@ -122,8 +122,7 @@ diagnostics::EffectFinding unresolved_layers(int dimension, double shear, double
           dimension == 2
               ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence', "
                 "'dimension: 3' and many cells in each direction"
-              : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is "
-                "turbulent"};
+              : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
   if (shear > limit && reynolds < laminar_below) {
     e.number = reynolds, e.limit = laminar_below, e.share = 0;
     e.what = fmt::format(

@@ -55,8 +55,7 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
       "velocity from a file, instead of 'velocity'");
   s.optional_section<RotationParameters>(
       "rotation", b.rotation, declare_rotation,
-      "adds omega x (r - centre) to the velocity otherwise prescribed on this patch, for a rotating inlet or wall; default: "
-      "none");
+      "adds omega x (r - centre) to the velocity otherwise prescribed on this patch, for a rotating inlet or wall; default: none");
 }
 
 void declare_absorbing(config::Section& s, BoundaryParameters& b) {
@@ -123,9 +122,8 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
       .positive()
       .doc(
           "mass per area of the structure behind the wall, with which the pressure equation anticipates its response (Robin "
-          "condition); requires `coupling.order: structure-first`. Use the density of the solid times its thickness, or less: "
-          "too small a value costs iterations, and too large a value may diverge; default: the wall moves as the coupling "
-          "prescribes");
+          "condition); requires `coupling.order: structure-first`. Use the density of the solid times its thickness, or less: too "
+          "small a value costs iterations, and too large a value may diverge; default: the wall moves as the coupling prescribes");
 }
 
 using Entry = std::pair<BoundaryType, FlowCondition>;
@@ -251,8 +249,7 @@ void declare_levels(config::Section& s, const FluidParameters& p) {
            "the 'upstream-volume' behind this inlet already responds to the waves; remove one of the two");
     refuse(
         waves && flows, where + ".type",
-        "a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' with "
-        "'absorbing: true'");
+        "a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' with 'absorbing: true'");
   }
   refuse(upstream && !inlet, "compressibility.upstream-volume", "this fluid has no inlet; remove the key");
   refuse(!p.gaps.empty() && !given && !waves, "gaps",

@@ -133,8 +133,7 @@ std::string gap_at_rest(const FluidParameters& p) {
 void declare_gaps(config::Section& s, FluidParameters& p) {
   s.map<GapParameters>(
       "gaps", p.gaps, declare_gap, "gap",
-      "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, "
-      "and open again");
+      "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, and open again");
   s.doubt([&p] { return gap_at_rest(p); }, "gaps");
 }
 
@@ -146,8 +145,7 @@ void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
-          "keys remain in meters");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D case has a depth of 1 m");
@@ -249,10 +247,9 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
   s.choice("volume-level", p.volume_level,
            {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
       .doc(
-          "for a fluid without an outlet whose interface is a wall of its cavity: what sets the pressure "
-          "level that conserves its volume. none: such a fluid is rejected. structure: the coupler finds "
-          "the level from the structure's response to a pressure (coupler/volume.csv); the fluid's own "
-          "pressures keep zero mean");
+          "for a fluid without an outlet whose interface is a wall of its cavity: what sets the pressure level that conserves "
+          "its volume. none: such a fluid is rejected. structure: the coupler finds the level from the structure's response to "
+          "a pressure (coupler/volume.csv); the fluid's own pressures keep zero mean");
 }
 
 /// Declares parts that move, close or rotate.

@@ -111,8 +111,7 @@ class PlateTheory final : public diagnostics::Diagnostic {
     report_neglected(
         report, "stretch of the mid-surface", deflection,
         fmt::format("plate held on opposite sides: max deflection / thickness = {:.2g}", deflection),
-        "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for "
-        "finite strain",
+        "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for finite strain",
         stiffening * x * x);
   }
 

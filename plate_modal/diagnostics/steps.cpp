@@ -129,8 +129,7 @@ class ImpactOnSeat final : public diagnostics::Diagnostic {
     const Contact::DeepestPoint nearest = view_.contact->deepest(view_.state.q);
     if (nearest.depth > 0) return;
     report.sentences.push_back(fmt::format(
-        "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, "
-        "{:.4g}).",
+        "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, {:.4g}).",
         -nearest.depth, nearest.centre.x(), nearest.centre.y(), nearest.centre.z()));
   }
   void visit(io::Archive& archive) override {

@@ -25,8 +25,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override {
     if (motion_ && !view_.parameters.modes_file)
       report.sentences.emplace_back(
-          "truncated modes: their contribution under these loads is not estimated; compare with more modes "
-          "('modes.number').");
+          "truncated modes: their contribution under these loads is not estimated; compare with more modes ('modes.number').");
   }
 
  private:

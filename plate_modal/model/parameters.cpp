@@ -47,8 +47,7 @@ void declare_body(config::Section& s, Parameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
-          "keys remain in meters");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant");
   declare_layers(s, p);
@@ -87,8 +86,7 @@ void declare_place(config::Section& s, Parameters& p) {
       "position of the mid-surface");
   s.choice("wetted", p.wetted, {{"both", Wetted::both}, {"upper", Wetted::upper}, {"lower", Wetted::lower}})
       .doc(
-          "sides that form the interface. upper: where the normal points. both: including the rims of free "
-          "edges");
+          "sides that form the interface. upper: where the normal points. both: including the rims of free edges");
 }
 
 void declare_modes(config::Section& s, Parameters& p) {

@@ -126,9 +126,8 @@ void SolidBody::find_mass() {
     has_no_energy = has_no_energy || elastic_.at(f).level;
   if (kernel_.is_symmetric() && parallel::any(mesh_.comm, has_no_energy))
     throw Error(
-        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no energy "
-        "functional, so this gradient does not support it; use 'symmetry' or 'frictionless', or "
-        "'face-gradient: thesis'.");
+        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no energy functional, so "
+        "this gradient does not support it; use 'symmetry' or 'frictionless', or 'face-gradient: thesis'.");
   if (kernel_.is_symmetric() && parallel::any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
     throw Error(
         "solution-method.face-gradient: symmetric: a part of a patch prescribes components of the displacement, but not those "

@@ -103,9 +103,8 @@ void check_touching(const mesh::LoadedMesh& body, const SolidParameters& paramet
                heat = !parameters.heat || is_apart(found, is_adiabatic);
     if (forces && heat) continue;
     throw Error(
-        "mesh: {} face{} of patch '{}', the first at {}, touch{} faces of {} without sharing their points, so that "
-        "{} passes there. {} If the parts are meant to be separate, such as the faces of a "
-        "crack, set 'touching-faces: apart'.",
+        "mesh: {} face{} of patch '{}', the first at {}, touch{} faces of {} without sharing their points, so that {} passes "
+        "there. {} If the parts are meant to be separate, such as the faces of a crack, set 'touching-faces: apart'.",
         found.count, found.count == 1 ? "" : "s", found.patch, text_of(found.where, body.mesh.dim),
         found.count == 1 ? "es" : "", found.patch == found.other ? "the same patch" : "'" + found.other + "'",
         heat     ? "no force"

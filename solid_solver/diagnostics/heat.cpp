@@ -76,9 +76,8 @@ void HeatSwing::observe(diagnostics::Report& report) {
        .number = share,
        .limit = noticeable,
        .sentence = fmt::format(
-           "the temperature oscillates from step to step: amplitude {:.3g} K (rms) in a range "
-           "of {:.3g} K: 'heat: {{scheme: trapezoidal}}' does not damp unresolved modes. Use 'scheme: "
-           "three-point' or 'euler', or shorter steps.",
+           "the temperature oscillates from step to step: amplitude {:.3g} K (rms) in a range of {:.3g} K: 'heat: {{scheme: "
+           "trapezoidal}}' does not damp unresolved modes. Use 'scheme: three-point' or 'euler', or shorter steps.",
            size, range_.value())});
 }
 

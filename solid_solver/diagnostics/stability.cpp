@@ -110,8 +110,7 @@ const char* cure_of(const SolidView& view) {
 
 std::string EnergyAudit::text() const {
   return fmt::format(
-      "the solid has {:.6g} J of kinetic and strain energy; loads and initial motion supplied {:.6g} J "
-      "({:+.2g} %)",
+      "the solid has {:.6g} J of kinetic and strain energy; loads and initial motion supplied {:.6g} J ({:+.2g} %)",
       held, given, 100 * created());
 }
 

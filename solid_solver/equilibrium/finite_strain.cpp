@@ -249,8 +249,7 @@ linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double
     if (std::max(now.residual, whole_) <= std::max(tolerance_ * scale, floor())) break;
     if (statistics.iterations == most_iterations)
       throw SolveFailure(
-          "Newton's method did not converge: after {} iterations the residual is {:.2g} of the load "
-          "(tolerance {:.0e}). {}",
+          "Newton's method did not converge: after {} iterations the residual is {:.2g} of the load (tolerance {:.0e}). {}",
           statistics.iterations, std::max(now.residual, whole_) / scale, tolerance_, where_worst());
     const double ratio = statistics.iterations == 0 ? 1 : now.residual / before;
     const double eta =

@@ -21,8 +21,7 @@ using Texts = std::vector<config::ExpressionText>;
 std::string problem_of_total(const config::ExpressionText& text) {
   return fv::Expression(text).uses_space()
              ? fmt::format(
-                   "'{}' depends on x, y or z, but a total load has no position; it may depend on t "
-                   "only",
+                   "'{}' depends on x, y or z, but a total load has no position; it may depend on t only",
                    text.text)
              : "";
 }
@@ -179,9 +178,7 @@ void declare_plate(config::Section& s, SolidCondition& c) {
   s.value("plate-normal", c.normal).doc("normal of the plate, a vector of any length");
   s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "plate-normal");
-  declare_vector(s, "traction", c.traction, "Pa",
-                 "force per area on the remaining free "
-                 "components");
+  declare_vector(s, "traction", c.traction, "Pa", "force per area on the remaining free components");
 }
 
 void declare_roller(config::Section& s, SolidCondition& c) {

@@ -110,8 +110,7 @@ void declare(config::Section& section, BedParameters& p) {
       .choice("advection", p.advection,
               {{"upwind", Advection::upwind}, {"tvd", Advection::tvd}, {"implicit", Advection::implicit}})
       .doc(
-          "upwind: explicit, first order, as in the thesis. tvd: explicit, second order. implicit: "
-          "upwind, any step");
+          "upwind: explicit, first order, as in the thesis. tvd: explicit, second order. implicit: upwind, any step");
   section.value("courant", p.courant)
       .range(1e-4, 0.95)
       .doc(

@@ -276,8 +276,7 @@ void declare(config::Section& section, MediumInput& p) {
         .unit("K")
         .range(150, 1500)
         .doc(
-            "temperature of the density used for the heat in the pores; the pressure loss uses the "
-            "actual temperature");
+            "temperature of the density used for the heat in the pores; the pressure loss uses the actual temperature");
     s.value("specific-heat", p.air_specific_heat)
         .unit("J/(kg K)")
         .range(900, 1400)

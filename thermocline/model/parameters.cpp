@@ -87,8 +87,7 @@ void declare_elements(config::Section& section, TankParameters& p) {
       "passive states");
   declare_section(
       section, "external-wall", p.external_wall,
-      "another program computes the wall's stress: it receives temperature and pressure and gives its "
-      "displacement");
+      "another program computes the wall's stress: it receives temperature and pressure and gives its displacement");
   declare_section(section, "insulation", p.insulation, "blanket around the shell");
   section.optional_section<UllageSpace>(
       "ullage", p.ullage,

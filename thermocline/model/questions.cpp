@@ -14,8 +14,7 @@ std::string forgotten_unit(const std::string& what, double kelvin_given, const M
   const double as_celsius = kelvin(kelvin_given);
   if (kelvin_given >= fluid.lowest || as_celsius < fluid.lowest || as_celsius > fluid.highest) return "";
   return fmt::format(
-      "{} is {:.6g} K, that is {:.1f} degC, but {} is not a liquid below {:.0f} degC; write '{:.6g} "
-      "degC' if that is intended",
+      "{} is {:.6g} K, that is {:.1f} degC, but {} is not a liquid below {:.0f} degC; write '{:.6g} degC' if that is intended",
       what, kelvin_given, celsius(kelvin_given), fluid.name, celsius(fluid.lowest), kelvin_given);
 }
 

@@ -191,8 +191,7 @@ std::vector<std::string> Calendar::doubts() const {
   for (std::size_t i = 0; i < rules_.size(); ++i)
     if (!used[i])
       sentences.push_back(fmt::format(
-          "flow.calendar[{}] applies on no day: the weather does not contain its days, or earlier rules "
-          "override it",
+          "flow.calendar[{}] applies on no day: the weather does not contain its days, or earlier rules override it",
           i));
   return sentences;
 }

@@ -169,8 +169,7 @@ std::vector<std::string> DayReport::doubts() const {
   const double days = results_[Sums::duration] / seconds_a_day;
   if (days_counted_ == 0 && p_.run_in > 0)
     sentences.push_back(fmt::format(
-        "report: no day counts: the run has {} whole days, but the first {:g} are the run-in "
-        "(report.run-in); summary.csv {}",
+        "report: no day counts: the run has {} whole days, but the first {:g} are the run-in (report.run-in); summary.csv {}",
         days_seen_, p_.run_in,
         days > 0 ? fmt::format("covers its last {:.3g} h", 24 * days) : std::string("contains no numbers")));
   if (p_.profile_day && *p_.profile_day * seconds_a_day >= last_time_)

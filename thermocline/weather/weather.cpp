@@ -89,8 +89,7 @@ std::vector<std::string> check_sun(const WeatherHours& record) {
   const double ahead = site.solar_ahead / hour;
   if (std::abs(ahead) > farthest_clock)
     all.push_back(fmt::format(
-        "{}: the solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or "
-        "time zone wrong?",
+        "{}: the solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or time zone wrong?",
         record.source, std::abs(ahead), ahead > 0 ? "ahead of" : "behind"));
   double total = 0, dark = 0;
   for (std::size_t h = 0; h < record.dni.size(); ++h) {

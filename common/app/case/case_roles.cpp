@@ -83,8 +83,7 @@ class Cast {
       problem = "only mesh_mover can move the mesh of a fluid";
     else if (contract.role == "fluid" && has_mover_)
       problem =
-          "only fluid_solver accepts a moved mesh; your own fluid program must move its mesh itself, "
-          "without `mesh`";
+          "only fluid_solver accepts a moved mesh; your own fluid program must move its mesh itself, without `mesh`";
     if (!problem.empty())
       say(key, fmt::format("'{}' is run by {}, which cannot be the {}: {}{}", *name, who->program,
                            contract.role, problem, others(contract)));
@@ -158,8 +157,7 @@ class Cast {
       if (*wall == "body" && *type != "moving")
         say(key,
             fmt::format(
-                "the wall '{}' is a body in '{}', which the mesh mover must move: set `type: moving` with "
-                "its `motion`",
+                "the wall '{}' is a body in '{}', which the mesh mover must move: set `type: moving` with its `motion`",
                 patch, *fluid));
       if (*wall == "no-slip" && *type == "moving")
         say(walls + "." + patch + ".type",

@@ -91,8 +91,7 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
                "allow a .geo to run commands and write files, with your permissions");
   app.add_flag(
       "--strict{answer}", flags.strict,
-      "exit with code 1 if the run warns about its own result; --strict=effects: also if it warns about "
-      "neglected effects");
+      "exit with code 1 if the run warns about its own result; --strict=effects: also if it warns about neglected effects");
   app.add_option(
          "--accept", line.accept,
          "accept a finding by its id (in brackets at the end of its line; docs/findings.md); repeatable")

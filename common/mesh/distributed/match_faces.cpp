@@ -34,8 +34,7 @@ std::string face_inside(const std::string& patch, const std::string& where) {
 
 std::string face_in_two_patches(const std::string& one, const std::string& other, const std::string& where) {
   return fmt::format(
-      "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly one "
-      "patch.",
+      "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly one patch.",
       where, one, other);
 }
 
@@ -150,8 +149,7 @@ class MeetingFaces {
 
 std::string face_of_many_cells(GlobalIndex cells, const std::string& where) {
   return fmt::format(
-      "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or "
-      "overlapping cells.",
+      "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or overlapping cells.",
       cells, where);
 }
 
