@@ -239,28 +239,28 @@ def declare(parser):
         type=pathlib.Path,
         metavar="FILE",
         help=(
-            "a CSV file of a run, a folder of such files, or a case: then its section plot (docs/plots.md), its"
-            " plot.py, or all files of its run"
+            "a CSV file of a run, a folder of such files, or a case, for which its section `plot` (docs/plots.md), its"
+            " plot.py, or all files of its run are drawn"
         ),
     )
     parser.add_argument(
         "--out",
         type=pathlib.Path,
         metavar="FOLDER",
-        help="output folder of the run, with a case (default: the one that the case names)",
+        help="output folder of the run, if a case is given (default: the folder that the case names)",
     )
     parser.add_argument(
         "--only", nargs="+", default=[], metavar="WORD", help="only columns whose name contains one of these words"
     )
-    parser.add_argument("--from", dest="low", type=float, metavar="T", help="starts at this time [s]")
-    parser.add_argument("--to", dest="high", type=float, metavar="T", help="ends at this time [s]")
+    parser.add_argument("--from", dest="low", type=float, metavar="T", help="starts the plot at this time [s]")
+    parser.add_argument("--to", dest="high", type=float, metavar="T", help="ends the plot at this time [s]")
     parser.add_argument(
         "--at",
         type=float,
         metavar="T",
         help="draws lines and planes of the output nearest to this time [s] (default: the last)",
     )
-    parser.add_argument("--log", action="store_true", help="logarithmic scale; residuals always have it")
+    parser.add_argument("--log", action="store_true", help="uses a logarithmic scale, which residuals always have")
     parser.add_argument(
         "--field",
         metavar="NAME",
@@ -287,7 +287,8 @@ def declare(parser):
         type=float,
         metavar="F",
         help=(
-            "draws bodies displaced by F times their displacement (default: 1 with --field, else what makes it visible)"
+            "draws bodies displaced by F times their displacement (default: 1 with --field, otherwise a factor that"
+            " makes the motion visible)"
         ),
     )
     parser.add_argument(
@@ -301,13 +302,13 @@ def declare(parser):
     parser.add_argument(
         "--allow-commands",
         action="store_true",
-        help="runs the plot.py and the functions in Python by which a case draws its picture, with your permissions",
+        help="runs the plot.py and the Python functions with which a case draws its picture, with your permissions",
     )
     parser.add_argument(
         "--picture",
         type=pathlib.Path,
         metavar="FILE.png",
-        help="name of the picture, for a single file (default: FILE.png beside FILE.csv)",
+        help="name of the picture, for a single file (default: FILE.png next to FILE.csv)",
     )
 
 
@@ -320,7 +321,7 @@ def run(options):
         folder = options.out or run_folder(options.files[0])
         warp = 1.0 if options.warp is None else options.warp
         look = (options.picture, options.at, options.component, warp)
-        expect(not options.plane or not options.surface, "--plane: cuts the whole mesh: leave --surface out")
+        expect(not options.plane or not options.surface, "--plane: it cuts the whole mesh, so remove --surface")
         expect(len(options.files) == 1, "--field, --mode: give one folder of a run")
         expect(folder.is_dir(), f"{folder}: there is no such folder; has the case been run?")
         print(
@@ -341,7 +342,7 @@ def run(options):
     else:
         expect(
             options.out is None and not options.film,
-            "--out, --film: belong to CASE.yaml; of a run give its folder alone",
+            "--out, --film: belong to CASE.yaml; for a run, give only its folder",
         )
     monitors, folders = [], [name for name in options.files if name.is_dir()]
     for name in options.files:

@@ -165,7 +165,7 @@ assert asked(MadeUp(lambda s: -1 - 3 * float(s["n"])**-2, lambda s: 1.0, {}), 1e
 # -- never an absurd size: a run is refused that would take longer than the study allows, with the size and the time
 study = MadeUp(lambda s: 2 + float(s["n"])**-0.5, seconds, {})
 said = asked(study, 1e-5)
-assert not said["met"] and all("too far" in o["reason"] or "more than a run may" in o["reason"] for o in said["others"]), said
+assert not said["met"] and all("too far" in o["reason"] or "longer than a run may" in o["reason"] for o in said["others"]), said
 assert max(float(name.split("-")[1]) for name in study.made) <= 64 * 8 and sum(seconds({"n": name.split("-")[1]}) for name in study.made) < 100, study.made
 study = MadeUp(lambda s: 2 + float(s["n"])**-0.5, lambda s: 1.0, {})  # not even where it costs nothing
 said = asked(study, 1e-5)

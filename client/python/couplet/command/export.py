@@ -53,7 +53,7 @@ def made(case, arguments, work):
     from couplet.peers.values import refuse
 
     names = [arguments.participant] if arguments.participant else list(case.participants)
-    expect(len(names) == 1, f"{case.file}: --participant: which one of {', '.join(names)}?")
+    expect(len(names) == 1, f"{case.file}: --participant: choose one of {', '.join(names)}")
     expect(names[0] in case.participants, f"{case.file}: there is no participant '{names[0]}'")
     data = with_changes(case.data, dict(s.split("=", 1) for s in arguments.set))
     program, common = str(data["participants"][names[0]].get("program")), (data, names[0], case.file.parent, work)
@@ -95,7 +95,7 @@ def run(arguments):
         expect(out.is_dir(), f"{out}: there is no such output folder; has the case been run?")
         lists = write(out, arguments.folder and new_folder(arguments.folder), arguments.participant)
         expect(lists, f"{out}: there are no field series ({arguments.participant or '*'}/*.h5) in it")
-        print("written, open in ParaView:", *lists, sep="\n  ")
+        print("written; open in ParaView:", *lists, sep="\n  ")
         return 0
     case = Case(arguments.case)
     folder = new_folder(arguments.folder or case.file.parent / arguments.to)

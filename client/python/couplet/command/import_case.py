@@ -14,14 +14,14 @@ def declare(parser):
         "configuration",
         type=pathlib.Path,
         metavar="FILE",
-        help="a deck, .inp, or a configuration of preCICE, such as precice-config.xml",
+        help="a deck (.inp), or a preCICE configuration, such as precice-config.xml",
     )
     parser.add_argument(
         "-o",
         "--output",
         type=pathlib.Path,
         metavar="YAML",
-        help="case to write (default: beside the file, with its name and .yaml)",
+        help="case to write (default: next to the file, with the same name and the ending .yaml)",
     )
     parser.add_argument(
         "--units", choices=("si", "mm"), help="units of a deck: SI, or mm, N, tonne, s and MPa (default: si)"

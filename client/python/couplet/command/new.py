@@ -34,7 +34,7 @@ def run(arguments):
     }
     file = gallery.copy(gallery.find(arguments.source), arguments.folder, values)
     print(
-        f"{file}: a case like {arguments.source}. couplet check, explain and run take it: couplet run"
+        f"{file}: a copy of {arguments.source}. Use it with couplet check, explain or run: couplet run"
         f" {shlex.quote(str(file))}"
     )
     return 0

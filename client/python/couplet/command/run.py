@@ -14,7 +14,10 @@ from couplet.runs import folder as folders
 from couplet.runs.case import CONTROL, Case, expect, mapping_of
 from couplet.runs.job import Job, output_of
 
-RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divided by measured work, or else by cells"
+RANKS_HELP = (
+    "ranks of participants (fluid=4,solid=2), or a total, which is divided by measured work or, without measurements, by"
+    " numbers of cells"
+)
 FLAGS = {"strict": "fails if the run warns about its own result; --strict=effects: also about neglected effects"}
 
 
@@ -115,12 +118,14 @@ def ranks_of(words, case, here=True):
         if here:
             fit_total(int(words[0]))
         return divide(case, int(words[0]))
-    expect(all("=" in w for w in words), f"-n {','.join(words)}: expected one whole number for all together, or NAME=N")
+    expect(
+        all("=" in w for w in words), f"-n {','.join(words)}: expected one whole number for the whole job, or NAME=N"
+    )
     found = pairs(words, "-n")
     expect(len(found) == len(words), f"-n {','.join(words)}: names a participant twice")
     expect(
         all(n.isdigit() and int(n) > 0 for n in found.values()),
-        f"-n {','.join(words)}: expected whole numbers from 1 on, such as -n fluid=4,solid=2",
+        f"-n {','.join(words)}: expected whole numbers of at least 1, such as -n fluid=4,solid=2",
     )
     return {name: int(n) for name, n in found.items()}
 
@@ -161,7 +166,7 @@ def batch_script(job, options):
         f"{name}={value}" for name, value in head.items() if name not in {option.split("=")[0] for option in options}
     ]
     for word in (*head, *options, *words):  # a line break would begin a command
-        expect(not CONTROL.search(word), f"{word!r}: contains a control character; a batch script cannot hold it.")
+        expect(not CONTROL.search(word), f"{word!r}: contains a control character; a batch script cannot contain it.")
     return "\n".join(
         [
             "#!/bin/bash",
@@ -300,7 +305,7 @@ def finish(job, code, picture):
     if any(
         "cannot start" in line for line in job.last
     ):  # errors of the case; it does not know others, such as of --restart
-        fix += f"; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}" + "".join(
+        fix += f"; to list all errors of the file: couplet check {shlex.quote(shown(job.case.file))}" + "".join(
             f" --set {shlex.quote(s)}" for s in job.sets
         )
     left = f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}"

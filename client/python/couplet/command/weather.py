@@ -336,7 +336,7 @@ def pvgis(source, first, head):
     begin = hours[0][0]
     hours = [[begin + k, hours[(k - zone) % len(hours)][1]] for k in range(len(hours))]
     print(
-        f"the clock of {source.file.name} is UTC; that of the result is {zone:+d} h ahead, the standard time of its"
+        f"the times in {source.file.name} are UTC; those of the result are {zone:+d} h ahead, the standard time of its"
         " longitude"
     )
     return hours, [*site[:2], float(zone)], 60.0 * minutes[0]
@@ -388,7 +388,7 @@ def read(source):
     usual = {name: next(iter(units)) for name, (_, _, units) in QUANTITIES.items() if name != "p_Pa"}
     times = {cell.lower() for cell in source.cells(first) if cell.lower() in TIMES}
     source.expect(
-        times, first, "a column of the time is missing: month, day and hour, or time, or hour (of the year, from 0)."
+        times, first, "a time column is missing: month, day and hour, or time, or hour (of the year, from 0)."
     )
     if "time(utc)" in times:
         return ("PVGIS", *pvgis(source, first, Head(source, first, {**usual, "p_Pa": "pa"})))
@@ -424,7 +424,7 @@ def run(arguments):
     kind, hours, site, states = read(source)
     stem = re.sub(r"(\.csv|\.epw)?(\.gz)?$", "", arguments.file.name, flags=re.I)
     output = arguments.output or arguments.file.with_name(stem + "_weather.csv")
-    expect(not output.exists() or not output.samefile(arguments.file), f"-o: {output} is the file that is read")
+    expect(not output.exists() or not output.samefile(arguments.file), f"-o: {output} is the file to be converted")
     lines = [f"# weather from {arguments.file.name} ({kind})"]
     lines += [f"# {name}: {text_of(value)}" for name, value in zip(("latitude", "longitude", "time-zone"), site or ())]
     lines += [f"# states-at: {text_of(states)}", ",".join(["hour", *WRITTEN])]

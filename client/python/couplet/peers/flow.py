@@ -138,7 +138,10 @@ class FlowCase:
         if fastest == 0 and self.program == "icoFoam":
             refuse(
                 f"{self.flow.where}.boundaries",
-                "icoFoam's step is chosen by a prescribed velocity, and there is none; pimpleFoam chooses its own",
+                (
+                    "the step of icoFoam is chosen from a prescribed velocity, but there is none; pimpleFoam chooses"
+                    " its own step"
+                ),
             )
         step = COURANT * self.flow.mesh()[0].size() / (FASTER * fastest) if fastest > 0 else self.flow.end / 1000
         return max(1, int(np.ceil(self.flow.end / step)))

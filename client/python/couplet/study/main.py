@@ -57,7 +57,7 @@ def run_variants(cases, arguments):
     failed = sum(record.state != "done" for record in records.values())
     print(
         f"{len(runs) - failed} of {len(runs)} variants in {time.monotonic() - start:.1f} s, {jobs} at a time; "
-        f"one after the other they take {sum(r.wall for r in records.values()):.1f} s"
+        f"one after another they would take {sum(r.wall for r in records.values()):.1f} s"
     )
     return 1 if failed else 0
 
@@ -133,7 +133,7 @@ def declare(parser):
         "--publish",
         type=pathlib.Path,
         metavar="FOLDER",
-        help="copies the report without its plots and the tables to this folder",
+        help="copies the report (without its plots) and the tables to this folder",
     )
     parser.add_argument("--again", action="store_true", help="repeats runs even if results exist")
     parser.add_argument(
