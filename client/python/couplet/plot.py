@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what a run wrote: its fields, shapes and monitors, or the picture that a case declares in its section `plot`.
-Of the folder of a run it draws the flow (in 3-D a cut), the deformed bodies colored by stress, temperatures, shapes of
-vibration and buckling, and the monitors that have several instants, but no run of a study in it. Columns of the same
-unit share a diagram. A line is drawn over its length, a plane as a map of each column, and residuals of the coupling
-as the last one of each step, above the number of iterations. The name of each picture is printed."""
+"""Draws the output of a run: its fields, mode shapes and monitors, or the picture that a case declares in its section
+`plot`. For the folder of a run it draws the flow (in 3-D a section), the deformed bodies colored by stress,
+temperatures, vibration and buckling modes, and the monitors with several instants, but no runs of a study in that
+folder. Columns of the same unit share a diagram. A line is drawn over its length and a plane as a map of each column.
+For the residuals of the coupling, the last one of each step is drawn above the number of iterations. The name of each
+picture is printed."""
 import functools
 import os
 import pathlib

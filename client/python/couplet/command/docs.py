@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the documentation as a site with search and a gallery of all cases. Builds it once, then serves it on
+"""Shows the documentation as a site with search and a gallery of all cases. The site is built once and then served on
 localhost."""
 import functools
 import http.server

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks whether this machine can run coupled cases: programs and their versions, MPI, Python packages, gmsh, cores,
-memory, and a coupled self-test of two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line that
-fails names the fix."""
+memory, and a coupled self-test of two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line
+that fails states how to fix it."""
 import importlib.util
 import os
 import pathlib

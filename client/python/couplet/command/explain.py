@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists what a case computes (with --all, also what it neglects), its cells, the launch line, and the memory and time of
-the whole run, measured over its first seconds in a temporary folder."""
+"""Lists what a case computes (with --all, also what it neglects), its cells, the launch line, and the memory and time
+that the whole run needs, extrapolated from its first seconds, which are run in a temporary folder."""
 import shlex
 
 from couplet.command import check

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the fields of a run for other programs (--to vtk: .vtu files with a .pvd that lists them, for each
-participant), or a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM
-(incompressible, laminar flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key without a
-counterpart there is an error that names it. `couplet study --peers` runs both and compares them."""
+participant), or writes a case as input of another program into a folder: CalculiX (static, linear elastic solids) or
+OpenFOAM (incompressible, laminar flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key
+without a counterpart there is reported as an error. `couplet study --peers` runs both programs and compares them."""
 import pathlib
 import shutil
 import tempfile

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates a case from a deck of CalculiX or Abaqus, or from a configuration of preCICE. A deck (.inp) gives the mesh,
-materials, supports, loads and the first step of the case; all that is left out is listed with its line
-(docs/how-to/calculix-deck.md). A configuration (.xml) gives a job of programs that use preCICE's interface
+"""Creates a case from a CalculiX or Abaqus deck, or from a preCICE configuration. A deck (.inp) provides the mesh,
+materials, supports, loads and the first step of the case; everything that is left out is listed with its line
+(docs/how-to/calculix-deck.md). A configuration (.xml) yields a job of programs that use preCICE's interface
 (docs/precice.md). The programs still read the XML themselves. Differences are listed. If an element is not supported,
 it is named with its line, and no case is written (exit code 2)."""
 import pathlib

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes and checks cut meshes (NAME.h5) for cases that are too large for one process: each rank reads its share, on
-any number of ranks. 'cut SOURCE' converts the meshes of a case, or one mesh file, in one process that reads it as a
-whole. 'box' writes a box of hexahedra or tetrahedra in parallel. 'open SOURCE' opens a mesh as the programs do and
-prints time and memory."""
+"""Writes and checks cut meshes (NAME.h5) for cases that are too large for one process: any number of ranks can read
+such a mesh, each its own part. 'cut SOURCE' converts the meshes of a case, or one mesh file, in one process that
+reads it as a whole. 'box' writes a box of hexahedra or tetrahedra in parallel. 'open SOURCE' opens a mesh as the
+programs do and prints the time and memory required."""
 import pathlib
 import subprocess
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates a case of your own: copies an example case with all files that it names into a new folder. Comments and the
-order of keys are kept."""
+"""Creates a case of your own by copying an example case, with all files that it names, into a new folder. Comments
+and the order of keys are kept."""
 import pathlib
 import shlex
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and settings. A
-continued run equals the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of the solvers."""
+continued run is bit-for-bit identical to an uninterrupted one; on a different number of ranks (-n), they agree within
+the tolerance of the solvers."""
 import os
 import pathlib
 import shlex
@@ -19,12 +20,7 @@ SHAPE = {"case": str, "ranks": dict, "sets": list, "flags": list, "with": dict} 
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="RUN", help=RUN_HELP)
     parser.add_argument(
-        "-n",
-        "--ranks",
-        action="append",
-        default=[],
-        metavar="NAME=N",
-        help=f"numbers of ranks, if they change: {RANKS_HELP}",
+        "-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"new numbers of ranks: {RANKS_HELP}"
     )
     parser.add_argument(
         "--set",

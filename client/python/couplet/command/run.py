@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a case: starts all its programs, as the YAML names them, in one job, shows their output, and reports at the end where the
-results are. The results equal those of the same line typed by hand (--print shows it), bit for bit. Ctrl-C stops the run after the
-current step, with a checkpoint; press it again to stop immediately."""
+"""Runs a case: starts all its programs in one job as the YAML file lists them, shows their output, and reports at the
+end where the results are. The results are bit-for-bit identical to those of the launch command typed by hand (--print
+shows it). Ctrl-C stops the run after the current step with a checkpoint; press it again to stop immediately."""
 import os
 import pathlib
 import shlex
@@ -15,8 +15,8 @@ from couplet.runs.case import CONTROL, Case, expect, mapping_of
 from couplet.runs.job import Job, output_of
 
 RANKS_HELP = (
-    "ranks of participants (fluid=4,solid=2), or a total, which is divided by measured work or, without measurements, by"
-    " numbers of cells"
+    "ranks of participants (fluid=4,solid=2), or a total, which is divided by measured work or, without measurements,"
+    " by numbers of cells"
 )
 FLAGS = {"strict": "fails if the run warns about its own result; --strict=effects: also about neglected effects"}
 
@@ -46,7 +46,7 @@ def declare(parser):
             " over a network interface (tcp6: IPv6)"
         ),
     )
-    parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
+    parser.add_argument("--print", action="store_true", help="prints the launch line without running the case")
     parser.add_argument(
         "--slurm",
         nargs="?",
@@ -78,7 +78,7 @@ def options_of_programs(parser):
     parser.add_argument(
         "--diagnostics",
         choices=("standard", "without-errors", "full"),
-        help="what the run checks about its own result; full: also searches that may take as long as a solve",
+        help="how thoroughly the run checks its own result; full includes searches that may take as long as a solve",
     )
     parser.add_argument(
         "--accept",

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts a weather file to the CSV that a thermocline reads (docs/input-data.md): EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS as CSV,
-and tables with other column names, units or separators. All may be compressed (.gz). The format is recognized by the first lines. 29 February
-is dropped, several records per hour are averaged, codes for missing values become gaps, and without humidity the dew point is used. PVGIS
-gives instantaneous values in UTC, which become hourly means on the standard time of the longitude. Ranges, order and gaps of the result
-are checked by the program."""
+"""Converts a weather file to the CSV that a thermocline reads (docs/input-data.md): EnergyPlus (EPW), SAM or NSRDB,
+TMY3, the typical year of PVGIS as CSV, and tables with other column names, units or separators. All of them may be
+compressed (.gz). The format is recognized by the first lines. 29 February is dropped, several records per hour are
+averaged, codes for missing values become gaps, and without humidity the dew point is used. PVGIS gives instantaneous
+values in UTC, which become hourly means in the standard time of the longitude. The thermocline checks the ranges,
+order and gaps of the result."""
 import csv
 import gzip
 import math
@@ -73,7 +74,7 @@ def declare(parser):
         "--output",
         type=pathlib.Path,
         metavar="OUT.csv",
-        help="CSV to write, compressed if its name ends in .gz (default: NAME_weather.csv beside FILE)",
+        help="CSV to write, compressed if its name ends in .gz (default: NAME_weather.csv next to FILE)",
     )
 
 

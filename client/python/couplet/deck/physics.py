@@ -88,7 +88,8 @@ class Physics:
         return {"degrees": value}
 
     def over_time(self, block, value, kind):
-        """A value by its *AMPLITUDE: over time where the case has steps, else as it is at the end."""
+        """Scales a value by its *AMPLITUDE: as a function of time if the case has time steps, otherwise by the amplitude at
+        the end."""
         name = block.values.get("AMPLITUDE", "").upper()
         expect(not name or name in self.amplitudes, f"{block.place}: there is no *AMPLITUDE '{name}' before this line.")
         curve = self.amplitudes.get(name) or (

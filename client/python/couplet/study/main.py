@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the section `study` of a case and reports the result: named variants with their summaries in one table, axes
-with error against time, or the best of some variables. An interrupted study continues where it stopped, and two at once
-share their work. docs/studies.md describes the section."""
+with the error against time, or the best values of some variables. An interrupted study continues where it stopped,
+and two that run concurrently share the work. docs/studies.md describes the section."""
 import fnmatch
 import os
 import pathlib
@@ -124,7 +124,7 @@ def declare(parser):
         "--out",
         type=pathlib.Path,
         metavar="FOLDER",
-        help="folder for runs and tables (default: out/study or out/optimise beside the case)",
+        help="folder for runs and tables (default: out/study or out/optimise next to the case)",
     )
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="folder whose bin/ contains the programs")
     parser.add_argument("--list", action="store_true", help="lists the runs and their changes")
@@ -166,7 +166,7 @@ def declare(parser):
         help=(
             "estimates the errors of the study's quantities for the case as it is, from runs with a half and a quarter"
             " of the cells along each line, with two and four times the step, and with tighter tolerances (section"
-            " `sources`), and names the dominant one"
+            " `sources`), and names the dominant contribution"
         ),
     )
     parser.add_argument("--optimise", action="store_true", help="finds the best values of some variables in few runs")
