@@ -47,7 +47,7 @@ void refuse_other_meanings(const std::string& text) {
     } else if (text[i] == ')' && levels.size() > 1) {
       levels.pop_back();
     } else if (text[i] == ',' && !levels.back().takes_commas) {
-      throw TextProblem{i, "a comma separates the arguments of a function only; write a decimal point"};
+      throw TextProblem{i, "a comma only separates the arguments of a function; write a decimal point"};
     } else if (is(i, ",?:") || (is(i, "&|") && is(i + 1, "&|"))) {
       levels.back().compares = false;
     } else if (is(i, "<>=!")) {
@@ -57,7 +57,7 @@ void refuse_other_meanings(const std::string& text) {
             i,
             "'=' does not compare, and nothing can be assigned; write '==', or a range such as abs(y - 0.1) < 1e-6"};
       if (std::exchange(levels.back().compares, true))
-        throw TextProblem{i, "comparisons in a row; join them by '&&', as in '0 < x && x < 1'"};
+        throw TextProblem{i, "comparisons cannot be chained; join them by '&&', as in '0 < x && x < 1'"};
       i += two;
     }
   }

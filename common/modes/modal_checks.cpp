@@ -152,7 +152,8 @@ std::string scale_problem_of(const ModalModel& model) {
     largest = std::max(largest, sums[m].modal_mass);
     if (sums[m].modal_mass > most)
       return fmt::format(
-          "mode {} is not mass-normalized: the surface alone has a modal mass of {:.3g}; that of the structure must be 1 kg",
+          "mode {} is not mass-normalized: the surface alone has a modal mass of {:.3g} kg, but that of the whole structure "
+          "must be 1 kg",
           m + 1, sums[m].modal_mass);
     if (model.face_density.empty() || sums[m].mass < 0.5 * model.mass) continue;
     for (int c = 0; c < 3; ++c) {
@@ -173,7 +174,8 @@ std::string scale_problem_of(const ModalModel& model) {
       model.face_density.empty() ? 1e-4 : (sums.front().mass < 0.5 * model.mass ? 1e-4 : 0.1);
   if (largest < least)
     return fmt::format(
-        "no mode is mass-normalized: the surface has modal masses up to {:.2g}; that of the structure must be 1 kg",
+        "no mode is mass-normalized: the surface has modal masses of up to {:.2g} kg, but that of the whole structure must be "
+        "1 kg",
         largest);
   return "";
 }
@@ -226,8 +228,8 @@ std::string order_problem_of(const ModalModel& model) {
       roughness(model, lowest, [n](std::size_t v, std::size_t c) { return c * n + v; });
   if (by_component >= 0.5 * by_vertex) return "";
   return fmt::format(
-      "the shape of mode {} seems to list all x components first, then all y, then all z: read that way, neighboring vertices "
-      "differ {:.2g} times less (mean square). The rows must be per vertex, with three components each",
+      "the shape of mode {} seems to list all x components first, then all y, then all z: in this order, the mean square "
+      "difference of neighboring vertices is {:.2g} times smaller. There must be one row per vertex, with three components",
       lowest + 1, by_vertex / std::max(by_component, 1e-12 * by_vertex));
 }
 

@@ -326,11 +326,11 @@ std::string part_problem(const Sides& sides, std::size_t part, std::size_t sampl
   if (wanted == Facing::outward ? !(*volume < 0) : !(*volume > 0)) return "";
   return wanted == Facing::outward
              ? fmt::format(
-                   "{} are inside out: their normals point into the {:.3g} m^3 that the surface encloses, "
-                   "but must point out of it {}",
+                   "{} are inside out: their normals point into the volume of {:.3g} m^3 that the surface encloses, but must "
+                   "point out of it {}",
                    sides.name(part), -*volume, rule)
              : fmt::format(
-                   "{} point out of the {:.3g} m^3 that the surface encloses, but those of a cavity wall "
+                   "{} point out of the volume of {:.3g} m^3 that the surface encloses, but those of a cavity wall "
                    "('modes.cavity: true') must point into it {}",
                    sides.name(part), *volume, rule);
 }

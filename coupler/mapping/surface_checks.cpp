@@ -79,7 +79,7 @@ bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vec
 std::string not_nested(const std::string& from, const std::string& to) {
   return fmt::format(
       "The faces of '{}' and '{}' do not nest: vertices of either side lie between those of the other. With "
-      "`coupling.mapping.type: nearest` the wall would move in steps and the load would do different work on the two sides. "
+      "`coupling.mapping.type: nearest` the wall would move stepwise and the load would do different work on the two sides. "
       "Set `coupling.mapping.type: projection`: it conserves work, force and moment on any meshes.",
       from, to);
 }
@@ -204,10 +204,10 @@ PlaceReport compare_places(MPI_Comm comm, const Side& from, const Side& to, bool
   report.nests = all_near(comm, found, face) || all_near(comm, nearest(comm, source.points, target),
                                                          nearest(comm, source.points, source_faces));
   if (const int most = most_followers(comm, found, source.starts); most >= 3)
-    report.notes.push_back(
-        fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
-                    "motion is stepped. `mapping.type: projection` avoids this.",
-                    from.name, to.name, most));
+    report.notes.push_back(fmt::format(
+        "note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the motion is stepwise. "
+        "`mapping.type: projection` avoids this.",
+        from.name, to.name, most));
   return report;
 }
 

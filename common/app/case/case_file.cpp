@@ -44,8 +44,8 @@ void list_expected(const config::Document& document, CaseFile& result) {
   if (result.coupled) result.expected.push_back({coupler_name, "coupler"});
   const std::vector<std::string> names = config::keys_of(document, "participants");
   if (names.size() > most_participants)
-    throw Error("{}: {} participants; at most {} are allowed.", config::where(document, "participants"),
-                names.size(), most_participants);
+    throw Error("{}: there are {} participants, but at most {} are allowed.",
+                config::where(document, "participants"), names.size(), most_participants);
   for (const std::string& name : names) {
     // The first invalid name is reported by itself, because its path cannot be looked up.
     if (const std::string problem = problem_of_name(name); !problem.empty())

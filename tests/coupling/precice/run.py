@@ -517,15 +517,15 @@ def edited(folder, words):
 
 GOOD = configuration("serial-implicit", substeps="false")
 BAD = {  # replaced, by what, what is said
-    "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: <receive-mesh> with api-access is not supported: direct access"),
+    "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: <receive-mesh> with api-access (direct access to received meshes) is not supported"),
     "just-in-time mapping": ('from="Right-Mesh" to="Left-Mesh" constraint', 'from="Right-Mesh" constraint', "just-in-time mapping"),
-    "remeshing": ("<precice-configuration", '<precice-configuration experimental="true" allow-remeshing="true"', "with allow-remeshing is not supported: meshes that change during the run"),
-    "actions": ("<m2n:sockets", '<action:summation /><m2n:sockets', "<action:summation> is not supported: actions on data"),
+    "remeshing": ("<precice-configuration", '<precice-configuration experimental="true" allow-remeshing="true"', "with allow-remeshing (meshes that change during the run) is not supported"),
+    "actions": ("<m2n:sockets", '<action:summation /><m2n:sockets', "<action:summation> (actions on data) is not supported"),
     "gradients": ("mapping:nearest-neighbor direction", "mapping:nearest-neighbor-gradient direction", "mapping with gradients"),
     "scaled": ('constraint="consistent"', 'constraint="scaled-consistent-surface"', 'with constraint "scaled-consistent-surface" is not supported'),
     "another element": ("<m2n:sockets", "<shape><m2n:sockets", ":34: mismatched tag"),
     "an unknown element": ("<m2n:sockets", "<shape /><m2n:sockets", "<shape> is not known"),
-    "version 2": ("precice-configuration", "solver-interface", "<precice-configuration> of preCICE's version 3 is expected"),
+    "version 2": ("precice-configuration", "solver-interface", "expected <precice-configuration> of preCICE version 3"),
     "no end": ('<max-time value="1" />', "", "neither <max-time> nor <max-time-windows>"),
     "a degree": ("<data:scalar name", '<data:scalar waveform-degree="-1" name', ':5: waveform-degree of "Displacement-Left" is "-1"; expected a whole number from 0 to 99'),
     "a degree without sub-steps": ('<data:scalar name="Displacement-Left" />', '<data:scalar name="Displacement-Left" waveform-degree="2" />', ':28: waveform-degree 2 of "Displacement-Left" needs its values at the sub-steps'),
@@ -538,7 +538,7 @@ BAD = {  # replaced, by what, what is said
     "an attribute that nobody knows": ('initialize="true"', 'initialise="true"', ":29: <exchange>: the attribute 'initialise' is not known, only: data, mesh, from, to, initialize, substeps."),
     "no iteration": ('<max-iterations value="50" />', '<max-iterations value="0" />', ":30: <max-iterations>: '0' is not supported; expected a whole number from 1 to 10000"),
     "a limit that is no number": ('limit="1e-12"', 'limit="small"', "<relative-convergence-measure>: the limit 'small' is not a number above 0"),
-    "entities": ("<!-- pairs", '<!DOCTYPE a [<!ENTITY b "c">]><!-- pairs', "document types are not read"),
+    "entities": ("<!-- pairs", '<!DOCTYPE a [<!ENTITY b "c">]><!-- pairs', "document types are not supported"),
 }
 
 

@@ -40,7 +40,7 @@ class Import:
         """Checks a single element."""
         name = element.name
         if key := listed(name, REFUSED):
-            self._refuse(element, f"<{name}> is not supported: {REFUSED[key]}")
+            self._refuse(element, f"<{name}> ({REFUSED[key]}) is not supported")
         elif key := listed(name, WITHOUT_EFFECT):
             self._note(element, f"<{name}> has no effect here: {WITHOUT_EFFECT[key]}")
         elif name in MAPPED or name.startswith("mapping:rbf"):

@@ -51,7 +51,7 @@ def read(file):
         )
 
     def document_type(*_):
-        expect(False, f"{file}:{parser.CurrentLineNumber}: document types are not read.")
+        expect(False, f"{file}:{parser.CurrentLineNumber}: document types are not supported.")
 
     parser.StartElementHandler, parser.EndElementHandler = begin, lambda _: stack.pop()
     parser.StartDoctypeDeclHandler = document_type
@@ -61,10 +61,7 @@ def read(file):
         expect(False, f"{file}:{error.lineno}: {xml.parsers.expat.errors.messages[error.code]}.")
     expect(
         roots[0].name == "precice-configuration",
-        (
-            f"{file}:{roots[0].line}: <precice-configuration> of preCICE's version 3 is expected, this is"
-            f" <{roots[0].name}>."
-        ),
+        f"{file}:{roots[0].line}: expected <precice-configuration> of preCICE version 3, but found <{roots[0].name}>.",
     )
     return roots[0]
 
@@ -160,7 +157,7 @@ REFUSED = {
     "min-iteration-convergence-measure": "a minimum number of iterations",
     "coupling-scheme:compositional": "schemes that are composed by hand",
     "acceleration:broyden": "Broyden's acceleration",
-    "extrapolation-order": "extrapolation of preCICE's version 2",
+    "extrapolation-order": "extrapolation of preCICE version 2",
 }
 
 
