@@ -59,8 +59,8 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
     if (!built_.note.empty()) log::warn("{}", built_.note);
     if (p.modes_file)
       log::info(
-          "modes from a file: the contribution of truncated modes cannot be estimated. A load on few faces, "
-          "or along a stiff direction, needs many: export twice as many, and compare.");
+          "modes from a file: the contribution of truncated modes cannot be estimated. A load on few faces, or along a stiff "
+          "direction, needs many modes: export twice as many, and compare.");
     if (built_.reused) log::info("reusing the modes of {}", (context_.output_folder / "modes.h5").string());
   }
   if (p.analysis == Parameters::Analysis::static_ && surface_.omega().front() == 0)
@@ -88,9 +88,9 @@ void Structure::refuse_wound_springs() const {
   const Contact::DeepestPoint place = contact_->deepest(state_.q);
   if (place.depth <= 1e-9 * size) return;
   throw Error(
-      "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower "
-      "'height' (it counts from the origin along the direction; a side of a plate is half a thickness from "
-      "its mid-surface), or set 'starts-inside: true' if these springs are meant to push from the start.",
+      "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower 'height' (it is "
+      "measured from the origin along the direction; a side of a plate is half a thickness from its mid-surface), or set "
+      "'starts-inside: true' if these springs are meant to push from the start.",
       place.depth, place.centre.x(), place.centre.y(), place.centre.z());
 }
 
@@ -240,7 +240,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
     d.apart = std::max(d.apart, std::abs(direct_[i] - by_modes[i]));
   }
   if (parallel::comm_rank(context_.comm) == 0)
-    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m", d.direct,
+    log::info("static deflection: max {:.6e} m; with {} modes {:.6e} m; max difference {:.2e} m", d.direct,
               surface_.n_modes(), d.by_modes, d.apart);
 }
 
@@ -276,7 +276,7 @@ void Structure::load(io::CheckpointReader& file) {
   for (const auto part :
        {&ModalState::q, &ModalState::v, &ModalState::a, &ModalState::q_old, &ModalState::v_old})
     if ((state_.*part).size() != (fresh.*part).size())
-      throw Error("The checkpoint was written with another time scheme than this run uses.");
+      throw Error("The checkpoint was written with a time scheme that differs from that of this run.");
   take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
   trial_ = state_;
   displacement_ = surface_.motion(state_.q);
@@ -287,8 +287,8 @@ void Structure::visit(io::Archive archive) {
   archive.common("omega", omega);
   if (omega != surface_.omega())
     throw Error(
-        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
-        "supports or the number of modes differ.");
+        "The checkpoint was written with modes that differ from those of this run: mesh, material, thickness, supports or the "
+        "number of modes differ.");
   archive.common("state", state_);
 }
 

@@ -276,7 +276,7 @@ static std::string configuration_of_case(const std::string& file) {
     if (begins(line, mark))
       return (std::filesystem::path(file).parent_path() / line.substr(mark.size())).string();
   throw ::precice::Error(file +
-                         ": this case does not name the configuration of preCICE from which it was made (\"" +
+                         ": this case does not name the preCICE configuration from which it was made (\"" +
                          mark + "...\", as couplet import writes it).");
 }
 

@@ -138,7 +138,7 @@ void declare_participants(config::Section& section, CouplingParameters& p) {
                 "name of its displacement (m, or without a unit) at vertices in its program; a missing velocity is computed by second-order differences");
         s.value("load", r.load)
             .doc(
-                "name of its load (N) in its program, the sum of all forces; default: each force by its own name");
+                "name in its program of its load (N), which is the sum of all forces; default: each force has its own name");
       },
       "participant that receives the load and gives the interface motion. Without it, but with `mesh`, bodies move as the mesh "
       "mover's boundaries prescribe (type: moving), and nothing is iterated");

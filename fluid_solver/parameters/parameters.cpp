@@ -44,8 +44,8 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
       .unit("Pa", 1e-9, 1e9)
       .doc(
           "reference pressure p_ref of Cp = (p - p_ref) / q, which is written for those of these walls that 'surfaces' names");
-  s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
-  s.value("lift", c.lift).doc("direction of the second coefficient");
+  s.value("drag", c.drag).doc("direction of the first coefficient, a vector of any length");
+  s.value("lift", c.lift).doc("direction of the second coefficient, a vector of any length");
   s.value("centre", c.centre).unit("m", 1e-9, 1e4).doc("fixed reference point of the moment");
   s.value("axis", c.axis).size(3).doc("axis of the moment; in 2-D z");
   const auto needs_direction = [&s](const char* key, const auto& value) {

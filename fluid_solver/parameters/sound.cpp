@@ -85,7 +85,7 @@ double solved_sound(const std::optional<CompressibilityParameters>& p, double de
   const auto sound = sound_of(p, density, viscosity);
   if (!sound)
     throw Error(
-        "compressibility: a fluid of {:g} kg/m^3 and {:g} Pa s is no known gas or liquid: give its 'speed-of-sound', or "
+        "compressibility: a fluid of {:g} kg/m^3 and {:g} Pa s is not a known gas or liquid: give its 'speed-of-sound', or "
         "'scheme: none'.",
         density, viscosity);
   return sound->speed;

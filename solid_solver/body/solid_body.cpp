@@ -113,8 +113,8 @@ void SolidBody::check_supports() const {
 void SolidBody::make_seat() {
   if (!kernel_.is_symmetric())
     throw Error(
-        "contact: the seat needs the symmetric face gradient, and the boundaries or the method of this solid chose another: use "
-        "'solution-method: {{face-gradient: symmetric}}'.");
+        "contact: the seat needs the symmetric face gradient, but the boundaries or the method of this solid require another: "
+        "use 'solution-method: {{face-gradient: symmetric}}'.");
   std::vector<std::uint8_t> open;
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) open.push_back(elastic_.at(f).is_free());
   seat_ = std::make_unique<Seat>(mesh_, elastic_, kernel_, *parameters_.contact, open, !is_dynamic());

@@ -177,8 +177,8 @@ Opinion near_incompressibility(const P& p) {
            has_orthotropic(p)
                ? "coarse meshes may be too stiff there, and an orthotropic material has no "
                  "volume strain per cell: compare two meshes"
-               : "coarse meshes are too stiff or fail there: use 'solution-method: {face-gradient: symmetric}' with one volume "
-                 "strain per cell",
+               : "coarse meshes are too stiff or otherwise inaccurate there: use 'solution-method: {face-gradient: symmetric}' "
+                 "with one volume strain per cell",
        .left_out = false});
 }
 

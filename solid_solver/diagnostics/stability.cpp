@@ -47,8 +47,8 @@ void Stability::observe(diagnostics::Report& report) {
            "stability of the equilibrium: min stiffness loaded / unloaded = {:.2g} (limit 0): unstable; {}",
            stiffness, where),
        .advice =
-           "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of "
-           "the linear body gives load factors and shapes"});
+           "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of the linear body "
+           "gives load factors and mode shapes"});
 }
 
 void Stability::see_limits(const LoadPath& path) {

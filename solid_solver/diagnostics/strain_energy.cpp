@@ -83,7 +83,7 @@ bool StrainAudit::is_doubtful() const {
 
 std::string StrainAudit::text() const {
   std::string text = fmt::format(
-      "energy balance: half the work of the loads {:.6g} J, strain energy {:.6g} J ({:.2g} % apart)",
+      "energy balance: half the work of the loads is {:.6g} J and the strain energy {:.6g} J ({:.2g} % apart)",
       stress_work, strain_energy, 100 * mismatch());
   if (inner_variation > most_variation)
     text += fmt::format(

@@ -188,7 +188,7 @@ linalg::SolveStatistics ConjugateGradients::find(std::span<const double> b, std:
     return statistics;
   } catch (const SolveFailure& e) {
     throw SolveFailure(
-        "{} Is the solid held everywhere, is nu below 0.5, are the cells well shaped?{}", e.what(),
+        "{} Is the solid fully supported, is nu below 0.5, and are the cells well shaped?{}", e.what(),
         multigrid_
             ? " If loads and supports are correct, try 'solution-method: {preconditioner: factors}', the most "
               "robust option, at the highest memory cost."

@@ -152,7 +152,7 @@ void check_quantities(config::Section& s, SolidParameters& p) {
 void check_contact(config::Section& s, SolidParameters& p) {
   if (!p.contact) return;
   const auto& d = p.contact->direction;
-  refuse(s, "contact", p.analysis == Analysis::thermal, "a thermal analysis moves nothing; remove it");
+  refuse(s, "contact", p.analysis == Analysis::thermal, "a thermal analysis computes no motion; remove it");
   refuse(s, "contact", p.dimension == 2 && d.size() == 3 && d[2] != 0,
          "its 'direction' must lie in the plane of a 2-dimensional case: [x, y, 0]");
   refuse(
@@ -171,7 +171,7 @@ void check_contact(config::Section& s, SolidParameters& p) {
   refuse(s, "solution-method", !derives_from_energy(p),
          "'contact' requires 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
          "'preconditioner: mixed' and 'zero-normal-gradient'");
-  refuse(s, "output", p.output.buckling > 0, "'buckling' does not include a seat; remove it, or 'contact'");
+  refuse(s, "output", p.output.buckling > 0, "'buckling' does not support a seat; remove it, or 'contact'");
 }
 
 namespace {
@@ -328,9 +328,10 @@ void check_finite_sheet(config::Section& s, SolidParameters& p) {
   refuse(s, "plane", is_updated_lagrangian(p),
          "'solution-method: {type: segregated}' at finite strain supports plane strain only; use 'type: "
          "newton-krylov' (or 'auto')");
-  refuse(s, "solution-method", p.method.volume_strain == Method::VolumeStrain::cells,
-         "plane stress at finite strain has the volume strain of the faces, which does not lock there; use "
-         "'volume-strain: faces' (or 'auto')");
+  refuse(
+      s, "solution-method", p.method.volume_strain == Method::VolumeStrain::cells,
+      "plane stress at finite strain requires the volume strain of the faces, which does not lock there; use 'volume-strain: "
+      "faces' (or 'auto')");
   refuse(s, "energy-momentum", p.energy_momentum,
          "its stress supports plane strain only; model the sheet in 3-D, or remove it");
   refuse(

@@ -131,7 +131,7 @@ std::string problem_of_day(const std::vector<double>& values, bool share) {
 
 void declare(config::Section& s, CalendarRule& r) {
   s.value("days", r.days)
-      .doc("names of weekdays in English, or weekdays (monday to friday), weekend; default: every day");
+      .doc("names of weekdays in English, or 'weekdays' (monday to friday) or 'weekend'; default: every day");
   s.value("from", r.from).doc("first day of the season, MM-DD of the weather; default: all year");
   s.value("to", r.to).doc("its last day, MM-DD; it may lie in the next year");
   s.value("load", r.load).doc("share of electric-power, one value or 24");

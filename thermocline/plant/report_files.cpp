@@ -191,13 +191,13 @@ std::vector<std::string> DayReport::doubts() const {
         period, days / period));
   else if (days < 0.98 * year)
     sentences.push_back(fmt::format(
-        "report: {:.3g} days represent a year in the electricity and its cost or revenue: these are "
-        "accurate only for a run over a whole year",
+        "report: the electricity and its cost or revenue are extrapolated from {:.3g} days to a year: they are accurate only "
+        "for a run over a whole year",
         days));
   else
     sentences.push_back(fmt::format(
-        "report: the {:.4g} counted days are not a whole number of years: some days of the year have "
-        "more weight than others in the electricity and its cost or revenue",
+        "report: the {:.4g} counted days are not a whole number of years, so that some days of the year have more weight than "
+        "others in the electricity and its cost or revenue",
         days));
   return sentences;
 }

@@ -296,7 +296,7 @@ void declare(config::Section& section, WeatherParameters& p) {
        {"file", WeatherKind::file, [&](config::Section& s) { declare_file(s, p); }},
        {"clear-sky", WeatherKind::clear_sky, [&](config::Section& s) { declare_clear_sky(s, p); }},
        {"smooth-days", WeatherKind::smooth_days, [&](config::Section& s) { declare_smooth_days(s, p); }}},
-      "source of sun and air");
+      "source of the sun and air data");
 }
 
 std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {

@@ -145,8 +145,7 @@ Attendant introduced(const std::string& text, int process) {
   for (std::string field; std::getline(in, field, field_end);) fields.push_back(field);
   const auto malformed = [&](const std::string& why) {
     return Error(
-        "The handshake of process {} of the job is malformed: {}. docs/protocol.md, step 3, describes the "
-        "format.",
+        "The handshake of process {} of the job is malformed: {}. docs/protocol.md, step 3, describes the format.",
         process, why);
   };
   if (fields.size() < 9) throw malformed(fmt::format("it has {} fields, but 9 are expected", fields.size()));

@@ -68,8 +68,8 @@ void open(MPI_Comm comm, const Words& words) {
                base = parallel::sum(comm, before);
   if (parallel::comm_rank(comm) == 0)
     std::printf(
-        "%d ranks, %.0f cells, at most %.0f per rank, copies %.3f; %.2f s; peak of memory %.1f MB over all ranks, %.1f MB on "
-        "one, of which %.1f MB were there before\n",
+        "%d ranks, %.0f cells, at most %.0f per rank, ghost cells per cell %.3f; %.2f s; peak of memory %.1f MB over all "
+        "ranks, %.1f MB on one, of which %.1f MB were in use before\n",
         parallel::comm_size(comm), sum, most, copies, seconds, peaks, peak, base);
 }
 
