@@ -122,7 +122,7 @@ def ranks_of(words, case, here=True):
         all("=" in w for w in words), f"-n {','.join(words)}: expected one whole number for the whole job, or NAME=N"
     )
     found = pairs(words, "-n")
-    expect(len(found) == len(words), f"-n {','.join(words)}: names a participant twice")
+    expect(len(found) == len(words), f"-n {','.join(words)}: a participant is named twice")
     expect(
         all(n.isdigit() and int(n) > 0 for n in found.values()),
         f"-n {','.join(words)}: expected whole numbers of at least 1, such as -n fluid=4,solid=2",

@@ -288,7 +288,7 @@ class Physics:
                 why = (
                     "Couplet has no counterpart"
                     if not kind
-                    else "no boundary face is there" if on_faces else "it acts on a part"
+                    else "there is no boundary face" if on_faces else "it acts on a part"
                 )
                 self.leave(line, f"*{block.word} {label[:20]} of '{target[:60]}'", why)
                 continue

@@ -50,7 +50,7 @@ class Flow:
             if kind not in PATCHES:
                 refuse(
                     f"{where}.type",
-                    f"'{kind}' has no counterpart in the exported OpenFOAM case; {', '.join(PATCHES)} have",
+                    f"'{kind}' has no counterpart in the exported OpenFOAM case; only {', '.join(PATCHES)} have one",
                 )
             only(given, where, PATCHES[kind] | {"type"}, "the exported OpenFOAM case")
             if given.get("profile", "uniform") != "uniform":

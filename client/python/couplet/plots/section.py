@@ -168,7 +168,9 @@ def follow(value, schema, where):
         for i, item in enumerate(value):
             follow(item, schema["items"], f"{where}[{i}]")
     elif "minimum" in schema:
-        expect(value >= schema["minimum"], f"{where}: expected a number from {schema['minimum']} on, found {value}.")
+        expect(
+            value >= schema["minimum"], f"{where}: expected a number of at least {schema['minimum']}, found {value}."
+        )
 
 
 def seconds(value, where):
