@@ -45,8 +45,7 @@ int main(int argc, char** argv) {
   app::Program program{
       .name = "mesh_mover",
       .description =
-          "moves the mesh points with the interface or as prescribed, by a Laplacian, an elastic body or "
-          "rotations",
+          "moves the mesh points with the interface or as prescribed, by a Laplacian, an elastic body or rotations",
       .declare = [&](config::Section& s) { declare(s, parameters); },
       .make =
           [&](const app::ParticipantContext& context) {

@@ -55,7 +55,7 @@ void refuse_other_meanings(const std::string& text) {
       if (text[i] == '=' && !two)
         throw TextProblem{
             i,
-            "'=' does not compare, and nothing can be assigned; write '==', or a range such as abs(y - 0.1) < 1e-6"};
+            "'=' is not a comparison, and values cannot be assigned; write '==', or a range such as abs(y - 0.1) < 1e-6"};
       if (std::exchange(levels.back().compares, true))
         throw TextProblem{i, "comparisons cannot be chained; join them by '&&', as in '0 < x && x < 1'"};
       i += two;

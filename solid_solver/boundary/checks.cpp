@@ -58,8 +58,8 @@ void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   // The operator is not elliptic if a cell is not behind its face.
   if (const auto fold = mesh::find_fold(mesh, geometry))
     throw Error(
-        "The mesh is folded at {}: cell {} (counted from 0 in the file) is not behind its face there. A "
-        "cell is inverted or bent over; remesh there.",
+        "The mesh is folded at {}: cell {} (counted from 0 in the file) lies on the wrong side of its face there. A cell is "
+        "inverted or bent over; remesh there.",
         text_of(fold->centre, mesh.dim), fold->cell_id);
   if (const auto bent = find_any(mesh, geometry, vertices.bent_points()))
     throw Error(
@@ -113,8 +113,8 @@ void check_touching(const mesh::LoadedMesh& body, const SolidParameters& paramet
         found.alike && ties ? "Only faces in a group of the mesh are tied: put both sides into groups."
         : found.alike
             ? "Merge the double points of the mesh, or set 'touching-faces: tie'."
-            : "The faces of the two sides have other corners, so 'touching-faces: tie' cannot join them: "
-              "mesh both sides alike, or as one body.");
+            : "The faces of the two sides have different corners, so 'touching-faces: tie' cannot join them: mesh both sides "
+              "identically, or as one body.");
   }
 }
 

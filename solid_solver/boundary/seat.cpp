@@ -64,8 +64,8 @@ void Seat::refuse_start_inside() const {
     if (all[i] > all[worst]) worst = i;
   if (all[worst] > 0)
     throw Error(
-        "contact.height: the solid starts {:.3g} m inside the seat, at ({:.4g}, {:.4g}, {:.4g}), which would push it off at "
-        "once. Move the seat or the mesh, or set 'starts-inside: true'.",
+        "contact.height: the solid starts {:.3g} m inside the seat, at ({:.4g}, {:.4g}, {:.4g}), which would push it off "
+        "immediately. Move the seat or the mesh, or set 'starts-inside: true'.",
         all[worst], all[worst + 1], all[worst + 2], all[worst + 3]);
 }
 

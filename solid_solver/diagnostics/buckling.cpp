@@ -216,9 +216,9 @@ void LinearBuckling::see(diagnostics::Report& report) {
     return;
   for (const FreeMotion& free : free_motions(body.mesh(), body.elastic()))
     if (!free.modes.empty())
-      return report.sentences.push_back(
-          fmt::format("nothing holds the solid: {}; a body that can move freely has no buckling load.",
-                      base::join(free.modes)));
+      return report.sentences.push_back(fmt::format(
+          "the solid is not fully supported: {}; a body that can move freely has no buckling load.",
+          base::join(free.modes)));
   const BucklingEstimate found =
       estimate_buckling(body, view_.fields, view_.stepper, *method, compression_seen_, searches_);
   if (!found.matters()) return;

@@ -408,8 +408,8 @@ void FiniteStrain::set_expansion(std::vector<double> strains) {
   for (double& strain : strains) least = std::min(least, strain += 1);
   if (!(parallel::min(mesh_.comm, least) > 0))
     throw Error(
-        "thermal-expansion: a thermal strain of -1 or less leaves nothing of the body; check "
-        "'material.expansion' and the temperatures.");
+        "thermal-expansion: a thermal strain of -1 or less would shrink the body to nothing; check 'material.expansion' and "
+        "the temperatures.");
   kernel_->set_stretch(strains);
   jump_.set_stretch(std::move(strains));
   if (std::exchange(is_restored_, false)) jump_.settle();
