@@ -182,8 +182,8 @@ EigenModes counted_modes(const Pencil& pencil, int n, double shift,
     return modes;
   }
   throw SolveFailure(
-      "Cannot verify the {} lowest modes: the eigenvalue solver returned fewer, or not those that the pivot count predicts. "
-      "Check that the model is connected and its stiffness is positive definite, or request fewer modes.",
+      "Cannot verify the {} lowest modes: the eigenvalue solver returned fewer modes, or modes other than those that the pivot "
+      "count predicts. Check that the model is connected and its stiffness is positive definite, or request fewer modes.",
       n);
 }
 

@@ -170,7 +170,7 @@ const auto& condition_table() {
       // Impermeable surface without friction that moves with the mesh. A symmetry plane is the same.
       Entry{BoundaryType::slip,
             {.name = "slip",
-             .about = "slip, symmetry: no flow through it, no shear stress",
+             .about = "slip, symmetry: no flow through the patch and no shear stress",
              .row = without_friction,
              .velocity = GivenBy::mesh}},
       Entry{BoundaryType::symmetry,

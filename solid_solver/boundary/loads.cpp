@@ -110,9 +110,8 @@ void DistributedForce::check_taken(const Vec3& moment, const Vec3& force) const 
   if ((lost_ * moment).norm() <= rounding * scale) return;
   const Vec3 axis = (lost_ * moment).normalized();
   throw Error(
-      "{}: the face centers lie on one line through ({:g}, {:g}, {:g}), so they cannot transmit a moment "
-      "about ({:.3g}, {:.3g}, {:.3g}), but the load has {:g} N m. Refine the patch, select more faces or "
-      "use 'type: force'.",
+      "{}: the face centers lie on one line through ({:g}, {:g}, {:g}), so they cannot transmit a moment about ({:.3g}, "
+      "{:.3g}, {:.3g}), but the load has {:g} N m. Refine the patch, select more faces or use 'type: force'.",
       where_, centre_[0], centre_[1], centre_[2], axis[0], axis[1], axis[2], (lost_ * moment).norm());
 }
 

@@ -291,7 +291,7 @@ void check_axisymmetric(config::Section& s, SolidParameters& p) {
          "'plane: axisymmetric' does not conduct heat; give 'temperature' as an expression, or model a wedge "
          "in 3-D");
   refuse(s, "interface", p.interface_data.has_value(),
-         "'plane: axisymmetric' does not couple; model a wedge in 3-D");
+         "'plane: axisymmetric' does not support coupling; model a wedge in 3-D");
   refuse(s, "output", has_modes(p) || p.output.buckling > 0,
          "'plane: axisymmetric' supports none of 'spectrum', 'modes' and 'buckling'; model the body in 3-D");
   refuse(s, material_key(p), has_orthotropic(p),
@@ -362,8 +362,9 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
          "by itself from nu = 0.48");
   check_finite_sheet(s, p);
   const bool expands = p.expansion.has_value();
-  refuse(s, "thermoelastic-coupling", p.thermoelastic_coupling,
-         "finite strain has thermal strain, but not the heat of deformation; use small-strain, or remove it");
+  refuse(
+      s, "thermoelastic-coupling", p.thermoelastic_coupling,
+      "finite strain supports thermal strain, but not the heat of deformation; use small-strain, or remove it");
   refuse(s, "energy-momentum", expands && p.energy_momentum,
          "its stress conserves energy at constant temperature only; remove it, or 'thermal-expansion'");
   refuse(s, "output", expands && p.output.energies,

@@ -231,8 +231,8 @@ std::vector<std::string> check_wall_mass(const config::Document& document) {
     const std::string key = fmt::format("{}.{}.surface-density", walls, patch);
     if (const auto given = number(document, key, "kg/m^2"); given && *given > most * mass)
       doubts.push_back(fmt::format(
-          "{}: {:.6g} kg/m^2, but the plate '{}' has {:.3g} kg/m^2, density times thickness: implausible; "
-          "check the number and its unit.",
+          "{}: {:.6g} kg/m^2, but density times thickness of the plate '{}' is {:.3g} kg/m^2: implausible; check the number "
+          "and its unit.",
           config::where(document, key), *given, *structure, mass));
   }
   return doubts;
